@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from granchain_core import Run, Scene
-from granchain_core.lower import scales_of
+from granchain_core.scaling import scales_of
 
 _FEWEST, _MOST, _STEP = 96, 384, 48
 _PER_CONTACT_TIME = 1.5

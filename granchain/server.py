@@ -19,7 +19,7 @@ from granchain_core import BadInput, Scene, scene
 from .pictures import part_of_app
 
 #: What the process runs: the command `granchain`, and nothing that depends on the PATH. It ends with this process.
-_PROGRAM = ("import sys; from granchain_core.children import end_with_parent; "
+_PROGRAM = ("import sys; from granchain_core.child_processes import end_with_parent; "
             "end_with_parent(int(sys.argv.pop(1))); import granchain_start; sys.exit(granchain_start.entry())")
 #: Until the server answers [s]: the first start on a machine compiles. Between two looks [s].
 _PATIENCE, _LOOK = 120.0, 0.05

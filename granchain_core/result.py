@@ -268,7 +268,7 @@ def residual(energy: np.ndarray | None) -> float | None:
 def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime, error: float | None,
              cost: Cost, status: str = "done", force_errors: np.ndarray | None = None) -> Run:
     """The `Run` of recorded samples; time counts from drive phase 0, `first_sample` being the index of row 0."""
-    scene, scales = engine.lowered.scene, engine.lowered.scales
+    scene, scales = engine.scaled.scene, engine.scaled.scales
     index = first_sample + np.arange(len(samples.displacement))
     inside = np.mod(index, engine.samples)
     maxima = np.where(np.isfinite(engine.maxima), engine.maxima, 0.0) * scales.force
@@ -287,7 +287,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
 
 def _jumps(engine: Engine, first_sample: int) -> Jumps:
     """The jumps of the engine's last record, in SI."""
-    rows, scene = engine.closings, engine.lowered.scene
+    rows, scene = engine.closings, engine.scaled.scene
     period = (first_sample + rows[:, 0].astype(np.int64)) // engine.samples
     return Jumps((period + rows[:, 1] / (2.0 * np.pi)) * scene.period, rows[:, 2].astype(np.int64),
-                 rows[:, 3] * engine.lowered.scales.force, engine.closings_missing, engine.unresolved)
+                 rows[:, 3] * engine.scaled.scales.force, engine.closings_missing, engine.unresolved)

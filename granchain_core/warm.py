@@ -19,17 +19,17 @@ import numpy as np
 
 from .accuracy.effect_cost import CODE, MOTION
 from .accuracy.work_precision import compile_methods
-from .children import pool, starting
-from .integrate import Engine, Setting, certified, live
+from .child_processes import pool, starting
+from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting
 from .integrate.batch import Batch, can_share_batch, is_uniform
 from .kernels.cache import CACHE_FOLDER
 from .kernels.rk4.short_chain import WIDTHS
-from .lower import lower
 from .observe.pair import Pair
 from .orbits.branch.axis import KnobAxis
 from .orbits.branch.equations import BranchEquations
 from .orbits.branch.point import record_along
 from .orbits.flow import StroboscopicMap
+from .scaling import scale_chain
 from .scene import Scene, scene
 from .scene.effects import effects_of
 from .state import rest
@@ -38,8 +38,8 @@ from .stop import Stop
 
 #: Names of the pieces of one structure's kernels.
 CURVE = "curve"
-CERTIFIED = "certified"
-LIVE = "live"
+ADAPTIVE = "adaptive"
+FIXED_STEP = "fixed step"
 ORBIT = "orbit"
 BRANCH = "branch"
 OBSERVER = "observer"
@@ -53,7 +53,7 @@ def structure(shown: Scene) -> str:
     width = next((f"{lanes} lanes" for lanes in WIDTHS if lanes >= shown.N + 2), "long")
     effects = [effect.key(shown) for effect in effects_of(shown)]
     law = [] if shown.has_dissipation else ["none"]
-    beads = [] if is_uniform(lower(shown)) else ["unequal beads"]
+    beads = [] if is_uniform(scale_chain(shown)) else ["unequal beads"]
     return "+".join([*law, *effects, *beads]) + f", {width}"
 
 
@@ -71,15 +71,15 @@ def _engine(setting: Setting) -> Callable[[Scene], None]:
 def _curve(short: Scene) -> None:
     """A curve: located jumps, the shadow of irregular motions, and the batch if the scene can use it."""
     if short.forces_jump:
-        Engine(short, live(), 1).record(1)
-    exponents(Engine(short, live(), 1), 1, 1)
+        Engine(short, fixed_step_setting(), 1).record(1)
+    exponents(Engine(short, fixed_step_setting(), 1), 1, 1)
     if can_share_batch(short):
         block = Batch(short, Stop())
-        lowered = lower(short)
-        y = lowered.scaled(rest(short))
-        block.put(0, lowered, y, 1, return_at=1)
+        scaled = scale_chain(short)
+        y = scaled.from_si(rest(short))
+        block.put(0, scaled, y, 1, return_at=1)
         block.run()
-        exponents_in_pairs([(lowered, y)], 1, 1, Stop())
+        exponents_in_pairs([(scaled, y)], 1, 1, Stop())
 
 
 def _orbit(short: Scene) -> None:
@@ -116,7 +116,7 @@ def _cost(balance: bool) -> Callable[[Scene], None]:
 
 #: Every piece with the function that compiles it by a short run, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
-    CURVE: _curve, CERTIFIED: _engine(certified(1e-3)), LIVE: _engine(live()),
+    CURVE: _curve, ADAPTIVE: _engine(adaptive_setting(1e-3)), FIXED_STEP: _engine(fixed_step_setting()),
     ORBIT: _orbit, BRANCH: _branch, OBSERVER: _observer,
     ACCURACY: compile_methods, COST: _cost(balance=False), COST_ACCOUNT: _cost(balance=True),
 }
@@ -130,7 +130,7 @@ def compile_piece(shown: Scene, piece: str) -> None:
             _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 
-def is_warm(shown: Scene, pieces: Iterable[str] = (LIVE, CERTIFIED)) -> bool:
+def is_warm(shown: Scene, pieces: Iterable[str] = (FIXED_STEP, ADAPTIVE)) -> bool:
     """Whether these pieces of the scene's structure have been compiled on this machine."""
     if CACHE_FOLDER is None:
         return False

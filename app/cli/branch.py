@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from granchain_core import BadInput, Cancelled, NumbersFailed
-from granchain_core.kept import folder_of
+from granchain_core.checkpoints import folder_of
 from granchain_core.orbits import CONTINUOUS, Arm, Branch, Continuation, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
-from granchain_core.orbits.branch.kept_orbits import KeptOrbits
+from granchain_core.orbits.branch.orbit_checkpoints import OrbitCheckpoints
 from granchain_core.orbits.branch.special import SpecialPoint
 
 from . import ending
@@ -119,7 +119,7 @@ def _followed(arguments: argparse.Namespace) -> Branch:
     return found
 
 
-def _remove(kept: KeptOrbits | None) -> None:
+def _remove(kept: OrbitCheckpoints | None) -> None:
     if kept is not None:
         kept.kept.remove()
 
@@ -129,14 +129,14 @@ class _Begun:
     """A branch that is to be followed, and where its orbits are kept meanwhile."""
 
     branch: Branch
-    kept: KeptOrbits | None
+    kept: OrbitCheckpoints | None
 
 
 def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
     """A new branch, or the one that --resume goes on with."""
     if arguments.resume:
         found = _in_file(arguments)
-        kept = KeptOrbits(found.axis, len(found.arms) > 1, arguments.out) if arguments.out else None
+        kept = OrbitCheckpoints(found.axis, len(found.arms) > 1, arguments.out) if arguments.out else None
         if kept is not None:
             kept.kept.open(resume=True)
         return _Begun((kept.branch() if kept is not None else None) or found, kept)
@@ -150,7 +150,7 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
     amplitude = chosen_amplitude(arguments, chosen)
     kept, there = None, None
     if arguments.out:
-        kept = KeptOrbits(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end, amplitude),
+        kept = OrbitCheckpoints(KnobAxis.of(chosen, arguments.knob, arguments.start, arguments.end, amplitude),
                           arguments.both, arguments.out)
         kept.kept.open(resume=arguments.resume is not None)
         there = _interrupted(arguments, kept)
@@ -158,7 +158,7 @@ def _begun(arguments: argparse.Namespace, stop: Any) -> _Begun:
                                         both=arguments.both, stop=stop, amplitude=amplitude), kept)
 
 
-def _interrupted(arguments: argparse.Namespace, kept: KeptOrbits) -> Branch | None:
+def _interrupted(arguments: argparse.Namespace, kept: OrbitCheckpoints) -> Branch | None:
     """What there is of the branch that --resume asks for, in its blocks or in --out; None where nothing is."""
     from granchain_core.store import load_branch
 

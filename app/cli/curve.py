@@ -59,7 +59,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, amplitude: Amplitude | None) -> Curve:
     """The curve, of which only points that are not there yet are computed, and its file."""
-    from granchain_core.steady.curve.kept_points import curve_digest, kept_points, points_in
+    from granchain_core.steady.curve.point_checkpoints import curve_digest, point_checkpoints, points_in
     from granchain_core.steady.curve.resonance_curve import resonance_curve
     from granchain_core.store import save_curve
     from granchain_core.store.curves import load_curve
@@ -68,7 +68,7 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
     there = finished(arguments, "curve", load_curve,
                      lambda found: curve_digest(found.scene, found.column("frequency"), found.start,
                                                 found.amplitude) == digest)
-    kept = kept_points(chosen, frequencies, arguments.start, arguments.out, amplitude) if arguments.out else None
+    kept = point_checkpoints(chosen, frequencies, arguments.start, arguments.out, amplitude) if arguments.out else None
     known: list[CurvePoint] = []
     if kept is not None:
         if there is not None:

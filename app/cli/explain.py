@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from granchain_core.integrate.methods import METHODS, method_for, setting_of
 from granchain_core.kernels.width import machine
-from granchain_core.lower import lower, slots_of
+from granchain_core.scaling import scale_chain, slots_of
 from granchain_core.scene import Scene
 from granchain_core.warm import structure
 
 
 def explanation(scene: Scene, method: str | None, samples: int) -> str:
     """The slots of the kernel that `run` uses, its method and the machine; `samples` a period may set its steps."""
-    lowered = lower(scene)
+    scaled = scale_chain(scene)
     slots = slots_of(scene, balance=True)
     present = [f"{title} ({kind})" for _, title, kind in slots if kind is not None]
     absent = [title for _, title, kind in slots if kind is None]
@@ -19,7 +19,7 @@ def explanation(scene: Scene, method: str | None, samples: int) -> str:
     chosen = METHODS[setting.method]
     why = "asked for by --method" if method else f"chosen for an accuracy of {scene.accuracy:g}"
     fineness = (f"tolerance per step {setting.tolerance:.1e}" if chosen.adaptive
-                else f"{setting.steps_per_period(lowered, samples)} steps a period")
+                else f"{setting.steps_per_period(scaled, samples)} steps a period")
     return "\n".join((
         f"compiled in: {', '.join(present)}",
         f"absent, with no code and no array: {', '.join(absent) if absent else 'nothing'}",

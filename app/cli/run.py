@@ -64,13 +64,13 @@ def do(arguments: argparse.Namespace) -> None:
 
 def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     """The run and its file; one that was interrupted goes on with the discarded periods it has finished."""
-    from granchain_core.run.kept_run import KeptRun
     from granchain_core.run.run import run as run_scene
+    from granchain_core.run.run_checkpoints import RunCheckpoints
 
     progress = show_percent if sys.stderr.isatty() else None
     sizes = arguments.periods, arguments.record, arguments.samples
 
-    def computed(stop: Any, kept: KeptRun | None) -> Run:
+    def computed(stop: Any, kept: RunCheckpoints | None) -> Run:
         return run_scene(chosen, *sizes, arguments.method, stop=stop, progress=progress, budget=arguments.budget,
                          kept=kept)
 
@@ -80,7 +80,7 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
         return in_background(lambda stop: computed(stop, None), reports=True)
     from granchain_core.store import load, save
 
-    kept = KeptRun(chosen, *sizes, arguments.method, arguments.out)
+    kept = RunCheckpoints(chosen, *sizes, arguments.method, arguments.out)
     there = finished(arguments, "run", load, lambda found: _is_asked_for(found, chosen, arguments))
     if there is not None:
         kept.kept.remove()

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 
 from granchain_core import Cancelled, OverBudget, Run, Scene, Settled, State, settling
-from granchain_core.warm import LIVE
+from granchain_core.warm import FIXED_STEP
 
 from ..frames import samples_for
 from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
@@ -158,12 +158,12 @@ class Pictures:
 
     def _await_live_kernels(self, scene: Scene, stop: Turn) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
-        if not COMPILER.has(scene, LIVE):
+        if not COMPILER.has(scene, FIXED_STEP):
             words = compiling_words("the kernels for this set of effects", 10).capitalize()
             self._host.next_tick(self._note, f"{words}; the picture then appears by itself.")
             for piece in PICTURE_PIECES:
                 COMPILER.ask(scene, piece)
-            if not COMPILER.await_piece(scene, LIVE, stop):
+            if not COMPILER.await_piece(scene, FIXED_STEP, stop):
                 raise Cancelled
 
     def _live_step(self, samples: int | None, stop: Turn) -> Iterator[LivePicture]:

@@ -10,7 +10,7 @@ from typing import Any
 from bokeh.models import BoxAnnotation, ColumnDataSource, HoverTool, Legend, LegendItem, Span
 from bokeh.plotting import figure
 
-from granchain_core.accuracy import Row, ways
+from granchain_core.accuracy import Row, compared_methods
 
 from ..format import duration, short_error
 from .theme import AMBER, GREY, TEAL, VIOLET, Theme, dress, frame, in_theme
@@ -42,7 +42,7 @@ def styles() -> dict[str, dict[str, Any]]:
     """Marker, colour, dash and fill of every way; shape and fill alone tell them apart."""
     found: dict[str, dict[str, Any]] = {}
     used = {"naive": 0, "other": 0}
-    for way in ways().values():
+    for way in compared_methods().values():
         kind = "naive" if way.family == "naive" else "other"
         number = used[kind]
         used[kind] += 1
@@ -54,8 +54,9 @@ def styles() -> dict[str, dict[str, Any]]:
 
 
 def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
-    """The columns of every way's source, by its name; a row without a finite error or a time has no point."""
-    columns: dict[str, dict[str, list[Any]]] = {name: {column: [] for column in _COLUMNS} for name in ways()}
+    """The columns of every method's source, by its name; a row without a finite error or a time has no point."""
+    columns: dict[str, dict[str, list[Any]]] = {
+        name: {column: [] for column in _COLUMNS} for name in compared_methods()}
     for row in rows:
         if not row.failure and math.isfinite(row.error) and row.error > 0.0 and row.wall_s > 0.0:
             words = f"error {row.error:.2g}, {duration(row.wall_s)}, {row.rhs} evaluations"
@@ -118,7 +119,7 @@ def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: b
                          line_alpha=0.75)
         dots = plot.scatter("ms", "error", source=source, marker=style["marker"], size=8 if compact else 12,
                             line_color=style["colour"], line_width=2.0, fill_color=style["colour"],
-                            name=f"{name}, order {ways()[name].order:g}")
+                            name=f"{name}, order {compared_methods()[name].order:g}")
         in_theme(line, line_width=1.8)
         if not style["filled"]:
             in_theme(dots, fill_color="card")

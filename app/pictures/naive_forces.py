@@ -1,4 +1,4 @@
-"""What naive steps would have drawn: the output force dashed over the certified one, and their difference below."""
+"""What naive steps would have drawn: the output force dashed over the accurate one, and their difference below."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from bokeh.models import Column, ColumnDataSource, HoverTool
 from .theme import Theme, dress, frame, in_theme
 
 
-def naive_forces(time: np.ndarray, certified: np.ndarray, naive: np.ndarray | None, time_unit: str, unit: str,
+def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | None, time_unit: str, unit: str,
                  theme: Theme) -> Column:
     """Two figures over one time axis: both forces, and their difference, each on an axis of its own.
 
-    The sources are named "certified" and "naive", so that a page can show the force of other steps.
+    The sources are named "accurate" and "naive", so that a page can show the force of other steps.
     """
-    sure = ColumnDataSource({"time": time, "force": certified, "nothing": np.zeros_like(time)}, name="certified")
-    drawn = ColumnDataSource(naive_columns(time, certified, naive), name="naive")
+    sure = ColumnDataSource({"time": time, "force": accurate, "nothing": np.zeros_like(time)}, name="accurate")
+    drawn = ColumnDataSource(naive_columns(time, accurate, naive), name="naive")
     above = frame(name="naive forces", min_border=2, toolbar_location="right")
     below = frame(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=130,
                   sizing_mode="stretch_width")
     # without it the axis would have no range where the naive force could not be computed
     in_theme(below.line("time", "nothing", source=sure), line_color="faint", line_width=1.0)
     lines: list[tuple[Any, str, Any, str, float, dict[str, Any]]] = [
-        (above, "force", sure, "output", 4.0, {"legend_label": "certified"}),
+        (above, "force", sure, "output", 4.0, {"legend_label": "accurate"}),
         (above, "force", drawn, "naive", 2.4, {"legend_label": "naive", "line_dash": [7, 4]}),
         (below, "difference", drawn, "naive", 1.6, {})]
     for plot, what, source, role, width, options in lines:
         line = in_theme(plot.line("time", what, source=source, **options), line_color=role, line_width=width)
         plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
             ("time", f"@time{{0.000}} {time_unit}"),
-            (options.get("legend_label", "naive − certified"), f"@{what}{{0.000e}} {unit}")]))
+            (options.get("legend_label", "naive − accurate"), f"@{what}{{0.000e}} {unit}")]))
     above.x_range.update(renderers=[above.renderers[0]], range_padding=0.0)
     above.xaxis.visible = False
     above.yaxis.axis_label = f"output force ({unit})"
@@ -46,8 +46,8 @@ def naive_forces(time: np.ndarray, certified: np.ndarray, naive: np.ndarray | No
     return column(above, below, sizing_mode="stretch_both", spacing=0)
 
 
-def naive_columns(time: np.ndarray, certified: np.ndarray, naive: np.ndarray | None) -> dict[str, np.ndarray]:
+def naive_columns(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | None) -> dict[str, np.ndarray]:
     """Columns of the naive force and of its difference; none where nothing would have been drawn."""
     if naive is None:
         return {"time": time[:0], "force": time[:0], "difference": time[:0]}
-    return {"time": time, "force": naive, "difference": naive - certified}
+    return {"time": time, "force": naive, "difference": naive - accurate}

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from granchain_core import Scene
 from granchain_core.stop import Stop
-from granchain_core.warm import CERTIFIED, CURVE, LIVE, compile_piece, is_warm, structure
+from granchain_core.warm import ADAPTIVE, CURVE, FIXED_STEP, compile_piece, is_warm, structure
 
 from .delays import STOP_POLL
 from .queues import COMPILATIONS, LOADING
@@ -25,7 +25,7 @@ from .queues import COMPILATIONS, LOADING
 log = logging.getLogger("granchain")
 
 #: The kernels of the main picture and of its curve.
-PICTURE_PIECES = (LIVE, CERTIFIED, CURVE)
+PICTURE_PIECES = (FIXED_STEP, ADAPTIVE, CURVE)
 _ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import sys
 
-from granchain_core.children import end_with_parent
+from granchain_core.child_processes import end_with_parent
 
 
 def main(parent: str, piece: str) -> None:

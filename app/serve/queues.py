@@ -85,7 +85,7 @@ class Queue:
 
 #: Niceness of threads that let pictures go first.
 _PATIENT = 10
-#: One thread for each visitor whose picture is awaited; live steps, energy accounts and drafts are computed in it.
+#: One thread for each visitor whose picture is awaited; default steps, energy accounts and drafts are computed in it.
 VISITORS = Queue("visitors", 1000)
 #: Pictures. More threads than cores: who computes is decided by turns (turns.py), and one that waits for the compiler
 #: keeps its thread.

@@ -9,7 +9,7 @@ import numpy as np
 
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Row
-from granchain_core.accuracy.ways import label
+from granchain_core.accuracy.compared_methods import label
 from granchain_core.integrate import METHODS, Setting, method_for
 from granchain_core.run.live import LIVE_SETTING
 from granchain_core.steady.settling.relax import orbit_setting

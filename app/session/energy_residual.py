@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from granchain_core import Settled
-from granchain_core.integrate import Engine, certified
+from granchain_core.integrate import Engine, adaptive_setting
 from granchain_core.result import residual
 from granchain_core.stop import Stop
 
@@ -16,7 +16,7 @@ _FINENESS = 0.01
 def with_account(picture: Settled, stop: Stop) -> Settled:
     """The picture with its energy residual over the periods shown. Raises `Cancelled`."""
     run = picture.run
-    setting = certified(max(1e-13, _FINENESS * run.scene.accuracy))
+    setting = adaptive_setting(max(1e-13, _FINENESS * run.scene.accuracy))
     engine = Engine(run.scene, setting, 1, balance=True, stop=stop)
     engine.start(picture.state)
     samples = engine.record(max(1, round((len(run.time) - 1) / run.samples)))

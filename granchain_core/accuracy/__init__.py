@@ -1,7 +1,8 @@
 """What accuracy costs: error against time for every method, on this machine, now; and what each effect costs."""
 
+from .compared_methods import MeasuredMethod, compared_methods
 from .naive import Lesson, Naive
-from .ways import MeasuredMethod, ways
 from .work_precision import Row, WorkPrecision, cheapest, work_precision
 
-__all__ = ["Lesson", "MeasuredMethod", "Naive", "Row", "WorkPrecision", "cheapest", "ways", "work_precision"]
+__all__ = ["Lesson", "MeasuredMethod", "Naive", "Row", "WorkPrecision", "cheapest", "compared_methods",
+           "work_precision"]

@@ -1,7 +1,7 @@
 """The cost of one effect in a step: the same chain's kernel with it and without it, timed alternately.
 
-There are two costs. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The
-live method also splits steps where contacts open or close, so an effect that changes the motion (a preload that keeps
+There are two costs. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The method
+rk4-split also splits steps where contacts open or close, so an effect that changes the motion (a preload that keeps
 contacts closed, damping that makes an irregular motion periodic) costs or saves far more than its own code.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..integrate import Engine, Setting
-from ..integrate.methods import LIVE
+from ..integrate.methods import FIXED_STEP
 from ..scene import Scene
 from ..stop import Stop
 
@@ -28,7 +28,7 @@ _RUN = 0.004
 #: Method that shows the cost of an effect's code alone.
 CODE = "rk4"
 #: Method that shows its cost in the motion of the live picture.
-MOTION = LIVE
+MOTION = FIXED_STEP
 
 #: Drive periods that are run before timing, so that the chain is in motion.
 _BEFORE = 3

@@ -1,4 +1,4 @@
-"""Naive results: the output force in (u, v) with plain steps, beside the certified one.
+"""Naive results: the output force in (u, v) with plain steps, beside the accurate one.
 
 The lesson of the accuracy page: the picture looks like a result, and nothing in it shows that it is wrong.
 """
@@ -10,8 +10,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import METHODS, Engine, Setting, certified
-from ..lower import Lowered
+from ..integrate import METHODS, Engine, Setting, adaptive_setting
+from ..scaling import ScaledChain
 from ..scene import Scene
 from ..stop import Stop
 
@@ -22,7 +22,7 @@ _SAMPLES = 100
 #: Drive periods run from rest, and the last of them, which are shown; without a drive it is one time 1/f.
 _RUN, _SHOWN = 10, 2
 #: Reference.
-_TRUE = certified(1e-11)
+_TRUE = adaptive_setting(1e-11)
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class PlainSteps(Setting):
 
     steps: int = 0
 
-    def steps_per_period(self, lowered: Lowered, samples: int) -> int:
+    def steps_per_period(self, scaled: ScaledChain, samples: int) -> int:
         """The steps asked for; they must be a multiple of `samples`."""
         return self.steps
 
@@ -52,7 +52,7 @@ class Naive:
 
 @dataclass(eq=False)
 class Lesson:
-    """The certified output force [N] over time [s] at the end of a run from rest, and the naive methods' results."""
+    """The accurate output force [N] over time [s] at the end of a run from rest, and the naive methods' results."""
 
     time: np.ndarray
     force: np.ndarray
@@ -83,4 +83,4 @@ def lesson(scene: Scene, stop: Stop) -> Lesson:
 def output_force(scene: Scene, setting: Setting, stop: Stop) -> np.ndarray:
     """Total force on the wall from rest [N], both ends of every sample."""
     engine = Engine(scene, setting, _SAMPLES, stop=stop)
-    return engine.record((_RUN if scene.is_driven else 1) * _SAMPLES).force[:, -1] * engine.lowered.scales.force
+    return engine.record((_RUN if scene.is_driven else 1) * _SAMPLES).force[:, -1] * engine.scaled.scales.force

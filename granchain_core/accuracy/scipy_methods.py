@@ -14,7 +14,7 @@ from ..errors import Cancelled, NumbersFailed
 from ..integrate import Counts
 from ..kernels.dop853.step import evaluate
 from ..kernels.status import EVALUATIONS
-from ..lower import Lowered, lower
+from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
@@ -54,12 +54,12 @@ _SAME_EVENT = 1e-9
 class Motion:
     """The beads' equations as SciPy wants them: a function of time and one flat array (u_1..u_N, w_1..w_N)."""
 
-    def __init__(self, lowered: Lowered, stop: Stop) -> None:
-        self.lowered = lowered
+    def __init__(self, scaled: ScaledChain, stop: Stop) -> None:
+        self.scaled = scaled
         self.stop = stop
         self.evaluations = 0
-        self._row = lowered.bodies
-        self._whole, self._slope, self._forces = np.zeros(lowered.size), np.zeros(lowered.size), lowered.forces()
+        self._row = scaled.bodies
+        self._whole, self._slope, self._forces = np.zeros(scaled.size), np.zeros(scaled.size), scaled.forces()
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
@@ -71,13 +71,13 @@ class Motion:
         row, whole = self._row, self._whole
         self.evaluations += 1
         whole[1 : row - 1], whole[row + 1 : 2 * row - 1] = inner[: row - 2], inner[row - 2 :]
-        evaluate(self.lowered.slots, self.lowered.beta, t, whole, self._slope, self._forces)
+        evaluate(self.scaled.slots, self.scaled.beta, t, whole, self._slope, self._forces)
         return self.inner(self._slope)
 
     def overlaps(self, t: float, inner: np.ndarray) -> np.ndarray:
         """Overlap of every contact (N+1,) in scaled units."""
-        slots = self.lowered.slots
-        drive = slots.driver.amplitude * np.sin(self.lowered.beta * t)
+        slots = self.scaled.slots
+        drive = slots.driver.amplitude * np.sin(self.scaled.beta * t)
         bodies = np.concatenate([[drive], inner[: self._row - 2], [0.0]])
         static = 0.0 if slots.preload is None else slots.preload.static
         return bodies[:-1] - bodies[1:] + static
@@ -90,9 +90,9 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
     Solved period by period, so that the drive phase stays exact; with `located` the solver is also started anew
     wherever a contact opens or closes, as a careful user would do it. Raises `NumbersFailed` and `Cancelled`.
     """
-    lowered = lower(scene)
-    motion = Motion(lowered, Stop() if stop is None else stop)
-    inner = motion.inner(lowered.scaled(rest(scene)))
+    scaled = scale_chain(scene)
+    motion = Motion(scaled, Stop() if stop is None else stop)
+    inner = motion.inner(scaled.from_si(rest(scene)))
     out = np.full((periods * samples + 1, scene.N), np.nan)
     out[0] = inner[: scene.N]
     for p in range(periods):
@@ -111,7 +111,7 @@ def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray,
     """One drive period: the state at its end and the displacements at its samples, the start left out."""
     from scipy import integrate
 
-    period, n = motion.lowered.period, len(inner) // 2
+    period, n = motion.scaled.period, len(inner) // 2
     times = period * np.arange(1, samples + 1) / samples
     rows, t = np.full((samples, n), np.nan), 0.0
 
@@ -149,7 +149,7 @@ def _first_event(motion: Motion, dense: Any, one: Any, before: np.ndarray) -> fl
     from scipy.optimize import brentq
 
     changed = (motion.overlaps(one.t_old, before) > 0.0) != (motion.overlaps(one.t, one.y) > 0.0)
-    near = _SAME_EVENT * motion.lowered.period
+    near = _SAME_EVENT * motion.scaled.period
     first = np.inf
     for c in np.flatnonzero(changed):
         if (motion.overlaps(one.t_old + near, dense(one.t_old + near))[c] > 0.0) == (

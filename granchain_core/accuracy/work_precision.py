@@ -1,6 +1,6 @@
 """Work and precision: error against time for every method and setting, and the error of the reference.
 
-The reference is the certified method at its finest. A second one shares only the equations with it: SciPy's DOP853,
+The reference is the adaptive method at its finest. A second one shares only the equations with it: SciPy's DOP853,
 restarted wherever a contact opens or closes. The difference of the two is the error with which the reference is known.
 """
 
@@ -14,22 +14,22 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..integrate import METHODS, Engine, Setting, certified
+from ..integrate import METHODS, Engine, Setting, adaptive_setting
 from ..scene import Scene
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, provenance
 from ..tables.provenance import Attribute
+from .compared_methods import SCIPY, MeasuredSetting, measured_settings
 from .limit import Limited
 from .naive import Lesson, lesson
 from .scipy_methods import solve
-from .ways import SCIPY, Choice, choices
 
 #: Drive periods run from rest; without a drive it is one time 1/f.
 PERIODS = 10
 #: Samples a period at which displacements are compared.
 SAMPLES = 16
 #: The reference, and SciPy's solver with its tolerance that checks it.
-_REFERENCE = certified(3e-15)
+_REFERENCE = adaptive_setting(3e-15)
 _SECOND = ("DOP853", 1e-14)
 #: Time after which a setting is abandoned [s].
 _ROW_LIMIT = 8.0
@@ -183,7 +183,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
     (True, True)
     """
     stop = Stop() if stop is None else stop
-    todo = list(choices())
+    todo = list(measured_settings())
     total, done = 2 * len(todo) + 3, 0
 
     def advance() -> None:
@@ -226,7 +226,7 @@ def compile_methods(scene: Scene) -> None:
         Engine(scene, Setting(name, tolerance=1e-3), 2).record(2)
 
 
-def _row(scene: Scene, choice: Choice, exact: np.ndarray, stop: Stop) -> Row:
+def _row(scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -> Row:
     """Measure one setting; a failure is recorded in its row."""
 
     def measure(limit: Stop) -> Measured:
@@ -241,7 +241,7 @@ def _row(scene: Scene, choice: Choice, exact: np.ndarray, stop: Stop) -> Row:
     return Row(choice.method, choice.label, _distance(best.moved, exact), best.seconds, best.rhs, choice.value)
 
 
-def _faster(before: Row, scene: Scene, choice: Choice, exact: np.ndarray, stop: Stop) -> Row:
+def _faster(before: Row, scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -> Row:
     """The better of a brief row and its second measurement; a long one or a failure as it is."""
     if before.failure or before.wall_s > _BRIEF:
         return before

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..errors import check_range
 from ..integrate import State
-from ..integrate.methods import CERTIFIED
+from ..integrate.methods import ADAPTIVE
 from ..orbits.flow import StroboscopicMap
 from ..scene import Scene
 from ..steady.settling.nearby_orbit import MOST_BEADS
@@ -117,7 +117,7 @@ class LyapunovSpectrum(Labelled):
     def attributes(self) -> dict[str, Attribute]:
         """Dimension and sums, and where they come from."""
         low, high = self.dimension_range or (None, None)
-        return {**provenance(self.scene, CERTIFIED, None), "periods": self.periods, "mean_trace": self.mean_trace,
+        return {**provenance(self.scene, ADAPTIVE, None), "periods": self.periods, "mean_trace": self.mean_trace,
                 "dimension": or_nan(self.dimension), "liouville": or_nan(self.liouville),
                 "dimension_low": or_nan(low), "dimension_high": or_nan(high)}
 

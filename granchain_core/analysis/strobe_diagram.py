@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed, check_range, unknown_name
 from ..integrate import State
-from ..integrate.methods import LIVE
+from ..integrate.methods import FIXED_STEP
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..scene import Scene
@@ -108,7 +108,7 @@ class StrobeDiagram(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Knob and start, and where it comes from."""
-        return {**provenance(self.scene, LIVE, None), "knob": self.knob, "start": self.start}
+        return {**provenance(self.scene, FIXED_STEP, None), "knob": self.knob, "start": self.start}
 
     def summary(self) -> list[str]:
         """The range of the knob, and what kinds of motion there are."""
@@ -201,6 +201,6 @@ def _point(value: float, chain: Scene, start: State | None, keep: int, stop: Sto
         strobes = settling.engine.periods(keep)[0][1:]
     except NumbersFailed as failed:
         return StrobePoint(value, Regime.unsettled(0), np.zeros((0, 2, chain.N)), start, failed.sentence)
-    scales = settling.engine.lowered.scales
+    scales = settling.engine.scaled.scales
     units = np.array([scales.length, scales.velocity])[:, None]
     return StrobePoint(value, settling.regime, strobes * units, settling.engine.state)

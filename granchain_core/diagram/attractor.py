@@ -54,7 +54,7 @@ class Attractor:
     state : State
         Where it is at drive phase 0.
     orbit : Orbit or None
-        The certified orbit with its multipliers; None where the motion is not periodic or Newton's method did not
+        The converged orbit with its multipliers; None where the motion is not periodic or Newton's method did not
         reach it.
     origins : list of Origin
         The starts that end here: "rest", "up", "down", "random 17".

@@ -81,10 +81,10 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     """
     check_range("random_states =", random_states, 0, MOST_STATES)
     listed = attractors_from(scene, _origins(scene, random_states, seed, stop), stop, progress)
-    thrown = sum(origin.name.startswith("random") for attractor in listed for origin in attractor.origins)
+    random_count = sum(origin.name.startswith("random") for attractor in listed for origin in attractor.origins)
     for attractor in listed:
         count = sum(origin.name.startswith("random") for origin in attractor.origins)
-        attractor.share, attractor.share_error = share(count, thrown)
+        attractor.share, attractor.share_error = share(count, random_count)
     return Attractors(scene, sorted(listed, key=lambda one: (-len(one.origins), one.max_output_force)))
 
 
@@ -162,11 +162,11 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
 
 
 def _run_on(scene: Scene, state: State, stop: Stop | None) -> tuple[State, np.ndarray, float]:
-    """State after `_PASS` periods by the live method, scaled strobes on the way, and the unit of velocity [m/s]."""
+    """State after `_PASS` periods by the fixed-step method, scaled strobes on the way, the unit of velocity [m/s]."""
     engine = Engine(scene, LIVE_SETTING, 1, stop=stop)
     engine.start(state)
     strobes, _ = engine.periods(_PASS)
-    return engine.state, strobes, engine.lowered.scales.velocity
+    return engine.state, strobes, engine.scaled.scales.velocity
 
 
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:

@@ -1,4 +1,4 @@
-"""Finished cells of a diagram on disk (kept.py), as tables of 128 cells."""
+"""Finished cells of a diagram on disk (checkpoints.py), as tables of 128 cells."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..kept import Kept
+from ..checkpoints import Kept
 from .cells import CELL, empty_cells
 from .grid import Axis, Grid
 

@@ -152,7 +152,7 @@ def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: i
     branch = _Branch(scene, x, float(scene.knobs[x]), period, stop)
     stroboscopic_map = StroboscopicMap(scene, period, stop)
     inner = (state if isinstance(state, np.ndarray)
-             else stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(state)))
+             else stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(state)))
     along = np.append(np.zeros(len(inner)), 1.0)
     return _nearest(branch, kind, np.append(inner, 1.0), along, y)
 

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput, unknown_name
-from ..lower import lower
 from ..quantities import QUANTITIES
+from ..scaling import scale_chain
 from ..scene import Amplitude, Scene
 from ..scene.driven import refuse_undriven
 
@@ -82,7 +82,7 @@ class Grid:
                            f"{MOST_CELLS}; take fewer points on an axis.")
         for i in (0, self.shape[0] - 1):  # steps a period are monotone along an axis: its ends suffice
             for j in (0, self.shape[1] - 1):
-                lower(self.cell(i * self.shape[1] + j)).steps_per_period()
+                scale_chain(self.cell(i * self.shape[1] + j)).steps_per_period()
 
     @property
     def shape(self) -> tuple[int, int]:

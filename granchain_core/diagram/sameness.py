@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput, NumbersFailed
-from ..integrate import Engine, Setting, State, certified, live
-from ..lower import lower
+from ..integrate import Engine, Setting, State, adaptive_setting, fixed_step_setting
 from ..orbits import Orbit, periodic_orbit
+from ..scaling import scale_chain
 from ..scene import Scene
 from ..steady.steady_state import SteadyState
 
@@ -29,8 +29,8 @@ _APART = 3.0
 #: States in the section of a motion that is not periodic, taken after as many further periods.
 _SECTION = 400
 #: Method by which a motion's section is taken, and the tolerance for that of an orbit.
-LIVE_SETTING = live()
-_CERTIFIED_SETTING = certified(1e-11)
+LIVE_SETTING = fixed_step_setting()
+_ADAPTIVE_SETTING = adaptive_setting(1e-11)
 
 
 @dataclass(eq=False)
@@ -70,12 +70,12 @@ def _section(result: SteadyState) -> np.ndarray:
 
 def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.ndarray:
     """The next `periods` stroboscopic states of displacement and w, scaled, (periods, 2, N)."""
-    engine, lowered = Engine(scene, setting, 1), lower(scene)
+    engine, scaled = Engine(scene, setting, 1), scale_chain(scene)
     engine.start(state)
-    rows = [lowered.scaled(state)]
+    rows = [scaled.from_si(state)]
     for _ in range(periods - 1):
         engine.periods(1, watch=False)
-        rows.append(lowered.scaled(engine.state))
+        rows.append(scaled.from_si(engine.state))
     return np.array(rows).reshape(periods, 2, -1)[:, :, 1:-1]
 
 
@@ -99,18 +99,18 @@ def _join(groups: list[list[Found]], new: list[Found]) -> None:
 
 
 def _polished(one: Found) -> Found:
-    """The result on its certified orbit, if Newton's method ends on the orbit that it began at."""
+    """The result on its converged orbit, if Newton's method ends on the orbit that it began at."""
     period = one.result.regime.period
     if period is None or one.orbit is not None:
         return one
     try:
         orbit = periodic_orbit(one.result.scene, period, one.result.state)
-        section = _strobes(orbit.scene, orbit.state, period, _CERTIFIED_SETTING)
+        section = _strobes(orbit.scene, orbit.state, period, _ADAPTIVE_SETTING)
         shortest = next(n for n in range(1, period + 1)
                         if period % n == 0 and np.abs(section - np.roll(section, n, axis=0)).max() <= _REPEATS)
         if shortest < period:  # in the batch a slow approach with alternating sign looked like twice the period
             orbit = periodic_orbit(one.result.scene, shortest, orbit.state)
-    except (BadInput, NumbersFailed):  # a scene that cuts tension has no certified orbits
+    except (BadInput, NumbersFailed):  # a scene that cuts tension has no converged orbits
         return one
     if _distance(section, one.section) > 10.0 * one.tolerance + 1e-6:
         return one

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, certified
-from ..integrate.methods import CERTIFIED
+from ..integrate import Engine, Setting, State, adaptive_setting
+from ..integrate.methods import ADAPTIVE
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
@@ -36,22 +36,22 @@ class Bench:
 
     def __init__(self, beads: int, time: float, samples: int, law: Any = None, ends: tuple[float, float] = (1.0, 1.0),
                  inverse_mass: Sequence[float] | None = None, stiffness: Sequence[float] | None = None,
-                 static: np.ndarray | None = None, cut: bool = False, method: str = CERTIFIED,
+                 static: np.ndarray | None = None, cut: bool = False, method: str = ADAPTIVE,
                  tolerance: float = 1e-13, refine: float = 1.0) -> None:
         base: Scene = scene("sec2").evolve(N=beads)
-        rate = Engine(base, certified(1e-3)).lowered.scales.rate
+        rate = Engine(base, adaptive_setting(1e-3)).scaled.scales.rate
         self.engine = Engine(base.evolve(f=rate / time), Setting(method, refine, tolerance), samples)
-        lowered = self.engine.lowered
+        scaled = self.engine.scaled
         masses = np.zeros(beads + 2)
         masses[1:-1] = 1.0 if inverse_mass is None else inverse_mass
         springs = np.ones(beads + 1) if stiffness is None else np.array(stiffness, dtype=float)
         springs[0], springs[-1] = ends[0] * springs[0], ends[1] * springs[-1]
-        slots = lowered.slots._replace(
+        slots = scaled.slots._replace(
             chain=Chain(masses, springs), dissipation=LinearDashpot(0.0) if law is None else law,
-            driver=Harmonic(0.0, lowered.beta) if ends[0] > 0.0 else None,
+            driver=Harmonic(0.0, scaled.beta) if ends[0] > 0.0 else None,
             tension=new_tension_cut(beads + 1) if cut else None,
             preload=None if static is None else Preload(np.array(static, dtype=float)))
-        self.engine.use(replace(lowered, slots=slots))
+        self.engine.use(replace(scaled, slots=slots))
         self.masses = 1.0 / masses[1:-1]
         self.springs = springs
         self.static = np.zeros(beads + 1) if static is None else np.array(static, dtype=float)
@@ -60,7 +60,7 @@ class Bench:
 
     def throw(self, velocity: Sequence[float] | np.ndarray, displacement: np.ndarray | None = None) -> None:
         """Start with these scaled velocities, from zero displacement or the one given."""
-        scales = self.engine.lowered.scales
+        scales = self.engine.scaled.scales
         start = np.zeros(len(self.masses)) if displacement is None else displacement
         self.engine.start(State(start * scales.length, np.array(velocity, dtype=float) * scales.velocity))
 

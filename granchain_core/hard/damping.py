@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import Engine, Setting, certified
+from ..integrate import Engine, Setting, adaptive_setting
 from ..laws import LAWS
 from ..run.run import run
 from ..scene import Scene, scene
@@ -85,7 +85,7 @@ def _pulls(periods: int) -> list[Measurement]:
     """The largest pull of any contact over the largest push, cut; and that without the cut there is one."""
     forces = {}
     for tension in ("cut", "allowed"):
-        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), certified(1e-10), 256)
+        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), adaptive_setting(1e-10), 256)
         force = engine.record(256 * periods).force
         forces[tension] = float(max(0.0, -force.min()) / force.max())
     return [Measurement("largest pull of a cut contact over its largest push", forces["cut"], 1e-14),
@@ -109,11 +109,11 @@ def naive_bounce(strength: float, steps: float) -> float:
 
 
 def restitution_picture() -> Picture:
-    """Error of the restitution over steps in a contact: ours at its certified setting, and plain RK4."""
+    """Error of the restitution over steps in a contact: ours at its accurate setting, and plain RK4."""
     steps = np.array([10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0])
     true = restitution("linear", 0.3, False)
     ours = max(1e-16, abs(bounce("linear", 0.3, False) - true))
     naive = [abs(naive_bounce(0.3, n) - true) for n in steps]
     return Picture(np.log10(steps), "steps in a contact, log10", "error of the restitution, log10",
-                   (Trace("granchain, certified", np.full(len(steps), np.log10(ours))),
+                   (Trace("granchain, adaptive", np.full(len(steps), np.log10(ours))),
                     Trace("plain RK4", np.log10(naive))))

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, State, certified, live
-from ..integrate.methods import CERTIFIED
+from ..integrate import Engine, State, adaptive_setting, fixed_step_setting
+from ..integrate.methods import ADAPTIVE
 from ..kernels.effects.driver import Harmonic
 from ..orbits.flow import StroboscopicMap
 from ..scene import Scene, scene
@@ -39,7 +39,7 @@ def confined(times: int, method: str, refine: float = 1.0) -> tuple[np.ndarray, 
 def free_chain(quick: bool) -> list[Measurement]:
     """Energy, its trend and momentum without damping."""
     times = 2_000 if quick else 10_000
-    clock, change = confined(times, CERTIFIED)
+    clock, change = confined(times, ADAPTIVE)
     slope = np.polyfit(clock, change, 1)[0]
     bench = Bench(11, 40.0, 64, ends=(0.0, 0.0), tolerance=1e-14)
     bench.throw(np.eye(11)[0])
@@ -55,9 +55,9 @@ def free_chain(quick: bool) -> list[Measurement]:
 
 def free_chain_picture() -> Picture:
     """Change of energy: ours, a symplectic method's and plain RK4's with 40 steps in the shortest contact."""
-    clock, ours = confined(1_000, CERTIFIED)
+    clock, ours = confined(1_000, ADAPTIVE)
     finer = contact_time(2.0) / 40.0
-    traces = [Trace("granchain, certified", ours)]
+    traces = [Trace("granchain, adaptive", ours)]
     for method, label in (("verlet-naive", "velocity Verlet, symplectic"), ("rk4-naive", "plain RK4")):
         traces.append(Trace(label, confined(1_000, method, 0.2 / finer)[1]))
     return Picture(clock, "time in shortest contact times", "change of energy over energy", tuple(traces))
@@ -73,7 +73,7 @@ def undamped(frequency: float = 340.0, beads: int = 11) -> Scene:
 
 def driven_chaos(quick: bool) -> list[Measurement]:
     """Energy account, Lyapunov exponent by two methods, and no periodic verdict."""
-    engine = Engine(undamped(), certified(1e-14), 1, balance=True)
+    engine = Engine(undamped(), adaptive_setting(1e-14), 1, balance=True)
     energy = engine.record(20 if quick else 100).energy
     stored, work, lost = (energy - energy[0]).T
     largest = max(np.abs(work).max(), np.abs(energy[:, 0]).max())
@@ -96,7 +96,7 @@ def two_exponents(blocks: int) -> tuple[float, tuple[float, float], tuple[float,
     Returns their difference over the combined error, and both.
     """
     chosen = undamped(1000.0, 3)
-    engine = Engine(chosen, live(), 1)
+    engine = Engine(chosen, fixed_step_setting(), 1)
     engine.periods(100)
     stroboscopic_map = StroboscopicMap(chosen, 1)
     x = stroboscopic_map.inner(engine.y)
@@ -121,7 +121,7 @@ def chaos_picture() -> Picture:
     chosen = undamped(beads=5)
     traces = []
     for label, nudge in (("from rest", 0.0), ("from 1e-12 of an amplitude beside it", 1e-12)):
-        engine = Engine(chosen, certified(1e-13), 1)
+        engine = Engine(chosen, adaptive_setting(1e-13), 1)
         engine.start(State(np.array([nudge * chosen.A0, 0.0, 0.0, 0.0, 0.0]), np.zeros(5)))
         traces.append(Trace(label, engine.periods(60)[0][:, 0, -1]))
     return Picture(np.arange(61), "drive period", "last bead at phase 0, in amplitudes", tuple(traces))
@@ -138,13 +138,13 @@ def _segment(chosen: Scene, state: State, amplitude: float, samples: int) -> tup
 
     Returns the state, the impulse of driver less wall [N s], the largest momentum on the way [N s].
     """
-    engine = Engine(chosen, certified(1e-13), _SWITCHED)
-    slots = engine.lowered.slots
-    engine.use(replace(engine.lowered, slots=slots._replace(driver=Harmonic(amplitude, engine.lowered.beta))))
+    engine = Engine(chosen, adaptive_setting(1e-13), _SWITCHED)
+    slots = engine.scaled.slots
+    engine.use(replace(engine.scaled, slots=slots._replace(driver=Harmonic(amplitude, engine.scaled.beta))))
     engine.start(state)
     phase = state.phase
     kept = engine.record(samples)
-    scales, masses = engine.lowered.scales, chosen.masses()
+    scales, masses = engine.scaled.scales, chosen.masses()
     # the dashpot's impulse is that of an exact derivative, D·[δ]_+, and only the elastic one needs a quadrature
     ends = np.maximum(np.stack([amplitude * np.sin(2.0 * np.pi * (phase + np.arange(samples + 1) / _SWITCHED))
                                 - kept.displacement[:, 0], kept.displacement[:, -1]]), 0.0)
@@ -170,7 +170,7 @@ def switched(steps: list[tuple[float, float, int]], phase: float, beads: int = 4
 def jump_push() -> float:
     """Momentum of a chain at rest after a jump of its driver by A0, less the dashpot's D·A0, over the latter."""
     chosen = scene("sec2").evolve(N=4)
-    engine = Engine(chosen, certified(1e-12), 4)
+    engine = Engine(chosen, adaptive_setting(1e-12), 4)
     engine.grid_index = engine.grid // 4
     engine.place()
     push = chosen.D * chosen.A0
@@ -197,7 +197,7 @@ def switched_picture() -> Picture:
     limit w does not jump, and the velocity does.
     """
     chosen, beads, samples = scene("sec2").evolve(N=4), 4, 2000
-    engine, shown = Engine(chosen, certified(1e-12), samples), 100
+    engine, shown = Engine(chosen, adaptive_setting(1e-12), samples), 100
     engine.grid_index = engine.grid // 4
     engine.place()  # the driver is at its amplitude now; the beads, and w, are where they were
     ours = engine.record(shown).velocity.sum(axis=1)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, certified, live
+from ..integrate import Engine, Setting, State, adaptive_setting, fixed_step_setting
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..run.run import run
@@ -70,11 +70,11 @@ def amplitudes(quick: bool) -> list[Measurement]:
     """Scaling, statics and the stop band."""
     times = (1e-4, 1e4) if quick else tuple(10.0**p for p in range(-4, 5))
     drives = (340.0,) if quick else (10.0, 340.0, 3000.0, 1e5)
-    fixed = max(scaled_difference(f, live(2.0), times) for f in drives)
-    certain = max(scaled_difference(f, certified(1e-15), times) for f in drives)
+    fixed = max(scaled_difference(f, fixed_step_setting(2.0), times) for f in drives)
+    certain = max(scaled_difference(f, adaptive_setting(1e-15), times) for f in drives)
     return [
         Measurement("scaling from 1e-12 to 1e-4 m, fixed steps", fixed, 1e-12),
-        Measurement("scaling from 1e-12 to 1e-4 m, certified", certain, 1e-12),
+        Measurement("scaling from 1e-12 to 1e-4 m, adaptive", certain, 1e-12),
         Measurement("statics at 1 Hz" if quick else "statics at 0.1 Hz", statics_error(1.0 if quick else 0.1), 1e-6),
         Measurement("stop band, a quarter above the cut-off", lattice_error(1.25), 1e-6),
         Measurement("stop band, 100 kHz" if quick else "stop band, 1 MHz", lattice_error(12.0 if quick else 1e3), 1e-6),
@@ -118,8 +118,8 @@ def plain_error(chosen: Scene, samples: int = 16, method: str = "DOP853") -> flo
 def long_chain_error(beads: int) -> float:
     """Largest difference of two methods on a long chain with one moving front, over the largest displacement."""
     chosen = scene("sec2").evolve(N=beads, f=3000.0)
-    ours = Engine(chosen, live(8.0), 8).record(16).displacement
-    true = Engine(chosen, certified(1e-12), 8).record(16).displacement
+    ours = Engine(chosen, fixed_step_setting(8.0), 8).record(16).displacement
+    true = Engine(chosen, adaptive_setting(1e-12), 8).record(16).displacement
     return float(np.abs(ours - true).max() / np.abs(true).max())
 
 
@@ -127,14 +127,14 @@ def cost_growth(beads: int, rounds: int = 5) -> float:
     """Seconds per step and bead of a long chain over those of one of 100 beads; the fastest of alternating runs."""
     import time
 
-    engines = [Engine(scene("sec2").evolve(N=n, f=3000.0, F0=1.0), live(), 1) for n in (100, beads)]
+    engines = [Engine(scene("sec2").evolve(N=n, f=3000.0, F0=1.0), fixed_step_setting(), 1) for n in (100, beads)]
     best = [np.inf, np.inf]
     for _ in range(rounds):
         for i, engine in enumerate(engines):
             before, began = engine.counts.steps, time.thread_time()
-            engine.periods(max(1, 2000 // engine.lowered.beads))
+            engine.periods(max(1, 2000 // engine.scaled.beads))
             spent = time.thread_time() - began
-            best[i] = min(best[i], spent / (engine.counts.steps - before) / engine.lowered.beads)
+            best[i] = min(best[i], spent / (engine.counts.steps - before) / engine.scaled.beads)
     return best[1] / best[0]
 
 
@@ -190,12 +190,12 @@ def mode(chosen: Scene, number: int) -> tuple[float, np.ndarray]:
 
 def swing(chosen: Scene, frequency: float, shape: np.ndarray, amplitude: float, periods: int = 3) -> np.ndarray:
     """Displacements over the amplitude (49, N) of a bead chain let go from a mode's shape, driver at rest, undamped."""
-    engine = Engine(chosen.evolve(f=frequency / periods), certified(1e-15), 48)
-    lowered = engine.lowered
-    slots = lowered.slots._replace(driver=Harmonic(0.0, lowered.beta), dissipation=LinearDashpot(0.0))
-    engine.use(replace(lowered, slots=slots))
+    engine = Engine(chosen.evolve(f=frequency / periods), adaptive_setting(1e-15), 48)
+    scaled = engine.scaled
+    slots = scaled.slots._replace(driver=Harmonic(0.0, scaled.beta), dissipation=LinearDashpot(0.0))
+    engine.use(replace(scaled, slots=slots))
     engine.start(State(amplitude * shape, np.zeros(chosen.N)))
-    return engine.record(48).displacement * lowered.scales.length / amplitude
+    return engine.record(48).displacement * scaled.scales.length / amplitude
 
 
 def mode_errors(preload: float, number: int, beads: int = 11) -> tuple[float, float]:

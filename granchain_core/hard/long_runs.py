@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..integrate import METHODS, Engine, Setting, live
+from ..integrate import METHODS, Engine, Setting, fixed_step_setting
 from ..integrate.checkpoint import Checkpoint, checkpoint, resumed
 from ..scene import scene
 from .case import Measurement, Picture, Trace
@@ -55,7 +55,7 @@ def uninterrupted(method: str, periods: int, cuts: int) -> float:
 
 def phase_error(periods: int) -> tuple[float, float]:
     """How far the driver is from sin 2πft after `periods` periods and one more, in amplitudes; periods miscounted."""
-    engine = Engine(scene("sec2").evolve(N=1, f=3000.0), live(), _SAMPLES)
+    engine = Engine(scene("sec2").evolve(N=1, f=3000.0), fixed_step_setting(), _SAMPLES)
     left = periods
     while left > 0:
         engine.periods(min(left, 10_000))

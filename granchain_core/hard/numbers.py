@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import METHODS, Engine, Setting
-from ..integrate.methods import CERTIFIED, LIVE
+from ..integrate.methods import ADAPTIVE, FIXED_STEP
 from ..scene import scene
 from .case import Measurement, Picture, Trace
 
@@ -42,7 +42,7 @@ class Injector:
 
     def into_state(self, rng: np.random.Generator) -> bool:
         """Whether a bad displacement or w of a bead is reported at once, with bead, time and step."""
-        row, bead = self.engine.lowered.bodies, int(rng.integers(1, self.beads + 1))
+        row, bead = self.engine.scaled.bodies, int(rng.integers(1, self.beads + 1))
         self.engine.y[bead + row * int(rng.integers(2))] = _VALUES[rng.integers(3)]
         found = self.outcome()
         step = None if METHODS[self.method].adaptive else self._kept[2]
@@ -50,7 +50,7 @@ class Injector:
 
     def into_contact(self, rng: np.random.Generator) -> bool:
         """Whether a contact whose stiffness is NaN is reported in the first step, at one of its two beads."""
-        springs, contact = self.engine.lowered.slots.chain.stiffness, int(rng.integers(self.beads + 1))
+        springs, contact = self.engine.scaled.slots.chain.stiffness, int(rng.integers(self.beads + 1))
         before, springs[contact] = springs[contact], np.nan
         self.renew()
         found = self.outcome()
@@ -85,7 +85,7 @@ class Injector:
 def injections(count: int) -> tuple[int, int]:
     """Injections made, and those not caught where they were made."""
     rng = np.random.default_rng(4)
-    injectors = [Injector(m, n) for m in ("rk4", LIVE, CERTIFIED) for n in (1, 11)]
+    injectors = [Injector(m, n) for m in ("rk4", FIXED_STEP, ADAPTIVE) for n in (1, 11)]
     wrong = 0
     for i in range(count):
         one = injectors[i % len(injectors)]
@@ -99,7 +99,7 @@ def injections(count: int) -> tuple[int, int]:
     return count, wrong
 
 
-def slowing(method: str, beads: int, rounds: int) -> float:
+def converging(method: str, beads: int, rounds: int) -> float:
     """Time of an evaluation of the equations with subnormal numbers ahead of a wave, over that with ordinary ones.
 
     Displacements fall from 1 by the same factor from bead to bead, to 1e-310 or to 1e-280; alternating runs, the
@@ -110,7 +110,7 @@ def slowing(method: str, beads: int, rounds: int) -> float:
     for _ in range(rounds):
         for i, last in enumerate((-310.0, -280.0)):
             engine = Engine(chosen, Setting(method, 1.0, 1e-6), 1)
-            row = engine.lowered.bodies
+            row = engine.scaled.bodies
             engine.y[1 : row - 1] = -10.0 ** np.maximum(np.linspace(0.0, 2.0 * last, beads), last)
             engine.place()
             before, began = engine.counts.rhs, time.thread_time()
@@ -123,10 +123,10 @@ def bad_numbers(quick: bool) -> list[Measurement]:
     """Injections, and the cost of subnormal numbers."""
     count, wrong = injections(2_000 if quick else 100_000)
     found = [Measurement(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
-    for method, beads in ((LIVE, 30), (LIVE, 200), (CERTIFIED, 200)):
+    for method, beads in ((FIXED_STEP, 30), (FIXED_STEP, 200), (ADAPTIVE, 200)):
         found.append(Measurement("time of an evaluation with a subnormal tail over that without, "
                                  f"{method}, {beads} beads",
-                                 slowing(method, beads, 20 if quick else 60), 1.2))
+                                 converging(method, beads, 20 if quick else 60), 1.2))
     return found
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..integrate import Engine, certified
+from ..integrate import Engine, adaptive_setting
 from ..observe.drift import observer_drift
 from ..orbits import periodic_orbit
 from ..orbits.flow import StroboscopicMap
@@ -178,9 +178,9 @@ def two_attractors_picture() -> Picture:
     """Output force on both orbits over three drive periods, and from rest, the only one that a single run shows."""
     chosen, traces = scene("sec2").evolve(f=_SHARED), []
     for start, point in arrivals().items():
-        engine = Engine(chosen, certified(1e-10), 100)
+        engine = Engine(chosen, adaptive_setting(1e-10), 100)
         engine.start(point.state)
-        force = engine.record(300).force[:, -1] * engine.lowered.scales.force
+        force = engine.record(300).force[:, -1] * engine.scaled.scales.force
         traces.append(Trace(f"swept {start}", force))
     return Picture(np.arange(301) / 100.0, "drive periods", "output force in N", tuple(traces))
 
@@ -220,7 +220,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
     """
     orbit = periodic_orbit(scene(base), observer=True)
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
-    start = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    start = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     derivative, beads = stroboscopic_map(start, observer=True).derivative, orbit.scene.N
     difference, found = np.concatenate([np.full(beads, 1e-6), np.zeros(beads)]), np.empty(count)
     for i in range(count):
@@ -232,7 +232,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
 def _two_runs(tolerance: float, count: int) -> np.ndarray:
     """The same (count,) where chain and observer are two runs of SciPy from the same state on the chain's orbit."""
     orbit = periodic_orbit(scene("fig11-free"))
-    scales = Engine(orbit.scene, certified()).lowered.scales
+    scales = Engine(orbit.scene, adaptive_setting()).scaled.scales
     start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])
     apart = observed_apart(Plain.of(orbit.scene), start, count - 1, tolerance)
     return np.where(apart > 0.0, apart, np.nan)

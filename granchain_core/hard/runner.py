@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
 
-from ..children import pool, starting
+from ..child_processes import pool, starting
 from ..errors import NumbersFailed
 from .case import Check, run_case
 from .table import CASES

@@ -12,7 +12,7 @@ from math import asin, pi
 
 import numpy as np
 
-from ..kernels.dop853.run import certified_step
+from ..kernels.dop853.run import located_step
 from ..kernels.dop853.step import ALL_STAGES, STAGES, Cycle, Dop853, Work, evaluate
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import Harmonic
@@ -69,7 +69,7 @@ def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore
         contact = 0 if driven else 1
         while t < end * (1.0 - 1e-12):
             before = y[contact] - y[contact + 1] + static[contact] > 0.0
-            status, h, changed = certified_step(method, trajectory, t, end, counts)
+            status, h, changed = located_step(method, trajectory, t, end, counts)
             if status != 0:
                 found[n, ONSETS] = -1.0
                 break
@@ -94,7 +94,7 @@ def run(cases: np.ndarray, driven: bool) -> np.ndarray:
 
 
 def workspace(row: int) -> Work:
-    """Arrays of the certified method for a chain of `row` bodies."""
+    """Arrays of the adaptive method for a chain of `row` bodies."""
     return Work(k=np.zeros((ALL_STAGES, 2 * row)), stage=np.zeros(2 * row), end=np.zeros(2 * row),
                 probe=np.zeros(2 * row), slope=np.zeros(2 * row), dense=np.zeros((7, 2 * row)), scale=np.zeros(2),
                 next_step=np.zeros(1), forces=Forces(np.zeros(row - 1), None))

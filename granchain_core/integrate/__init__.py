@@ -3,6 +3,7 @@
 from ..state import State
 from .counts import Counts
 from .engine import Engine
-from .methods import METHODS, Method, Setting, certified, live, method_for
+from .methods import METHODS, Method, Setting, adaptive_setting, fixed_step_setting, method_for
 
-__all__ = ["METHODS", "Counts", "Engine", "Method", "Setting", "State", "certified", "live", "method_for"]
+__all__ = ["METHODS", "Counts", "Engine", "Method", "Setting", "State", "adaptive_setting", "fixed_step_setting",
+           "method_for"]

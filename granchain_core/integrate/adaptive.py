@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..kernels.dop853.run import Stretch, run_certified
+from ..kernels.dop853.run import Stretch, run_dop853
 from ..kernels.dop853.step import ALL_STAGES, Cycle, Dop853, Work
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE
-from ..lower import Lowered
+from ..scaling import ScaledChain
 from ..stop import Stop
 from .stepper import Start, empty_samples
 
@@ -27,34 +27,34 @@ _LEAST_SCALE = 1e-3
 class Adaptive:
     """Dormand–Prince 8 in (u, w) at a relative tolerance per step."""
 
-    def __init__(self, tolerance: float, lowered: Lowered, samples: int) -> None:
-        largest, size = lowered.period / _LEAST_STEPS, lowered.size
+    def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
+        largest, size = scaled.period / _LEAST_STEPS, scaled.size
         self.method = Dop853(tolerance, largest)
-        self.lowered = lowered
+        self.scaled = scaled
         self.grid = samples
         self.pause: Callable[[], None] = Stop().pause
         self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
                          slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
-                         next_step=np.array([min(_FIRST_STEP, largest)]), forces=lowered.forces())
+                         next_step=np.array([min(_FIRST_STEP, largest)]), forces=scaled.forces())
 
-    def use(self, lowered: Lowered) -> None:
+    def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""
-        self.lowered = lowered
-        self.work = self.work._replace(forces=lowered.forces())
+        self.scaled = scaled
+        self.work = self.work._replace(forces=scaled.forces())
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: errors are measured on its scale."""
-        for i, values in enumerate(self.lowered.rows(y)):
+        for i, values in enumerate(self.scaled.rows(y)):
             self.work.scale[i] = max(_LEAST_SCALE, float(np.abs(values).max()))
 
     def trajectory(self, y: np.ndarray) -> Trajectory:
         """The state y with all that its kernels need."""
-        lo = self.lowered
+        lo = self.scaled
         return Trajectory(lo.slots, Cycle(lo.beta, lo.period), y, self.work)
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute driver state and dy/dt for y."""
-        place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
+        place(self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
@@ -63,7 +63,7 @@ class Adaptive:
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
         """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
-        keep, row = empty_samples(self.lowered, 2), self.lowered.bodies
+        keep, row = empty_samples(self.scaled, 2), self.scaled.bodies
         strobes[0] = y[:row], self.work.k[0, :row]
         for p in range(len(maxima)):
             next_period(out.log.peaks)
@@ -78,7 +78,7 @@ class Adaptive:
 
     def _run(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: Output) -> tuple[int, int]:
-        status, rows = run_certified(self.method, self.trajectory(y), Stretch(first, points, self.grid, every), samples,
+        status, rows = run_dop853(self.method, self.trajectory(y), Stretch(first, points, self.grid, every), samples,
                                      out)
         return status, rows
 
@@ -88,6 +88,6 @@ class Adaptive:
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
         """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
-        row = self.lowered.bodies
+        row = self.scaled.bodies
         first = next((bead for bead in (first_not_finite(slope, row) for slope in self.work.k) if bead), 0)
         return first or max(1, first_not_finite(y, row)), None

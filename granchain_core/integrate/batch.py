@@ -17,7 +17,7 @@ from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..kernels.width import BATCH_SIZE
-from ..lower import Lowered, lower
+from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop
 
@@ -31,12 +31,12 @@ _FEWEST = 2
 
 def can_share_batch(scene: Scene) -> bool:
     """Whether a batch can run this scene, with every effect it has (the tension cut needs velocities before forces)."""
-    return all_in_simd_kernels(lower(scene).slots)
+    return all_in_simd_kernels(scale_chain(scene).slots)
 
 
-def is_uniform(lowered: Lowered) -> bool:
+def is_uniform(scaled: ScaledChain) -> bool:
     """Whether all beads, and all contacts but the wall's, are alike."""
-    chain = lowered.slots.chain
+    chain = scaled.slots.chain
     return bool((chain.inverse_mass[1:-1] == 1.0).all() and (chain.stiffness[:-1] == 1.0).all())
 
 
@@ -49,12 +49,12 @@ class Batch:
     """Places for as many scenes of one structure and one N as a vector holds, run by one thread."""
 
     def __init__(self, example: Scene, stop: Stop) -> None:
-        lowered = lower(example)
+        scaled = scale_chain(example)
         self.stop = stop
-        n, slots = example.N, lowered.slots
+        n, slots = example.N, scaled.slots
         dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
         self.members = kernels.Members(
-            wall=_rows(1), unequal=None if is_uniform(lowered) else Unequal(_rows(n + 2), _rows(n + 1)),
+            wall=_rows(1), unequal=None if is_uniform(scaled) else Unequal(_rows(n + 2), _rows(n + 1)),
             dissipation=None if dissipation is None else type(dissipation)(_rows(1)),
             foundation=None if foundation is None else type(foundation)(_rows(1)),
             preload=None if preload is None else type(preload)(_rows(n + 1)),
@@ -74,16 +74,16 @@ class Batch:
             limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
         )
         for member in range(BATCH_SIZE):  # an empty place holds the example at rest and is never checked
-            self.put(member, lowered, np.zeros(rows), 1, NEVER, NEVER)
+            self.put(member, scaled, np.zeros(rows), 1, NEVER, NEVER)
 
-    def put(self, member: int, lowered: Lowered, y: np.ndarray, refine: float, return_at: int,
+    def put(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, return_at: int,
             earliest: int = 0) -> None:
-        """Make a scene a member, from the scaled state y at phase 0, with `refine` times the live method's steps.
+        """Make a scene a member, from the scaled state y at phase 0, with `refine` times the fixed-step method's steps.
 
         It is checked after `return_at` periods, or from `earliest` on once it may have settled.
         """
-        slots, members, state = lowered.slots, self.members, self.state
-        steps = math.ceil(refine * lowered.steps_per_period())
+        slots, members, state = scaled.slots, self.members, self.state
+        steps = math.ceil(refine * scaled.steps_per_period())
         members.wall[0, member] = slots.chain.stiffness[-1]
         if members.unequal is not None:
             members.unequal.inverse_mass[:, member] = slots.chain.inverse_mass
@@ -94,7 +94,7 @@ class Batch:
                 mine[0][:, member] = its[0]
         half = np.pi / steps
         members.turn[:, member] = np.cos(half), np.sin(half)
-        members.beta[0, member], members.h[0, member] = lowered.beta, lowered.period / steps
+        members.beta[0, member], members.h[0, member] = scaled.beta, scaled.period / steps
         state.phase[:, member] = 0.0, 1.0
         state.peaks[:, member] = 0.0
         state.steps[member] = state.left[member] = steps
@@ -106,14 +106,14 @@ class Batch:
         state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
         state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0
 
-    def put_fine(self, member: int, lowered: Lowered, y: np.ndarray, refine: float, period: int, rate: float,
+    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, rate: float,
                  maxima: np.ndarray) -> None:
         """Make a scene a member, on the orbit y of a coarser run, of `period` and decay `rate` per orbit.
 
         It is checked once the difference from that orbit has decayed.
         """
         orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(COARSE_ERROR_LEFT) / math.log(rate))))
-        self.put(member, lowered, y, refine, NEVER, orbits * period)
+        self.put(member, scaled, y, refine, NEVER, orbits * period)
         self.state.fine_record[member] = period, rate, *maxima, orbits, 0.0
 
     def run(self) -> tuple[int, bool]:

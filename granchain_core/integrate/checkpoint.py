@@ -65,7 +65,7 @@ def checkpoint(engine: Engine) -> Checkpoint:
                        f"{engine.grid - engine.grid_index} of {engine.grid} grid points ahead.")
     control = np.array([*engine.stepper.work.next_step, *engine.stepper.work.scale]) if adaptive else np.zeros(0)
     setting = engine.setting
-    return Checkpoint(engine.lowered.scene.digest, setting.method, float(setting.refine), setting.tolerance,
+    return Checkpoint(engine.scaled.scene.digest, setting.method, float(setting.refine), setting.tolerance,
                       engine.samples, engine.y.copy(), engine.stepper.work.k[0].copy(), control, engine.grid_index,
                       float(engine.elapsed))
 

@@ -10,7 +10,7 @@ from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
 from ..kernels.forces.peaks import MEMORY, largest_forces, reset_peaks
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE, NOT_FINITE
-from ..lower import Lowered, lower
+from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..state import State, rest
 from ..stop import Stop
@@ -27,14 +27,14 @@ _CLOSINGS = 4
 class Engine:
     """Carries a state of `scene` through time; all arrays are allocated beforehand, none in a kernel.
 
-    `samples` is the number of recorded samples a period. `stop` ends a call from another thread. `lowered` may be
+    `samples` is the number of recorded samples a period. `stop` ends a call from another thread. `scaled` may be
     given where more than the scene's own chain moves. What depends on the method is in `stepper`.
     """
 
     def __init__(self, scene: Scene, setting: Setting, samples: int = 1, balance: bool = False,
-                 stop: Stop | None = None, lowered: Lowered | None = None) -> None:
+                 stop: Stop | None = None, scaled: ScaledChain | None = None) -> None:
         method = METHODS[setting.method]
-        ready = (lower(scene, balance and method.has_account) if lowered is None else lowered).own()
+        ready = (scale_chain(scene, balance and method.has_account) if scaled is None else scaled).own()
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
@@ -44,37 +44,37 @@ class Engine:
         self.stepper: Any = method.stepper(setting, ready, samples)
         self.stepper.pause = self.stop.pause
         self.grid: int = self.stepper.grid
-        self.start(rest(scene) if lowered is None else State(np.zeros(ready.beads), np.zeros(ready.beads)))
+        self.start(rest(scene) if scaled is None else State(np.zeros(ready.beads), np.zeros(ready.beads)))
         self._remember()
 
     @property
-    def lowered(self) -> Lowered:
+    def scaled(self) -> ScaledChain:
         """The scene in scaled arrays."""
-        found: Lowered = self.stepper.lowered
+        found: ScaledChain = self.stepper.scaled
         return found
 
-    def use(self, lowered: Lowered) -> None:
+    def use(self, scaled: ScaledChain) -> None:
         """Go on with other values or effects of the same chain; the step stays what it is."""
-        self.stepper.use(lowered)
+        self.stepper.use(scaled)
 
     # --- state ---------------------------------------------------------------------------------------------
 
     def start(self, state: State) -> None:
         """Put the chain into `state`; the energy account starts at zero."""
-        scales = self.lowered.scales
+        scales = self.scaled.scales
         self.grid_index = round(state.phase * self.grid) % self.grid
         self._begin(state.displacement / scales.length, state.velocity / scales.velocity, from_velocity=True)
 
     def start_scaled(self, x: np.ndarray) -> None:
         """Put the chain into a scaled state (2N,) of displacements, then w, at phase 0."""
-        n = self.lowered.beads
+        n = self.scaled.beads
         self.grid_index = 0
         self._begin(x[:n], x[n:], from_velocity=False)
 
     def _begin(self, displacement: np.ndarray, other: np.ndarray, from_velocity: bool) -> None:
         """Start from scaled displacements and velocities, or w."""
         self.y[:] = 0.0
-        first, second = self.lowered.rows(self.y)
+        first, second = self.scaled.rows(self.y)
         first[:], second[:] = displacement, other
         self.elapsed = 0.0
         self.place(from_velocity)
@@ -83,14 +83,14 @@ class Engine:
 
     def place(self, from_velocity: bool = False) -> None:
         """Recompute driver state and dy/dt for y."""
-        if self.lowered.slots.tension is not None:  # flags of the last step
-            self.lowered.slots.tension.force_free[:] = 0
+        if self.scaled.slots.tension is not None:  # flags of the last step
+            self.scaled.slots.tension.force_free[:] = 0
         self.stepper.place(2 * np.pi * self.grid_index / self.grid, self.y, from_velocity)
 
     @property
     def state(self) -> State:
         """The present state in SI."""
-        lo = self.lowered
+        lo = self.scaled
         self.place(from_velocity=False)
         return State(lo.rows(self.y)[0] * lo.scales.length, lo.rows(self.stepper.work.k[0])[0] * lo.scales.velocity,
                      self.grid_index / self.grid)
@@ -99,7 +99,7 @@ class Engine:
 
     def empty_samples(self, rows: int) -> Samples:
         """Arrays for `rows` samples in scaled units."""
-        return empty_samples(self.lowered, rows)
+        return empty_samples(self.scaled, rows)
 
     @flushed
     def record(self, count: int) -> Samples:
@@ -110,8 +110,8 @@ class Engine:
         self.stop.pause()
         self._remember()
         stepper, periods = self.stepper, count / self.samples
-        samples = empty_samples(stepper.lowered, count + 1)
-        out = self._output(round(_CLOSINGS * (1.0 + periods) * stepper.lowered.bodies))
+        samples = empty_samples(stepper.scaled, count + 1)
+        out = self._output(round(_CLOSINGS * (1.0 + periods) * stepper.scaled.bodies))
         status, rows = stepper.samples(self.y, self.grid_index, samples, out)
         self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid
         if status != DONE:
@@ -124,13 +124,13 @@ class Engine:
         """Advance by whole periods from phase 0.
 
         Returns the stroboscopic states (count + 1, 2, N), displacement and velocity in scaled units, and the largest
-        input, output and elastic output force of each period (count, 3); without `watch` the certified method does
+        input, output and elastic output force of each period (count, 3); without `watch` the adaptive method does
         not search the largest forces and they are NaN.
         """
         self.stop.pause()
         self._remember()
         stepper = self.stepper
-        strobes, maxima = np.zeros((count + 1, 2, stepper.lowered.bodies)), np.full((count, 3), np.nan)
+        strobes, maxima = np.zeros((count + 1, 2, stepper.scaled.bodies)), np.full((count, 3), np.nan)
         status, done = stepper.periods(self.y, strobes, maxima, watch, self._output())
         if status != DONE:
             self.raise_for(status, done, self._before)
@@ -194,11 +194,11 @@ class Engine:
     def _remember(self) -> None:
         """Keep where a call begins; a number that is not finite there already is reported at once."""
         stepper = self.stepper
-        bead = first_not_finite(self.y, stepper.lowered.bodies)
+        bead = first_not_finite(self.y, stepper.scaled.bodies)
         if bead:
             raise self._failure(NOT_FINITE, 0.0, bead, stepper.step_at(self.grid_index)).error
         self._before: Start = self.y.copy(), stepper.work.k[0].copy(), self.grid_index
 
     def _failure(self, status: int, done: float, bead: int, step: int | None) -> Failure:
-        return Failure(status, self.elapsed + done, bead, step, self.counts.by_name, self.lowered.scene,
+        return Failure(status, self.elapsed + done, bead, step, self.counts.by_name, self.scaled.scene,
                        self.setting.method)

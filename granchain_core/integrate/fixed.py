@@ -26,7 +26,7 @@ from ..kernels.rk4.short_chain import KEPT, STEPS_IN_BLOCK, WIDTHS, ShortChain
 from ..kernels.rk4.step import DriveTable, Stages
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.simd.vector import LANES, aligned
-from ..lower import Lowered
+from ..scaling import ScaledChain
 from ..stop import Stop
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
 from .stepper import Start, empty_samples
@@ -38,59 +38,59 @@ _LARGEST_TABLE = 200_000
 class FixedStep:
     """Steps of a method in (u, w); `simd` where there are vectors for it."""
 
-    def __init__(self, method: Any, lowered: Lowered, samples: int, simd: bool = False) -> None:
+    def __init__(self, method: Any, scaled: ScaledChain, samples: int, simd: bool = False) -> None:
         self.method = method
-        self.lowered = lowered
+        self.scaled = scaled
         self.grid: int = method.steps_per_period
-        self.h = lowered.period / self.grid
+        self.h = scaled.period / self.grid
         self.pause: Callable[[], None] = Stop().pause
         self._every = self.grid // samples
         self._simd = simd
-        self._no_samples = empty_samples(lowered, 0)
+        self._no_samples = empty_samples(scaled, 0)
         self._no_periods = np.zeros((0, 2, 0)), np.zeros((0, 3))
         self.drive = self._driver_table()
-        self.work: Any = Stages(np.zeros((4, lowered.size)), np.zeros(lowered.size), np.zeros(lowered.size),
-                                np.zeros((ENDS, lowered.bodies - 1)), lowered.forces(), self.new_simd_workspace())
+        self.work: Any = Stages(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
+                                np.zeros((ENDS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
 
     def _driver_table(self) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
         # the table is faster, but that of a period of many steps would not fit into memory
         theta = np.pi * np.arange(2 * self.grid + 1 if self.grid <= _LARGEST_TABLE else 0) / self.grid
-        driver = self.lowered.slots.driver
+        driver = self.scaled.slots.driver
         if driver is None:
             return np.zeros((theta.size, 2))
         return np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
 
     def new_simd_workspace(self) -> LongChain | ShortChain | None:
         """The workspace of SIMD steps: a driven chain with no effect that they do not know."""
-        lo, slots = self.lowered, self.lowered.slots
+        lo, slots = self.scaled, self.scaled.slots
         if not self._simd or not all_in_simd_kernels(slots) or slots.driver is None:
             return None
         width = next((lanes for lanes in WIDTHS if lo.bodies <= lanes), 0)
         return _short_chain(lo, width) if width else _long_chain(lo)
 
-    def use(self, lowered: Lowered) -> None:
+    def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""
-        self.lowered = lowered
-        self._no_samples = empty_samples(lowered, 0)
+        self.scaled = scaled
+        self._no_samples = empty_samples(scaled, 0)
         self.drive = self._driver_table()
-        self.work = self.work._replace(forces=lowered.forces(), simd=self.new_simd_workspace())
+        self.work = self.work._replace(forces=scaled.forces(), simd=self.new_simd_workspace())
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: nothing is remembered of the last."""
 
     def trajectory(self, y: np.ndarray) -> Trajectory:
         """The state y with all that its kernels need."""
-        return Trajectory(self.lowered.slots, DriveTable(self.drive, 2.0 * np.pi / self.grid, self.h), y,
+        return Trajectory(self.scaled.slots, DriveTable(self.drive, 2.0 * np.pi / self.grid, self.h), y,
                           self.work)
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute driver state and dy/dt for y."""
-        place(self.lowered.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
+        place(self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from step `first`, filling the samples; returns status and number of rows filled."""
-        part = steps_in_part(self.lowered.bodies)
+        part = steps_in_part(self.scaled.bodies)
         if self._every * (len(samples.displacement) - 1) > part:
             return samples_in_parts(self, y, first, self._every, part, samples, out)
         return self.run(y, first, self._every, samples, out)
@@ -98,7 +98,7 @@ class FixedStep:
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
         """Advance whole periods, filling strobes and largest forces (at no cost); returns status and periods done."""
-        part = steps_in_part(self.lowered.bodies)
+        part = steps_in_part(self.scaled.bodies)
         if self.grid > part:
             return periods_in_parts(self, y, part, strobes, maxima, out)
         status, done = run_steps(self.method, self.trajectory(y), 0, self.grid, Kept(self._no_samples, strobes, maxima),
@@ -116,7 +116,7 @@ class FixedStep:
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
         """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it."""
-        n, row = self.grid, self.lowered.bodies
+        n, row = self.grid, self.scaled.bodies
         if start is None:
             return max(1, first_not_finite(y, row)), None
         here, slope, first = start
@@ -144,7 +144,7 @@ class FixedStep:
         work = self.work._replace(simd=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
         work.k[0] = slope
         trajectory = self.trajectory(now)._replace(work=work)
-        kept, out = empty_samples(self.lowered, 2), Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
+        kept, out = empty_samples(self.scaled, 2), Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
         j = first
         while j < last:
             stride = min(last, (j // n + 1) * n) - j
@@ -158,14 +158,14 @@ class FixedStepInVelocity(FixedStep):
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the slope in step with y; velocities are part of it."""
-        slots = self.lowered.slots
+        slots = self.scaled.slots
         velocity = slots.driver.amplitude * slots.driver.beta * np.cos(theta)
         naive_motion(slots, slots.driver.amplitude * np.sin(theta), velocity, y, self.work.k[0], self.work.forces)
 
 
-def _short_chain(lowered: Lowered, width: int) -> ShortChain:
+def _short_chain(scaled: ScaledChain, width: int) -> ShortChain:
     """The workspace of a chain whose bodies fit into one vector."""
-    slots = lowered.slots
+    slots = scaled.slots
 
     def padded(values: np.ndarray) -> np.ndarray:
         row = aligned(1, width)
@@ -177,9 +177,9 @@ def _short_chain(lowered: Lowered, width: int) -> ShortChain:
                       aligned(2 * KEPT, width), aligned(ENDS, width), np.zeros((3, STEPS_IN_BLOCK)))
 
 
-def _long_chain(lowered: Lowered) -> LongChain:
+def _long_chain(scaled: ScaledChain) -> LongChain:
     """The workspace of a chain in blocks of eight bodies."""
-    slots, blocks = lowered.slots, -(-lowered.bodies // LANES)
+    slots, blocks = scaled.slots, -(-scaled.bodies // LANES)
 
     def padded(values: np.ndarray) -> np.ndarray:
         return np.pad(values, (0, blocks * LANES - len(values))).reshape(blocks, LANES)

@@ -12,22 +12,22 @@ import numpy as np
 from ..errors import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
-from ..lower import Lowered
+from ..scaling import ScaledChain
 from .adaptive import Adaptive
 from .fixed import FixedStep, FixedStepInVelocity
 from .stepper import Stepper
 
 #: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.
-LIVE = "rk4-split"
+FIXED_STEP = "rk4-split"
 #: Error control with located events: the method of the finest accuracy.
-CERTIFIED = "dop853"
+ADAPTIVE = "dop853"
 
-#: Above this relative error the live method is the cheaper one (`granchain accuracy sec2` measures it).
-_LIVE_IS_CHEAPER = 1e-10
-#: The live method's usual relative error at the live step; it falls with the fourth power of the step.
-_LIVE_ERROR = 7e-6
+#: Above this relative error the fixed-step method is the cheaper one (`granchain accuracy sec2` measures it).
+_FIXED_STEP_IS_CHEAPER = 1e-10
+#: The fixed-step method's usual relative error at the default step; it falls with the fourth power of the step.
+_FIXED_STEP_ERROR = 7e-6
 #: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
-#: tests.numerics.honesty`).
+#: tests.numerics.stated_errors`).
 _SPREAD = 8.0
 #: Smallest tolerance of a step that is still followed by a finer one.
 _SMALLEST = 1e-15
@@ -35,7 +35,7 @@ _SMALLEST = 1e-15
 
 @dataclass(frozen=True)
 class Setting:
-    """A method with its fineness: `refine` times the live method's steps, or a relative tolerance per step."""
+    """A method with its fineness: `refine` times the fixed-step method's steps, or a relative tolerance per step."""
 
     method: str
     refine: float = 1
@@ -51,11 +51,11 @@ class Setting:
             return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST), self.tolerance / 8.0))
         return Setting(self.method, 2 * self.refine)
 
-    def finer_than(self, lowered: Lowered, samples: int) -> Setting:
+    def finer_than(self, scaled: ScaledChain, samples: int) -> Setting:
         """The next finer setting that really has more steps: they are rounded up to a multiple of the samples."""
         finer = self.finer()
         if not METHODS[self.method].adaptive:
-            while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):
+            while finer.steps_per_period(scaled, samples) == self.steps_per_period(scaled, samples):
                 finer = finer.finer()
         return finer
 
@@ -64,13 +64,13 @@ class Setting:
         """Whether a finer setting gains nothing because of rounding."""
         return self.tolerance < 2e-15 if METHODS[self.method].adaptive else self.refine >= 256
 
-    def steps_per_period(self, lowered: Lowered, samples: int) -> int:
+    def steps_per_period(self, scaled: ScaledChain, samples: int) -> int:
         """Steps in one period for a fixed-step method, a multiple of `samples`."""
-        return math.ceil(self.refine * lowered.steps_per_period(samples) / samples) * samples
+        return math.ceil(self.refine * scaled.steps_per_period(samples) / samples) * samples
 
-    def step(self, lowered: Lowered, samples: int) -> float:
+    def step(self, scaled: ScaledChain, samples: int) -> float:
         """The step of a fixed-step method, in scaled units."""
-        return lowered.period / self.steps_per_period(lowered, samples)
+        return scaled.period / self.steps_per_period(scaled, samples)
 
 
 @dataclass(frozen=True)
@@ -92,12 +92,12 @@ class Method:
     """One way to integrate.
 
     `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
-    for, `order_with_cut` where tension is cut: only the certified method ends its steps at the force's kink, F = 0. All
+    for, `order_with_cut` where tension is cut: only the adaptive method ends its steps at the force's kink, F = 0. All
     are measured, the smallest of the damping laws, for adaptive methods per mean step (tests/numerics/test_orders.py).
     With `events` steps end at contact events or are split there; with `adaptive` an error control sets them;
     `symplectic` holds without damping. `stepper` makes what the engine steps with. `usual_error` is the relative error
-    at the live step, or over the tolerance, 0 where none is known. `even`: the error falls by the method's order at
-    every refinement, contact events or not. `variables` are "uw" or "uv".
+    at the default step, or over the tolerance, 0 where none is known. `converges_regularly`: the error falls by the
+    method's order at every refinement, contact events or not. `variables` are "uw" or "uv".
     """
 
     name: str
@@ -109,10 +109,10 @@ class Method:
     symplectic: bool
     restrictions: str
     reference: str
-    stepper: Callable[[Setting, Lowered, int], Stepper]
+    stepper: Callable[[Setting, ScaledChain, int], Stepper]
     cost: StepCost
     usual_error: float = 0.0
-    even: bool = False
+    converges_regularly: bool = False
     variables: str = "uw"
     order_with_cut: float = 1.0
 
@@ -122,21 +122,21 @@ class Method:
         return self.variables == "uw"
 
 
-def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, Lowered, int], Stepper]:
+def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, ScaledChain, int], Stepper]:
     """What makes the stepper of a method with fixed steps in (u, w)."""
-    return lambda setting, lowered, samples: FixedStep(kind(setting.steps_per_period(lowered, samples)), lowered,
+    return lambda setting, scaled, samples: FixedStep(kind(setting.steps_per_period(scaled, samples)), scaled,
                                                        samples, simd)
 
 
-def _in_velocity(kind: Any) -> Callable[[Setting, Lowered, int], Stepper]:
+def _in_velocity(kind: Any) -> Callable[[Setting, ScaledChain, int], Stepper]:
     """What makes the stepper of a method with fixed steps in (u, v)."""
-    return lambda setting, lowered, samples: FixedStepInVelocity(kind(setting.steps_per_period(lowered, samples)),
-                                                                 lowered, samples)
+    return lambda setting, scaled, samples: FixedStepInVelocity(kind(setting.steps_per_period(scaled, samples)),
+                                                                 scaled, samples)
 
 
-def _adaptive(setting: Setting, lowered: Lowered, samples: int) -> Stepper:
+def _adaptive(setting: Setting, scaled: ScaledChain, samples: int) -> Stepper:
     """The stepper of the method with error control."""
-    return Adaptive(setting.tolerance, lowered, samples)
+    return Adaptive(setting.tolerance, scaled, samples)
 
 
 METHODS: dict[str, Method] = {
@@ -148,12 +148,12 @@ METHODS: dict[str, Method] = {
                          "read off the step's ends",
             reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9)),
         Method(
-            name=LIVE, title="RK4 in w, steps split at contact events, quadrature corrected there", order_smooth=4.0,
-            order=3.9, events=True, adaptive=False, symplectic=False,
+            name=FIXED_STEP, title="RK4 in w, steps split at contact events, quadrature corrected there",
+            order_smooth=4.0, order=3.9, events=True, adaptive=False, symplectic=False,
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; with more than "
                          "30 beads two changes of one inner contact inside a step are not seen",
             reference="Kutta 1901; w-variables and events: docs/model.md", stepper=_fixed(Rk4Split, simd=True),
-            cost=StepCost(450e-9, 45e-9), usual_error=_LIVE_ERROR, even=True),
+            cost=StepCost(450e-9, 45e-9), usual_error=_FIXED_STEP_ERROR, converges_regularly=True),
         Method(
             name="rk4-naive", title="RK4 in (u, v), the obvious first attempt", order_smooth=4.0, order=1.0,
             events=False, adaptive=False, symplectic=False,
@@ -166,7 +166,7 @@ METHODS: dict[str, Method] = {
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
             variables="uv"),
         Method(
-            name=CERTIFIED, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
+            name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
             events=True, adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive,
             cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
@@ -178,25 +178,25 @@ AT_A_JUMP = 0.95
 #: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step after an onset, with room for several
 #: contacts.
 _JUMP = 0.01
-#: Smallest refinement: steps twice as long as the live method's own.
+#: Smallest refinement: steps twice as long as the fixed-step method's own.
 _COARSEST = 0.5
 
 
-def live(refine: float = 1) -> Setting:
-    """The live method with `refine` times the live steps."""
-    return Setting(LIVE, refine)
+def fixed_step_setting(refine: float = 1) -> Setting:
+    """The fixed-step method with `refine` times the default steps."""
+    return Setting(FIXED_STEP, refine)
 
 
-def certified(tolerance: float = 0.0) -> Setting:
-    """The certified method at a relative tolerance per step."""
-    return Setting(CERTIFIED, tolerance=tolerance)
+def adaptive_setting(tolerance: float = 0.0) -> Setting:
+    """The adaptive method at a relative tolerance per step."""
+    return Setting(ADAPTIVE, tolerance=tolerance)
 
 
 def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
-    if accuracy >= _LIVE_IS_CHEAPER and not tension_cut:  # where tension is cut the live method has order 1
-        return live(max(_COARSEST, (_LIVE_ERROR / accuracy) ** 0.25))
-    return certified(min(1e-3, 0.1 * accuracy))
+    if accuracy >= _FIXED_STEP_IS_CHEAPER and not tension_cut:  # where tension is cut the fixed-step method has order 1
+        return fixed_step_setting(max(_COARSEST, (_FIXED_STEP_ERROR / accuracy) ** 0.25))
+    return adaptive_setting(min(1e-3, 0.1 * accuracy))
 
 
 def typical_error(setting: Setting) -> float:
@@ -207,7 +207,8 @@ def typical_error(setting: Setting) -> float:
     return _SPREAD * method.usual_error / setting.refine**method.order_smooth
 
 
-def jump_errors(setting: Setting, lowered: Lowered, step: float, jumps: np.ndarray, maxima: np.ndarray) -> np.ndarray:
+def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.ndarray,
+                maxima: np.ndarray) -> np.ndarray:
     """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,), with this step.
 
     All in scaled units.
@@ -218,9 +219,9 @@ def jump_errors(setting: Setting, lowered: Lowered, step: float, jumps: np.ndarr
     computations does not bound it.
     """
     least = np.zeros(3)
-    if setting.method == LIVE and lowered.slots.dissipation is not None:
-        chain = lowered.slots.chain
-        root_speeds = np.sqrt(jumps / lowered.slots.dissipation.coefficient)
+    if setting.method == FIXED_STEP and scaled.slots.dissipation is not None:
+        chain = scaled.slots.chain
+        root_speeds = np.sqrt(jumps / scaled.slots.dissipation.coefficient)
         at_jump = jumps > AT_A_JUMP * maxima[:2]
         least[:2] = at_jump * _JUMP * step**2.5 * root_speeds * chain.stiffness.max() * chain.inverse_mass.max()
     return least

@@ -15,7 +15,7 @@ from ..kernels.forces.largest import CLOSED
 from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import Output, Samples, keep_strobe
 from ..kernels.status import CANCELLED, DONE
-from ..lower import Lowered
+from ..scaling import ScaledChain
 from .stepper import empty_samples
 
 #: Steps times bodies in one call of a kernel: 5 to 40 ms.
@@ -25,7 +25,7 @@ _WORK = 1 << 19
 class InParts(Protocol):
     """A method with fixed steps, `grid` of them in a period."""
 
-    lowered: Lowered
+    scaled: ScaledChain
     grid: int
     work: Any
     pause: Callable[[], None]
@@ -69,7 +69,7 @@ def periods_in_parts(stepper: InParts, y: np.ndarray, part: int, strobes: np.nda
     keep_strobe(y, slope, strobes[0])
     for i in range(len(maxima)):
         next_period(out.log.peaks)
-        status = _stride(stepper, y, 0, stepper.grid, part, empty_samples(stepper.lowered, 2), out)
+        status = _stride(stepper, y, 0, stepper.grid, part, empty_samples(stepper.scaled, 2), out)
         if status != DONE:
             return status, i
         keep_strobe(y, slope, strobes[i + 1])
@@ -80,7 +80,7 @@ def periods_in_parts(stepper: InParts, y: np.ndarray, part: int, strobes: np.nda
 def _stride(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,
             out: Output) -> int:
     """From one sample (2 rows) to the next in several calls; returns the status."""
-    scratch = empty_samples(stepper.lowered, 2)
+    scratch = empty_samples(stepper.scaled, 2)
     for j in range(0, stride, part):
         steps = min(part, stride - j)
         status, _ = stepper.run(y, (first + j) % stepper.grid, steps, scratch, out)

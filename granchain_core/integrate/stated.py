@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .caution import EVEN, RUN_FORCES, RUN_FORCES_THAT_JUMP, UNEVEN
 from .methods import METHODS, Setting, typical_error
+from .safety_factors import IRREGULAR, REGULAR, RUN_FORCES, RUN_FORCES_THAT_JUMP
 
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
 #: the rounding usually seen, which few random scenes exceed.
@@ -66,8 +66,8 @@ class Computations:
         seen = differences
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
-        even = METHODS[setting.method].even and not self.cuts_tension
-        self.stated = np.maximum((EVEN if even else UNEVEN) * seen, np.maximum(least, self.rounding))
+        even = METHODS[setting.method].converges_regularly and not self.cuts_tension
+        self.stated = np.maximum((REGULAR if even else IRREGULAR) * seen, np.maximum(least, self.rounding))
         self._before = differences
         self.settings.append(setting)
 

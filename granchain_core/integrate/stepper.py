@@ -9,7 +9,7 @@ import numpy as np
 
 from ..kernels.equations.motion import Trajectory
 from ..kernels.samples import Output, Samples
-from ..lower import Lowered
+from ..scaling import ScaledChain
 
 #: Where a call began: state and slope (M,), and the grid index.
 Start = tuple[np.ndarray, np.ndarray, int]
@@ -21,12 +21,12 @@ class Stepper(Protocol):
     A method that takes long calls in parts calls `pause` between them.
     """
 
-    lowered: Lowered
+    scaled: ScaledChain
     grid: int
     work: Any
     pause: Callable[[], None]
 
-    def use(self, lowered: Lowered) -> None:
+    def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""
 
     def prepare(self, y: np.ndarray) -> None:
@@ -52,8 +52,8 @@ class Stepper(Protocol):
         """Bead and step in which the numbers failed, after `done` periods of a call from `start`, if that is known."""
 
 
-def empty_samples(lowered: Lowered, rows: int) -> Samples:
+def empty_samples(scaled: ScaledChain, rows: int) -> Samples:
     """Arrays for `rows` samples in scaled units."""
-    n = lowered.beads
-    energy = np.zeros((rows, 3)) if lowered.slots.balance is not None else None
+    n = scaled.beads
+    energy = np.zeros((rows, 3)) if scaled.slots.balance is not None else None
     return Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)

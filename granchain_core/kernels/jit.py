@@ -99,7 +99,7 @@ def inline_numba(function):
     """Decorator for a kernel called at one place: it becomes part of that code, and is not compiled for itself as well.
 
     Compiled code is linked and optimised again in every caller, up to the kernel that Python calls; of a step of the
-    certified method this saves a fifth of the compiler's time.
+    adaptive method this saves a fifth of the compiler's time.
     """
     return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
 

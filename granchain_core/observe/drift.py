@@ -38,7 +38,7 @@ def observer_drift(orbit: Orbit) -> str | None:
     if found is None or abs(found[0]) < 1.0 - _NEAR:
         return None
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
-    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     value, vector = eigenpair(stroboscopic_map, x, 0, observer=True)
     if value.imag != 0.0 or not is_drift(orbit.scene, share_of_translation(vector[: orbit.scene.N].real)):
         return None

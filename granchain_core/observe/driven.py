@@ -14,8 +14,8 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import Setting, State, live
-from ..integrate.methods import LIVE, jump_errors, typical_error
+from ..integrate import Setting, State, fixed_step_setting
+from ..integrate.methods import FIXED_STEP, jump_errors, typical_error
 from ..integrate.stated import Computations, force_differences
 from ..motion import Motion, motion_columns
 from ..result import ERRORS, Cost, ForceErrors, residual, said_forces
@@ -160,9 +160,9 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     began, begin = clock.perf_counter(), rest(scene) if start is None else start
     chain = MovedChain(scene, signal, Stop() if stop is None else stop)
     before, first, shown = chain.run(begin, 0), chain.maxima, Computations(scene.cuts_tension)
-    shown.begin(live())
+    shown.begin(fixed_step_setting())
     for halvings in range(1, _MOST_HALVINGS + 1):
-        setting = live(2**halvings)
+        setting = fixed_step_setting(2**halvings)
         now, maxima = chain.run(begin, halvings), chain.maxima
         largest = float(np.abs(now.displacement).max())
         change = float(np.abs(now.displacement - before.displacement).max())
@@ -175,7 +175,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
         before, first = now, maxima
     done = bool(shown.stated[0] <= scene.accuracy)
     error, *errors = shown.final(done)
-    scales = chain.lowered.scales
+    scales = chain.scaled.scales
     balance = residual(now.energy)
     assert balance is not None, "the chain has an account"
     inward, outward, elastic = (float(one) for one in maxima * scales.force)
@@ -183,10 +183,10 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
                   now.force * scales.force, inward, outward, elastic,
                   force_errors=ForceErrors.of(np.array(errors)), error_estimate=float(error),
                   energy_residual=balance, status="done" if done else "accuracy-not-reached",
-                  cost=Cost.of(clock.perf_counter() - began, chain.counts, LIVE))
+                  cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP))
 
 
 def _least(chain: MovedChain, setting: Setting, halvings: int) -> np.ndarray:
     """Lower limits of the stated errors (4,), as for a run: typical for this step, and for forces at jumps."""
-    jumps = jump_errors(setting, chain.lowered, chain.longest_step(halvings), chain.jumps, chain.maxima)
+    jumps = jump_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, chain.maxima)
     return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])

@@ -19,8 +19,8 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import State
-from ..integrate.caution import EVEN, UNEVEN
-from ..integrate.methods import LIVE
+from ..integrate.methods import FIXED_STEP
+from ..integrate.safety_factors import IRREGULAR, REGULAR
 from ..motion import Motion, elastic_output, motion_columns
 from ..result import Cost
 from ..scene import Scene
@@ -205,7 +205,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     while True:
         halvings += 1
         now = chain.run(begin, halvings)
-        integration = EVEN * _difference(now.displacement, before.displacement)
+        integration = REGULAR * _difference(now.displacement, before.displacement)
         if progress is not None:
             progress(halvings / (_MOST_HALVINGS + 1))
         if integration <= scene.accuracy or halvings == _MOST_HALVINGS:
@@ -214,7 +214,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     thin = record.thinned()
     coarse = PushedChain(scene, thin, stop, chain.counts).run(begin, halvings)
     kept = np.searchsorted(record.time, thin.time)
-    maxima, scales = chain.maxima, chain.lowered.scales
+    maxima, scales = chain.maxima, chain.scaled.scales
     displacement = now.displacement * scales.length
     forces = now.force * scales.force
     forces[:, 0] = record.force
@@ -225,9 +225,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         scene=scene, record=record, displacement=displacement, velocity=now.velocity * scales.velocity, force=forces,
         max_output_force=float(maxima[1]) * scales.force, max_output_force_elastic=float(maxima[2]) * scales.force,
         integration_error=integration,
-        interpolation_error=UNEVEN * _difference(now.displacement[kept], coarse.displacement),
+        interpolation_error=IRREGULAR * _difference(now.displacement[kept], coarse.displacement),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",
-        cost=Cost.of(clock.perf_counter() - began, chain.counts, LIVE),
+        cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )
 

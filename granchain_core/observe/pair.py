@@ -11,13 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, State, certified
+from ..integrate import Engine, State, adaptive_setting
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import BODY_FAR_AWAY
 from ..kernels.effects.given_force import ObserverCoupling
 from ..kernels.effects.preload import Preload
 from ..kernels.samples import Samples
-from ..lower import Lowered, lower
+from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop
 
@@ -25,12 +25,12 @@ from ..stop import Stop
 TOLERANCE = 1e-13
 
 
-def lower_pair(scene: Scene) -> Lowered:
+def scale_pair(scene: Scene) -> ScaledChain:
     """Scaled arrays and slots of a chain with its observer.
 
     The contact that carries F_in has no overlap of its own: its bodies are BODY_FAR_AWAY apart, and its stiffness is 0.
     """
-    one = lower(scene)
+    one = scale_chain(scene)
     mass, stiffness = one.slots.chain
     static = np.zeros(scene.N + 1) if one.slots.preload is None else one.slots.preload.static
     slots = one.slots._replace(
@@ -42,7 +42,7 @@ def lower_pair(scene: Scene) -> Lowered:
 
 
 class Pair:
-    """A chain and its observer, carried through time together at `samples` samples a period by the certified method.
+    """A chain and its observer, carried through time together at `samples` samples a period by the adaptive method.
 
     Both go through the same arithmetic, so an observer that starts where its chain is stays there, to rounding: the
     compiler may sum the terms of one bead in another order than those of its twin.
@@ -50,8 +50,8 @@ class Pair:
 
     def __init__(self, scene: Scene, samples: int, stop: Stop | None = None) -> None:
         self.scene = scene
-        self.engine = Engine(scene, certified(TOLERANCE), samples, stop=stop,
-                             lowered=lower_pair(scene))
+        self.engine = Engine(scene, adaptive_setting(TOLERANCE), samples, stop=stop,
+                             scaled=scale_pair(scene))
 
     def start(self, chain: State, observer: State) -> None:
         """Put both into their states; the phase is the chain's."""

@@ -22,7 +22,7 @@ from ..kernels.rk4.observed import SampledForce, run_observed
 from ..kernels.rk4.step import DriveTable, Rk4Split, Stages
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import CANCELLED, NOT_FINITE
-from ..lower import Lowered, lower
+from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop
 from .record import ForceRecord
@@ -33,22 +33,22 @@ MOST_STEPS = 200_000_000
 
 
 class ChainInPieces:
-    """A lowered chain whose driver has one polynomial (T − 1, k) between two times [s]; `counts` adds up over its runs.
+    """A scaled chain whose driver has one polynomial (T − 1, k) between two times [s]; `counts` adds up over its runs.
 
     `pieces` are scaled, constant term first. `overlap` is about how large overlaps are, in scaled units: the live
     method's step is for 1, and more makes contacts stiffer.
     """
 
-    def __init__(self, lowered: Lowered, time: np.ndarray, pieces: np.ndarray, overlap: float, stop: Stop,
+    def __init__(self, scaled: ScaledChain, time: np.ndarray, pieces: np.ndarray, overlap: float, stop: Stop,
                  counts: Counts | None = None) -> None:
-        self.lowered = lowered
+        self.scaled = scaled
         self.counts = Counts() if counts is None else counts
         self._time = time
         self._stop = stop
         self._log = new_log()
-        self._spans = np.diff(time) * lowered.scales.rate
+        self._spans = np.diff(time) * scaled.scales.rate
         self._pieces = pieces
-        self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / lowered.step).astype(np.int64)
+        self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / scaled.step).astype(np.int64)
 
     @property
     def maxima(self) -> np.ndarray:
@@ -70,7 +70,7 @@ class ChainInPieces:
 
     def run(self, start: State, halvings: int) -> Samples:
         """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
-        lo, n, row = self.lowered, self.lowered.beads, self.lowered.bodies
+        lo, n, row = self.scaled, self.scaled.beads, self.scaled.bodies
         if len(start.displacement) != n:
             raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
         if self.steps(halvings) > MOST_STEPS:
@@ -103,20 +103,20 @@ class PushedChain(ChainInPieces):
     """A scene's chain without its driver, pushed by a record's force."""
 
     def __init__(self, scene: Scene, record: ForceRecord, stop: Stop, counts: Counts | None = None) -> None:
-        driven = lower(scene)
+        driven = scale_chain(scene)
         scales = driven.scales
-        lowered = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
+        scaled = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
         pieces = record.cubics() / scales.force / scales.rate ** np.arange(4)
         overlap = (float(np.abs(record.force).max()) / scales.force) ** (2.0 / 3.0)
-        super().__init__(lowered, record.time, pieces, overlap, stop, counts)
+        super().__init__(scaled, record.time, pieces, overlap, stop, counts)
 
 
 class MovedChain(ChainInPieces):
     """A scene's chain whose driver moves as a signal says, with the energy account."""
 
     def __init__(self, scene: Scene, signal: Signal, stop: Stop) -> None:
-        driven = lower(scene, balance=True)
-        lowered = replace(driven, slots=driven.slots._replace(driver=Moved(np.zeros(3))))
+        driven = scale_chain(scene, balance=True)
+        scaled = replace(driven, slots=driven.slots._replace(driver=Moved(np.zeros(3))))
         pieces = signal.quadratics() / driven.scales.length / driven.scales.rate ** np.arange(3)
         overlap = float(np.ptp(signal.displacement)) / driven.scales.length
-        super().__init__(lowered, signal.time, pieces, overlap, stop)
+        super().__init__(scaled, signal.time, pieces, overlap, stop)

@@ -2,7 +2,7 @@
 
 A signal is given at knots. Between them the velocity is a straight line and the displacement a quadratic, and this
 motion is computed exactly. A formula u(t) is given at KNOTS places in a period of its highest frequency. The
-velocities there are lowered by h² v''/12, so that the displacement, on which the elastic forces depend, follows the
+velocities there are scaled by h² v''/12, so that the displacement, on which the elastic forces depend, follows the
 formula with an error of order h⁴ at the knots and 4e-8 of the amplitude between them; the velocity differs by 2e-5.
 """
 

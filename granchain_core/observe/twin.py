@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import BadInput, check_range
 from ..integrate import State
-from ..integrate.methods import CERTIFIED
+from ..integrate.methods import ADAPTIVE
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
@@ -132,7 +132,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     pair.start(start, observer_start(scene, start, perturbation))
     u, force, difference = _follow(pair, periods)
     distance = np.sqrt((difference**2).sum(axis=1))
-    scales, beads = pair.engine.lowered.scales, scene.N
+    scales, beads = pair.engine.scaled.scales, scene.N
     chain, observer = slice(0, beads), slice(beads + 1, 2 * beads + 1)
     strobes = difference[:: n * samples]
     window = linear_window(distance[:: n * samples])
@@ -144,7 +144,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
         observer_output_force=force[:, -1] * scales.force, distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
         translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
-        cost=Cost.of(time.perf_counter() - began, pair.engine.counts, CERTIFIED),
+        cost=Cost.of(time.perf_counter() - began, pair.engine.counts, ADAPTIVE),
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import Engine, certified
+from ..integrate import Engine, adaptive_setting
 from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
@@ -17,7 +17,7 @@ from ..kernels.flow.run import run_flow
 from ..kernels.flow.saltation import VelocityTangent, new_velocity_tangent
 from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
 from ..kernels.status import EVENTS_PER_CONTACT
-from ..lower import Lowered
+from ..scaling import ScaledChain
 from ..scene import Scene
 from ..scene.driven import refuse_undriven
 from ..stop import Stop
@@ -60,10 +60,10 @@ class StroboscopicMap:
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, tolerance: float = TOLERANCE) -> None:
         refuse_undriven(scene)
         refuse_cut(scene)
-        self.engine = Engine(scene, certified(tolerance), 1, stop=stop)
+        self.engine = Engine(scene, adaptive_setting(tolerance), 1, stop=stop)
         self.periods = periods
         self.tolerance = tolerance
-        row = self.engine.lowered.bodies
+        row = self.engine.scaled.bodies
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
                           np.zeros((EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))
         held = self.engine.stepper.work.forces._replace(held=Held(self._contacts.closed))
@@ -71,7 +71,7 @@ class StroboscopicMap:
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
-        return self.engine.lowered.beads_of(y)
+        return self.engine.scaled.beads_of(y)
 
     def __call__(self, x: np.ndarray, observer: bool = False, directions: np.ndarray | None = None) -> Flow:
         """The flow from x with the derivative, or its product with the columns of `directions` (2N, columns).
@@ -79,7 +79,7 @@ class StroboscopicMap:
         With `observer` the tangents are those of a chain pushed by the recorded input force.
         """
         start = np.eye(len(x)) if directions is None else directions
-        tangent = new_tangent(start, self.engine.lowered.bodies, 1 if observer else 0)
+        tangent = new_tangent(start, self.engine.scaled.bodies, 1 if observer else 0)
         trace = self._run(x, tangent)
         return Flow(self.inner(self.engine.y), columns_of(tangent, start.shape[1]), trace, self.changes)
 
@@ -90,7 +90,7 @@ class StroboscopicMap:
         stay importable, because every process that reads compiled kernels imports their types.
         Raises `BadInput` for a damping that is not the linear dashpot's.
         """
-        lo = self.engine.lowered
+        lo = self.engine.scaled
         if lo.slots.dissipation is not None and not isinstance(lo.slots.dissipation, LinearDashpot):
             raise BadInput(f"dissipation = {lo.scene.dissipation} has no constant saltation; the second route knows "
                            "linear and none.")
@@ -108,13 +108,13 @@ class StroboscopicMap:
     def changes(self) -> np.ndarray:
         """The contact events of the last run, as in `Flow`."""
         found = self._contacts.log[: self._contacts.logged[0]].copy()
-        found[:, 1] /= self.engine.lowered.period
+        found[:, 1] /= self.engine.scaled.period
         return found
 
     def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent | None) -> float:
         engine = self.engine
         engine.start_scaled(x)
-        self._work.next_step[0] = min(0.1, engine.lowered.period / STAGES)
+        self._work.next_step[0] = min(0.1, engine.scaled.period / STAGES)
         trajectory = engine.stepper.trajectory(engine.y)._replace(work=self._work)
         status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._contacts, tangent), self.periods,
                                        engine.counts.array, engine.stop.flag)
@@ -122,16 +122,16 @@ class StroboscopicMap:
         return float(trace)
 
 
-def velocity_from_w(lowered: Lowered, x: np.ndarray) -> np.ndarray:
+def velocity_from_w(scaled: ScaledChain, x: np.ndarray) -> np.ndarray:
     """Derivative (2N, 2N) of (u, v) with respect to (u, w) at state x, phase 0, for the linear dashpot or none."""
-    n = lowered.beads
+    n = scaled.beads
     matrix = np.eye(2 * n)
-    if lowered.slots.dissipation is None:
+    if scaled.slots.dissipation is None:
         return matrix
     u = np.concatenate([[0.0], x[:n], [0.0]])
-    static = lowered.slots.preload.static if lowered.slots.preload is not None else 0.0
-    gate = lowered.slots.dissipation.coefficient * (u[:-1] - u[1:] + static > 0.0)  # ∂G/∂δ of every contact
-    inverse = lowered.slots.chain.inverse_mass[1:-1]
+    static = scaled.slots.preload.static if scaled.slots.preload is not None else 0.0
+    gate = scaled.slots.dissipation.coefficient * (u[:-1] - u[1:] + static > 0.0)  # ∂G/∂δ of every contact
+    inverse = scaled.slots.chain.inverse_mass[1:-1]
     rows = np.arange(n)
     matrix[n + rows, rows] = -inverse * (gate[:-1] + gate[1:])
     matrix[n + rows[1:], rows[:-1]] = inverse[1:] * gate[1:-1]

@@ -5,7 +5,7 @@ itself, and in between it is the difference of two neighbouring motions:
 
     δu(t) = [u(t; x0 + ε v) − u(t; x0 − ε v)] / 2ε
 
-by the certified method. Its noise (about 1e-13) grows with 1/ε and the shift of contact events with ε; between the
+by the adaptive method. Its noise (about 1e-13) grows with 1/ε and the shift of contact events with ε; between the
 two, at ε = 1e-5, about 1e-8 is left. The difference of δx(nT) and μ δx(0) is measured for each mode (`closure`).
 """
 
@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import check_range
-from ..integrate import Engine, certified
+from ..integrate import Engine, adaptive_setting
 from ..steady.poincare import Section
 from ..steady.settling.nearby_orbit import MOST_BEADS
 from ..stop import Stop
@@ -52,7 +52,7 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
     """
     check_range("mode", rank, 0, len(orbit.multipliers) - 1)
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
-    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     value, vector = eigenpair(stroboscopic_map, x, rank)
     if value.imag < 0.0:
         value, vector = value.conjugate(), vector.conj()
@@ -84,22 +84,22 @@ def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
              stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
     """δu (n·samples + 1, N) and δx (2N,) at the end that start as `direction`, as a central difference."""
-    engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
+    engine = Engine(orbit.scene, adaptive_setting(TOLERANCE), samples, stop=stop)
     ways = []
     for sign in (1.0, -1.0):
         engine.start_scaled(x + sign * size * direction)
         record = engine.record(orbit.period * samples)
-        ways.append((record.displacement, engine.lowered.beads_of(engine.y)))
+        ways.append((record.displacement, engine.scaled.beads_of(engine.y)))
     (u_plus, x_plus), (u_minus, x_minus) = ways
     return (u_plus - u_minus) / (2.0 * size), (x_plus - x_minus) / (2.0 * size)
 
 
 def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
-    """The orbit's own n points at every phase, by the certified method: n periods of an unstable orbit stay on it."""
+    """The orbit's own n points at every phase, by the adaptive method: n periods of an unstable orbit stay on it."""
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
-    engine = Engine(orbit.scene, certified(TOLERANCE), samples, stop=stop)
-    engine.start_scaled(stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state)))
-    record, scales = engine.record(orbit.period * samples), engine.lowered.scales
+    engine = Engine(orbit.scene, adaptive_setting(TOLERANCE), samples, stop=stop)
+    engine.start_scaled(stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state)))
+    record, scales = engine.record(orbit.period * samples), engine.scaled.scales
     shape = (orbit.period, samples, -1)
     return Section(orbit.scene, record.displacement[:-1].reshape(shape) * scales.length,
                    record.velocity[:-1].reshape(shape) * scales.velocity)

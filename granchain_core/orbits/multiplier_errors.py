@@ -34,7 +34,7 @@ def derivative_change(scene: Scene, period: int, state: State, derivative: np.nd
     Infinite where the fixed point is not isolated, as at a fold.
     """
     coarse = StroboscopicMap(scene, period, stop, _COARSER * tolerance)
-    x = coarse.inner(coarse.engine.lowered.scaled(state))
+    x = coarse.inner(coarse.engine.scaled.from_si(state))
     try:
         there = x + np.linalg.solve(np.eye(len(x)) - derivative, coarse.end(x) - x)
     except np.linalg.LinAlgError:

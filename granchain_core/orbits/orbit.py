@@ -15,9 +15,9 @@ import numpy as np
 
 from ..errors import NumbersFailed, check_range
 from ..integrate import State
-from ..integrate.methods import CERTIFIED
-from ..lower import scales_of
+from ..integrate.methods import ADAPTIVE
 from ..regime import modulus_words
+from ..scaling import scales_of
 from ..scene import Scene
 from ..steady.regime import LONGEST_PERIOD
 from ..steady.settling.nearby_orbit import MOST_BEADS
@@ -155,7 +155,7 @@ class Orbit(Labelled):
     def attributes(self) -> dict[str, Attribute]:
         """Period, residual, stability, and where it comes from."""
         found: dict[str, Attribute] = {
-            **provenance(self.scene, CERTIFIED, None), "period": self.period, "residual": self.residual,
+            **provenance(self.scene, ADAPTIVE, None), "period": self.period, "residual": self.residual,
             "stable": int(self.stable), "liouville": or_nan(self.liouville)}
         return found if self.observer_stable is None else {**found, "observer_stable": int(self.observer_stable)}
 
@@ -221,7 +221,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
         start = settling.engine.state
     n = n or 1
     stroboscopic_map = StroboscopicMap(scene, n, stop)
-    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(start))
+    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start))
     x, flow, history = _newton(stroboscopic_map, x)
     return _orbit(scene, n, stroboscopic_map, x, flow, history, observer)
 
@@ -292,8 +292,8 @@ def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarra
 
         multipliers = leading_multipliers(stroboscopic_map, x)
         observer_multipliers = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
-    lowered = stroboscopic_map.engine.lowered
-    return Orbit(scene, n, lowered.unscaled(lowered.embed(x)), history[-1], tuple(history), multipliers, liouville,
+    scaled = stroboscopic_map.engine.scaled
+    return Orbit(scene, n, scaled.to_si(scaled.embed(x)), history[-1], tuple(history), multipliers, liouville,
                  flow.changes, observer_multipliers, monodromy, observer_monodromy)
 
 

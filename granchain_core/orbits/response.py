@@ -24,8 +24,8 @@ from math import pi
 
 import numpy as np
 
-from ..integrate import Engine, certified
-from ..integrate.methods import CERTIFIED
+from ..integrate import Engine, adaptive_setting
+from ..integrate.methods import ADAPTIVE
 from ..regime import Regime
 from ..result import Cost, Run, run_from
 from ..steady.curve.resonance import ENDED, STOPS, pushes
@@ -94,9 +94,9 @@ def _begin(force: np.ndarray, peak: int) -> int | None:
 
 def recorded(orbit: Orbit) -> Run:
     """The orbit as a run over its whole period."""
-    engine = Engine(orbit.scene, certified(_TOLERANCE), _SAMPLES)
+    engine = Engine(orbit.scene, adaptive_setting(_TOLERANCE), _SAMPLES)
     engine.start(orbit.state)
     samples = engine.record(orbit.period * _SAMPLES)
     leading = float(np.abs(orbit.multipliers).max())
     regime = Regime("periodic", orbit.period, None, None, orbit.period, multiplier=leading)
-    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, CERTIFIED))
+    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, ADAPTIVE))

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import State
-from ..lower import lower
+from ..scaling import scale_chain
 from ..scene import Scene
 from ..stop import Stop
 from .flow import StroboscopicMap, least_period
@@ -75,8 +75,8 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
 
 def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
     """The smallest number of drive periods after which an orbit is back."""
-    lowered = lower(orbit.scene)
-    x = lowered.beads_of(lowered.scaled(orbit.state))
+    scaled = scale_chain(orbit.scene)
+    x = scaled.beads_of(scaled.from_si(orbit.state))
 
     def after(periods: int) -> np.ndarray:
         return StroboscopicMap(orbit.scene, periods, stop)(x, directions=np.zeros((len(x), 0))).end

@@ -18,9 +18,9 @@ import numpy as np
 from numba.core import event
 
 from ..errors import OverBudget
-from ..integrate import METHODS, Setting, live, method_for
-from ..lower import Lowered, lower
+from ..integrate import METHODS, Setting, fixed_step_setting, method_for
 from ..quantities import QUANTITIES
+from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 
 #: The accuracy that is offered if the run would fit with it.
@@ -95,34 +95,34 @@ def machine_factor() -> float:
 
 def estimate(scene: Scene, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
     """The cost of a run whose first setting is `setting`, with the finer one that it is compared with."""
-    return _estimate(lower(scene), setting, periods, samples, record)
+    return _estimate(scale_chain(scene), setting, periods, samples, record)
 
 
-def _estimate(lowered: Lowered, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
-    beads, steps, seconds = lowered.beads, 0.0, 0.0
-    finer = setting.finer_than(lowered, samples)
+def _estimate(scaled: ScaledChain, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
+    beads, steps, seconds = scaled.beads, 0.0, 0.0
+    finer = setting.finer_than(scaled, samples)
     twice = _share(setting) + _share(finer)
     for one in (setting, finer):
         cost = METHODS[one.method].cost
         if METHODS[one.method].adaptive:
             # with contacts open most of the time, as at low frequency, steps are longer
             rate = cost.rate * (1e-8 / max(one.tolerance, 1e-16)) ** cost.power
-            count = periods * max(16.0, lowered.period * rate)
+            count = periods * max(16.0, scaled.period * rate)
         else:
-            count = float(periods * one.steps_per_period(lowered, samples))
+            count = float(periods * one.steps_per_period(scaled, samples))
         steps += count
         seconds += count * (cost.fixed + cost.each * (beads + 1))
-    often = np.sqrt(1.0 + _share(finer.finer_than(lowered, samples)) / twice)
+    often = np.sqrt(1.0 + _share(finer.finer_than(scaled, samples)) / twice)
     steps, seconds = steps * often, seconds * often
     seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
     return Estimate(seconds * machine_factor(), steps)
 
 
 def picture_seconds(scene: Scene, periods: int, samples: int) -> float:
-    """What `periods` of the live method take, with `samples` kept of each [s]."""
-    setting, lowered = live(), lower(scene)
+    """What `periods` of the fixed-step method take, with `samples` kept of each [s]."""
+    setting, scaled = fixed_step_setting(), scale_chain(scene)
     cost = METHODS[setting.method].cost
-    steps = float(periods * setting.steps_per_period(lowered, samples))
+    steps = float(periods * setting.steps_per_period(scaled, samples))
     return steps * (cost.fixed + cost.each * (scene.N + 1)) * machine_factor()
 
 
@@ -152,14 +152,14 @@ def _share(setting: Setting) -> float:
 
 def check_budget(scene: Scene, setting: Setting, periods: int, record: int, samples: int, budget: float) -> Estimate:
     """The estimate of a run of `periods` discarded and `record` recorded periods; `OverBudget` if it does not fit."""
-    total, lowered = periods + record, lower(scene)
-    found = _estimate(lowered, setting, total, samples, record)
+    total, scaled = periods + record, scale_chain(scene)
+    found = _estimate(scaled, setting, total, samples, record)
     if found.seconds <= budget:
         return found
     fit = _what_fits(scene, total, budget / found.seconds)
     if setting == method_for(scene.accuracy, scene.cuts_tension):  # the steps of a method asked for by name stay
         coarse = method_for(float(_COARSE_ACCURACY), scene.cuts_tension)
-        fits = _estimate(lowered, coarse, total, samples, record).seconds <= budget
+        fits = _estimate(scaled, coarse, total, samples, record).seconds <= budget
         fit += [f"an accuracy of {_COARSE_ACCURACY}"] if fits else []
     remedy = f"{', or '.join(fit)} would fit" if fit else "a higher frequency or fewer beads are needed"
     raise OverBudget(f"This run would take about {_in_words(found.seconds)} ({found.steps:.1e} steps of "

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, State, live
+from ..integrate import Engine, State, fixed_step_setting
 from ..kernels.forces.peaks import next_period
 from ..regime import Regime
 from ..result import Cost, Jumps, Run, run_from
@@ -15,13 +15,13 @@ from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 
-LIVE_SETTING = live(2)
+LIVE_SETTING = fixed_step_setting(2)
 """The steps of a live chain."""
 _NOT_ASKED = Regime.unsettled(0)
 
 
 class LiveChain:
-    """A chain that runs on while its knobs are moved, by the live method.
+    """A chain that runs on while its knobs are moved, by the fixed-step method.
 
     New values of D, k, the laws and the frequency act from the next sample on; the drive phase continues, so the
     driver never jumps. A new amplitude waits for the driver's next passage through its middle position, where u_0 is

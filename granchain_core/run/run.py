@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput, check_range
-from ..integrate import Counts, Engine, Setting, State, live, method_for
+from ..integrate import Counts, Engine, Setting, State, fixed_step_setting, method_for
 from ..integrate.methods import jump_errors, setting_of, typical_error
 from ..integrate.stated import Computations, force_differences
 from ..kernels.samples import Samples
@@ -26,7 +26,7 @@ from ..steady.regime import find_period
 from ..steady.settling.regime_decisions import REMEMBERED, regime_without_continuing
 from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
-from .kept_run import KeptRun, Reached
+from .run_checkpoints import Reached, RunCheckpoints
 
 #: Most drive periods of one run.
 MOST_PERIODS = 10_000_000
@@ -53,7 +53,8 @@ class _Attempt:
 
 def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, method: str | None = None,
         start: State | None = None, stop: Stop | None = None,
-        progress: Callable[[float], None] | None = None, budget: float = BUDGET, kept: KeptRun | None = None) -> Run:
+        progress: Callable[[float], None] | None = None, budget: float = BUDGET,
+        kept: RunCheckpoints | None = None) -> Run:
     """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
 
     The motion is computed twice, the second time finer; the stated error starts from their largest difference
@@ -80,8 +81,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         Called with the fraction of the present computation, 0 to 1.
     budget : float
         Seconds the run may take; compiling does not count.
-    kept : KeptRun, optional
-        Checkpoints of a run from phase 0 on disk, to go on from and to add to (run/kept_run.py).
+    kept : RunCheckpoints, optional
+        Checkpoints of a run from phase 0 on disk, to go on from and to add to (run/run_checkpoints.py).
 
     Returns
     -------
@@ -147,7 +148,7 @@ def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Sett
     errors.begin(setting)
     before = attempt(setting)
     while True:
-        setting, lap = setting.finer_than(before.engine.lowered, samples), Stopwatch()
+        setting, lap = setting.finer_than(before.engine.scaled, samples), Stopwatch()
         now = attempt(setting)
         errors.add(setting, now.engine.counts.steps, _differences(now, before), _least(now, setting))
         error = float(errors.stated[0])
@@ -179,7 +180,7 @@ def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
 
 
 def _attempt(reached: Reached, sizes: tuple[int, int], progress: Callable[[float], None] | None, total: Counts,
-             kept: KeptRun | None) -> _Attempt:
+             kept: RunCheckpoints | None) -> _Attempt:
     (periods, record), engine = sizes, reached.engine
     samples, from_phase_0 = engine.samples, engine.grid_index == 0
     strobes = [reached.strobes]
@@ -223,15 +224,15 @@ def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
 
     The differences of forces are taken with a factor for caution.
     """
-    jumps = now.engine.lowered.scene.forces_jump
+    jumps = now.engine.scaled.scene.forces_jump
     return np.array([_difference(now, before), *force_differences(now.engine.maxima, before.engine.maxima, jumps)])
 
 
 def _least(now: _Attempt, setting: Setting) -> np.ndarray:
     """Lower limits of the stated errors (4,): typical for this step, and for forces at jumps `jump_errors`."""
     engine = now.engine
-    step = setting.step(engine.lowered, engine.samples)
-    jumps = jump_errors(setting, engine.lowered, step, engine.jumps, engine.maxima)
+    step = setting.step(engine.scaled, engine.samples)
+    jumps = jump_errors(setting, engine.scaled, step, engine.jumps, engine.maxima)
     return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])
 
 
@@ -243,7 +244,7 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime
     regime = replace(find_period(attempt.strobes, rounding=noise), periods_run=periods)
     if periods < _FEWEST_PERIODS_CLASSIFIED or attempt.engine.grid_index != 0:
         return regime
-    engine = Engine(scene, live(), 1, stop=stop)
+    engine = Engine(scene, fixed_step_setting(), 1, stop=stop)
     engine.start(attempt.engine.state)
     return regime_without_continuing(engine, attempt.strobes, regime)
 

@@ -1,7 +1,8 @@
 """The effects of a scene, each once: its knobs, when it is present, its term in the equation, and its names.
 
-`Scene.effects`, the equation on screen, the slots that are filled (lower.py), the names of compiled kernels (warm.py),
-`--explain`, `granchain cite`, the page's switches and the kernels whose cost is measured are all read from this table.
+`Scene.effects`, the equation on screen, the slots that are filled (scaling.py), the names of compiled kernels
+(warm.py), `--explain`, `granchain cite`, the page's switches and the kernels whose cost is measured are all read from
+this table.
 """
 
 from __future__ import annotations

@@ -11,7 +11,7 @@ from ..kernels.forces.largest import new_log
 from ..kernels.rk4.lyapunov import run_two_trajectories
 from ..kernels.samples import Output
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
-from ..lower import Lowered
+from ..scaling import ScaledChain
 from ..stop import Stop
 
 #: Distance of the shadow in drive amplitudes: far above rounding, far below the kinks of the contacts.
@@ -21,7 +21,7 @@ _DISTANCE = 1e-8
 MOST_APART = 2.5
 
 
-def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, block: int,
+def exponents_in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], blocks: int, block: int,
                        stop: Stop) -> list[tuple[np.ndarray, ...]]:
     """`exponents` of scenes side by side in pairs of members, each from its scaled state (2(N+2),) at phase 0.
 
@@ -29,13 +29,13 @@ def exponents_in_pairs(scenes: list[tuple[Lowered, np.ndarray]], blocks: int, bl
     last periods (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. The
     result for one does not depend on the others; their steps a period may differ by a factor `MOST_APART`.
     """
-    steps = [lowered.steps_per_period() for lowered, _ in scenes]
+    steps = [scaled.steps_per_period() for scaled, _ in scenes]
     if max(steps) > MOST_APART * min(steps):
         raise ValueError(f"steps a period {steps} differ by more than a factor {MOST_APART:g}")
     pairs, periods = Batch(scenes[0][0].scene, stop), (blocks + 1) * block
-    for i, (lowered, y) in enumerate(scenes):
-        pairs.put(2 * i, lowered, y, 1, periods, NEVER)
-        pairs.put(2 * i + 1, lowered, y + _offset(lowered.bodies), 1, periods, NEVER)
+    for i, (scaled, y) in enumerate(scenes):
+        pairs.put(2 * i, scaled, y, 1, periods, NEVER)
+        pairs.put(2 * i + 1, scaled, y + _offset(scaled.bodies), 1, periods, NEVER)
     growth = pairs.run_pairs(_DISTANCE, periods)
     return [(growth[i, block:].reshape(blocks, block).mean(axis=1), *_record(pairs, 2 * i, periods))
             for i in range(len(scenes))]
@@ -60,9 +60,9 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
 
     `engine` is a fixed-step one at phase 0 and goes on; returns the exponents (blocks,) and its strobes (P, 2, N).
     """
-    shadow = Engine(engine.lowered.scene, engine.setting, engine.samples, stop=engine.stop)
+    shadow = Engine(engine.scaled.scene, engine.setting, engine.samples, stop=engine.stop)
     shadow.start(engine.state)
-    row = engine.lowered.bodies
+    row = engine.scaled.bodies
     shadow.y[: 2 * row] = engine.y[: 2 * row] + _offset(row)
     shadow.place()
     growth = np.zeros((blocks + 1) * block)

@@ -5,25 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from ..integrate import Engine
-from ..integrate.caution import ORBIT_FORCES
 from ..integrate.methods import jump_errors, typical_error
+from ..integrate.safety_factors import ORBIT_FORCES
 from ..integrate.stated import relative_changes
-from ..lower import Lowered
+from ..scaling import ScaledChain
 
 #: F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
 _FORCE_PER_OVERLAP = 1.5
 
 
-def force_distances(distance: float, lowered: Lowered, maxima: np.ndarray, y: np.ndarray) -> np.ndarray:
+def force_distances(distance: float, scaled: ScaledChain, maxima: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Relative changes (3,) of the largest forces over a relative `distance` of states.
 
     The distance is relative to the largest displacement of the scaled state y, but a force depends on its overlap.
     Where a contact of the first or last bead overlaps less than that, as in the stop band, the same distance changes
     its force by a larger part. `maxima` are the scaled forces.
     """
-    stiffness = lowered.slots.chain.stiffness[[0, -1, -1]]
+    stiffness = scaled.slots.chain.stiffness[[0, -1, -1]]
     overlaps = (maxima / stiffness) ** (1.0 / _FORCE_PER_OVERLAP)
-    largest = float(np.abs(lowered.rows(y)[0]).max())
+    largest = float(np.abs(scaled.rows(y)[0]).max())
     nearer = np.ones(3)
     np.divide(largest, overlaps, out=nearer, where=(overlaps > 0.0) & (overlaps < largest))
     return np.asarray(_FORCE_PER_OVERLAP * distance * nearer)
@@ -48,8 +48,8 @@ def errors_between(finer: Engine, before: np.ndarray, contraction: float, distan
 
     Both began at the relative `distance` from the orbit; `contraction` is the contraction factor per orbit.
     """
-    step = finer.setting.step(finer.lowered, finer.samples)
-    jumps = jump_errors(finer.setting, finer.lowered, step, finer.jumps, finer.maxima)
-    left = force_distances(distance, finer.lowered, finer.maxima, finer.y)
+    step = finer.setting.step(finer.scaled, finer.samples)
+    jumps = jump_errors(finer.setting, finer.scaled, step, finer.jumps, finer.maxima)
+    left = force_distances(distance, finer.scaled, finer.maxima, finer.y)
     return orbit_force_errors(relative_changes(finer.maxima, before), left, contraction, jumps,
                               typical_error(finer.setting))

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..integrate import Engine, State, live
+from ..integrate import Engine, State, fixed_step_setting
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
@@ -60,16 +60,16 @@ def most_periods(scene: Scene, samples: int, wanted: int) -> int:
 
 def iter_section(scene: Scene, start: State | None, periods: int, samples: int = 48, seconds: float = 0.15,
                  stop: Stop | None = None) -> Iterator[Section]:
-    """The section from `start` (None is the scene's own start), by the live method, ever longer: about every `seconds`.
+    """The section from `start` (None is the scene's own start) by fixed steps, ever longer: about every `seconds`.
 
     It ends after `most_periods` of `periods`. Raises `NumbersFailed`, `Cancelled`.
     """
-    engine = Engine(scene, live(), samples, stop=stop)
+    engine = Engine(scene, fixed_step_setting(), samples, stop=stop)
     engine.start(start if start is not None else rest(scene))
     most = most_periods(scene, samples, periods)
     displacement = np.zeros((most, samples, scene.N), dtype=np.float32)
     velocity = np.zeros_like(displacement)
-    scales = engine.lowered.scales
+    scales = engine.scaled.scales
     done, chunk = 0, 1
     while done < most:
         until = time.perf_counter() + seconds

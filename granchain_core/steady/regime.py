@@ -121,7 +121,7 @@ def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) 
         return Regime("chaotic", None, None, None, run, (mean, error))
     if not is_neutral(mean, error):
         return Regime.unsettled(run, (mean, error))
-    name = "quasi-periodic" if stays(strobes) and returns_near(strobes) else "unsettled"
+    name = "quasi-periodic" if neither_converges_nor_departs(strobes) and returns_near(strobes) else "unsettled"
     return Regime(name, None, None, None, run, (mean, error), return_distance=return_distance(strobes),
                   return_limit=return_limit(strobes), window_ratios=window_ratios(strobes))
 
@@ -152,15 +152,15 @@ def _windows(strobes: np.ndarray) -> np.ndarray:
     return seen
 
 
-def slowing(strobes: np.ndarray) -> bool:
+def converging(strobes: np.ndarray) -> bool:
     """Whether the motion is still on its way: changes over some period shrink through three windows and none grow.
 
     On a closed curve or a strange attractor their largest value does not change, or some grow while others shrink.
     """
-    return _slowing(_windows(strobes))
+    return _converging(_windows(strobes))
 
 
-def shrinking(strobes: np.ndarray) -> bool:
+def some_changes_shrink(strobes: np.ndarray) -> bool:
     """Whether changes over some period shrink through three windows: enough to give a motion more periods."""
     return any(_shrinks(a, b, c) for a, b, c in _windows(strobes))
 
@@ -170,7 +170,7 @@ def departing(strobes: np.ndarray) -> bool:
     return _departing(_windows(strobes))
 
 
-def _slowing(seen: np.ndarray) -> bool:
+def _converging(seen: np.ndarray) -> bool:
     some = False
     for a, b, c in seen:
         if b < _SHRINKS * c:
@@ -192,10 +192,10 @@ def _shrinks(first: float, second: float, third: float) -> bool:
     return second < _SHRINKS * first and third < _SHRINKS * second
 
 
-def stays(strobes: np.ndarray) -> bool:
+def neither_converges_nor_departs(strobes: np.ndarray) -> bool:
     """Whether a record that is long enough shows a motion that neither slows down nor leaves an orbit."""
     seen = _windows(strobes)
-    return len(seen) > 0 and not _slowing(seen) and not _departing(seen)
+    return len(seen) > 0 and not _converging(seen) and not _departing(seen)
 
 
 def window_ratios(strobes: np.ndarray) -> tuple[float, float] | None:

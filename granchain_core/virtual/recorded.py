@@ -15,7 +15,7 @@ import numpy as np
 from ..errors import BadInput, check_range
 from ..experiment.measured import VIRTUAL
 from ..fit.trains import Train
-from ..integrate import Engine, State, live
+from ..integrate import Engine, State, fixed_step_setting
 from ..integrate.methods import typical_error
 from ..result import Cost, Run, run_from
 from ..scene import Scene
@@ -195,7 +195,7 @@ def _motion(scene: Scene, length: float, samples: int, stop: Stop | None) -> Run
     if periods * samples * scene.N > MOST_VALUES:
         raise BadInput(f"{periods} drive periods of {samples} samples for {scene.N} beads are more than "
                        f"{MOST_VALUES:.0e} values; take fewer periods or a smaller rate.")
-    setting = live(_REFINE)
+    setting = fixed_step_setting(_REFINE)
     engine = Engine(scene, setting, samples, stop=stop)
     engine.start(State(found.run.displacement[-1], found.run.velocity[-1]))
     began, rows = time.perf_counter(), engine.record(periods * samples)

@@ -15,12 +15,12 @@ import scipy.integrate
 
 from app.cli import main
 from granchain_core import Cancelled, NumbersFailed, scene
-from granchain_core.accuracy import Row, WorkPrecision, cheapest, ways, work_precision
+from granchain_core.accuracy import Row, WorkPrecision, cheapest, compared_methods, work_precision
 from granchain_core.accuracy import work_precision as entry
+from granchain_core.accuracy.compared_methods import measured_settings
 from granchain_core.accuracy.limit import Limited
 from granchain_core.accuracy.naive import NATURAL_STEPS, lesson
 from granchain_core.accuracy.scipy_methods import solve
-from granchain_core.accuracy.ways import choices
 from granchain_core.integrate import METHODS
 from granchain_core.stop import Stop
 from granchain_core.warm import ACCURACY, compile_piece
@@ -43,8 +43,8 @@ def test_two_solvers_agree_on_the_reference(measured: WorkPrecision) -> None:
 
 
 def test_every_method_of_the_table_is_measured(measured: WorkPrecision) -> None:
-    assert {row.method for row in measured.rows} == set(ways()) >= set(METHODS)
-    assert len(measured.rows) == len(list(choices()))
+    assert {row.method for row in measured.rows} == set(compared_methods()) >= set(METHODS)
+    assert len(measured.rows) == len(list(measured_settings()))
     assert all(row.failure or (row.error > 0.0 and row.wall_s > 0.0 and row.rhs > 0) for row in measured.rows)
 
 
@@ -80,7 +80,7 @@ def test_progress_reaches_the_end_and_json_has_its_keys(capsys: pytest.CaptureFi
     grown: list[int] = []
     work_precision(SHORT, progress=told.append, report=lambda found: grown.append(len(found.rows)))
     assert told == sorted(told) and told[-1] == pytest.approx(1.0)
-    assert grown == sorted(grown) and grown[-1] == len(list(choices()))
+    assert grown == sorted(grown) and grown[-1] == len(list(measured_settings()))
     assert main(["accuracy", "sec2", "--set", "N=2", "--set", "f=2000", "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert set(data) >= {"reference", "rows"} and set(data["reference"]) >= {"method", "agreement"}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, LiveChain, bands, resonance_curve, scene, settle, spectrum
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 from granchain_core.steady.settling.finite_difference_map import FiniteDifferenceMap, fixed_point
 
 CHAIN = scene("precompressed")
@@ -74,12 +74,12 @@ def test_the_diode_is_reciprocal_while_it_is_linear() -> None:
 def test_the_diode_lets_the_drive_through_one_way_once_its_orbit_is_unstable() -> None:
     """Its orbit loses a pair of multipliers; the strongest line at the wall has the frequency of the pair's angle.
 
-    The multipliers are those of the live method's map, whose kernels are there; `granchain branch` has the point itself.
+    The multipliers are those of the fixed-step method's map, whose kernels are there; `granchain branch` has the point itself.
     """
     chain = scene("diode")
     below, above = (settle(chain.evolve(A0=amplitude)) for amplitude in (7.3e-7, 7.7e-7))
     assert below.regime.period == 1 and above.regime.name == "quasi-periodic"
-    x = lower(below.run.scene).beads_of(lower(below.run.scene).scaled(below.state))
+    x = scale_chain(below.run.scene).beads_of(scale_chain(below.run.scene).scaled(below.state))
     stable = fixed_point(FiniteDifferenceMap(below.run.scene, 1), x)
     unstable = fixed_point(FiniteDifferenceMap(above.run.scene, 1), x)
     assert stable is not None and unstable is not None and stable.modulus < 1.0 < unstable.modulus

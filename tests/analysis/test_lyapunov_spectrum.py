@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Cancelled, LyapunovSpectrum, lyapunov_spectrum, orbit, scene
-from granchain_core.integrate import Engine, live
+from granchain_core.integrate import Engine, fixed_step_setting
 from granchain_core.steady.lyapunov import exponents
 from granchain_core.steady.settling.settling import run_until_settled
 from granchain_core.stop import Stop
@@ -60,7 +60,7 @@ def test_a_hamiltonian_system_has_pairs(undamped: LyapunovSpectrum) -> None:
 
 def test_the_largest_is_that_of_two_trajectories(undamped: LyapunovSpectrum) -> None:
     """Two computations that share the equations and the start: without damping the energy grows, and with it the exponent."""
-    engine = Engine(UNDAMPED, live(), 1)
+    engine = Engine(UNDAMPED, fixed_step_setting(), 1)
     engine.start(run_until_settled(UNDAMPED, None, None).engine.state)
     engine.periods(50)
     blocks, _ = exponents(engine, 20, 10)

@@ -61,7 +61,7 @@ granchain.on("painted", (event) => {
 });
 """
 
-LIVE = """
+FIXED_STEP = """
 async (seconds) => {
   const frames = [];
   const start = performance.now();
@@ -125,7 +125,7 @@ def live_figures(page: Page, seconds: float) -> dict[str, Any]:
     """Frames a second and lag from computed on the server to painted, while nothing is touched."""
     page.get_by_role("button", name="The run goes on").click()
     page.wait_for_timeout(1500)
-    frames = page.evaluate(LIVE, seconds)
+    frames = page.evaluate(FIXED_STEP, seconds)
     lags = [frame["lag"] for frame in frames]
     gaps = [b["at"] - a["at"] for a, b in pairwise(frames)]
     return {"seconds": seconds, "frames_per_second": len(frames) / seconds, "lag_p50_ms": quantile(lags, 0.5),

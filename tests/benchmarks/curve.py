@@ -17,7 +17,7 @@ from .case import Case, Peaks
 from .peers import granchain
 from .tables import count, ratio, seconds, table
 
-#: Largest relative difference of a peak from the certified one at which answers count as equal.
+#: Largest relative difference of a peak from the accurate one at which answers count as equal.
 EQUAL = 1e-4
 #: A case is left when a setting takes longer than this on its points, seconds.
 PATIENCE = 12.0
@@ -50,15 +50,15 @@ def chosen(case: Case, points: int, quick: bool) -> np.ndarray:
     return np.arange(stride // 2, points, stride)
 
 
-def answer(case: Case, frequencies: np.ndarray, certified: np.ndarray, periodic: np.ndarray, quick: bool) -> Answer:
-    """Walk the ladder of settings until the peaks of the periodic points are equal to the certified ones."""
+def answer(case: Case, frequencies: np.ndarray, accurate: np.ndarray, periodic: np.ndarray, quick: bool) -> Answer:
+    """Walk the ladder of settings until the peaks of the periodic points are equal to the accurate ones."""
     picked = chosen(case, frequencies.size, quick)
     mine, compare = frequencies[picked], periodic[picked]
     assert case.peaks is not None
     case.peaks(frequencies[-2:], case.curve_ladder[0])  # a compiler may be in the first run
     for setting in case.curve_ladder:
         peaks = case.peaks(mine, setting)
-        off = np.abs(peaks.values / certified[picked] - 1.0)[compare]
+        off = np.abs(peaks.values / accurate[picked] - 1.0)[compare]
         worst = float(np.nan_to_num(off, nan=np.inf).max()) if off.size else float("nan")
         if worst <= EQUAL or peaks.seconds > PATIENCE:
             break
@@ -73,15 +73,15 @@ def answer(case: Case, frequencies: np.ndarray, certified: np.ndarray, periodic:
 def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
     """The table of the curve and the row of the product itself."""
     frequencies = problem.curve_frequencies(60 if quick else 300)
-    tell("certified peaks, all cores")
+    tell("accurate peaks, all cores")
     machine.unpin()
-    certified, periodic = granchain.certified_peaks(frequencies)
+    accurate, periodic = granchain.reference_peaks(frequencies)
     machine.pin()
     found = []
     for case in cases:
         if case.peaks is not None and not (quick and case.stride >= 60):
             tell(f"{case.label} ({case.form})")
-            found.append(answer(case, frequencies, certified, periodic, quick))
+            found.append(answer(case, frequencies, accurate, periodic, quick))
     found.sort(key=lambda one: one.whole)
     notes = [
         f"{periodic.sum()} of {periodic.size} points are periodic after {problem.PASSED + problem.WATCHED} periods; only "
@@ -89,7 +89,7 @@ def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
         "Rows with fewer points are scaled to the whole curve by the time integrated; a '!' marks a row whose answers "
         f"are not equal to {EQUAL:g} at the tightest setting tried.",
     ]
-    return "\n".join([_table(found, frequencies.size, notes), product(frequencies, certified, periodic, tell)])
+    return "\n".join([_table(found, frequencies.size, notes), product(frequencies, accurate, periodic, tell)])
 
 
 def _table(found: list[Answer], points: int, notes: list[str]) -> str:
@@ -107,7 +107,7 @@ def _table(found: list[Answer], points: int, notes: list[str]) -> str:
                   "ns/contact", "× granchain"], rows, notes)
 
 
-def product(frequencies: np.ndarray, certified: np.ndarray, periodic: np.ndarray, tell: Callable[[str], None]) -> str:
+def product(frequencies: np.ndarray, accurate: np.ndarray, periodic: np.ndarray, tell: Callable[[str], None]) -> str:
     """`resonance_curve` as a user calls it: settled states with proof, on all cores and on one."""
     threads = (machine.unpin(), 1)
     curves: dict[int, Any] = {}
@@ -128,7 +128,7 @@ def product(frequencies: np.ndarray, certified: np.ndarray, periodic: np.ndarray
         settled = np.array([p.regime.name == "periodic" for p in curve.points])
         both = settled & periodic
         forces = curve.column("max_output_force_elastic") / _force_unit()
-        off = np.abs(forces / certified - 1.0)[both]
+        off = np.abs(forces / accurate - 1.0)[both]
         rows.append(["resonance_curve", f"{workers} threads", seconds(statistics.median(times[workers])),
                      seconds(min(times[workers])), f"{settled.sum()}", f"{both.sum()}", f"{off.max():.0e}",
                      f"{np.median(off):.0e}"])

@@ -42,7 +42,7 @@ def stirred(y: np.ndarray, beads: int) -> None:
 
 
 def along(beads: int, evaluations: float) -> float:
-    """Contact evaluations a second of one chain by the live method."""
+    """Contact evaluations a second of one chain by the fixed-step method."""
     engine = Engine(scene("sec2").evolve(N=beads, f=problem.FREQUENCY), Setting("rk4-split"), 16)
     engine.record(1)
     rows = max(1, round(evaluations / (4 * (beads + 1) * engine.grid / 16)))

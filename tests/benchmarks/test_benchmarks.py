@@ -15,7 +15,7 @@ PERIODIC = np.array([340.0, 470.0, 1130.0, 1600.0])
 
 @pytest.fixture(scope="module")
 def reference() -> np.ndarray:
-    """The trajectory by granchain's certified method."""
+    """The trajectory by granchain's adaptive method."""
     return granchain.reference().states
 
 
@@ -74,11 +74,11 @@ class TestC:
         assert np.allclose(ours, lanes, rtol=1e-5, atol=0.0)
 
 
-def test_peaks_are_equal_to_the_certified_ones() -> None:
-    certified, periodic = granchain.certified_peaks(PERIODIC)
+def test_peaks_are_equal_to_the_accurate_ones() -> None:
+    accurate, periodic = granchain.reference_peaks(PERIODIC)
     assert periodic.all()
     # order 2 at contact changes; the curve calls answers equal at 1e-4
-    assert np.allclose(granchain.batch_peaks(PERIODIC, 3).values, certified, rtol=1e-4, atol=0.0)
+    assert np.allclose(granchain.batch_peaks(PERIODIC, 3).values, accurate, rtol=1e-4, atol=0.0)
 
 
 def test_the_page_has_one_section_for_each_machine() -> None:

@@ -1,4 +1,4 @@
-"""What tests do with the page: read a knob, type into it, wait for the certified picture."""
+"""What tests do with the page: read a knob, type into it, wait for the final picture."""
 
 from __future__ import annotations
 
@@ -29,6 +29,6 @@ def type_into(page: Page, name: str, text: str) -> None:
 
 
 def settled(page: Page) -> None:
-    """Wait until the certified picture of the knobs as they are is painted, and the status line has it."""
+    """Wait until the final picture of the knobs as they are is painted, and the status line has it."""
     page.wait_for_function("granchain.isSettled() && painted.at(-1)?.number === granchain.shown.number", timeout=COMPILED)
     expect(page.locator("#foot b")).not_to_contain_text("preview")

@@ -25,8 +25,8 @@ def naive_line(page: Page) -> dict[str, Any]:
     """Length and dash of the naive force that is drawn."""
     return dict(page.evaluate("""() => {
       const forces = Bokeh.documents.find((one) => one.get_model_by_name("naive forces"));
-      const [certified, naive] = forces.get_model_by_name("naive forces").renderers;
-      return { certified: certified.data_source.data.force.length, naive: naive.data_source.data.force.length,
+      const [accurate, naive] = forces.get_model_by_name("naive forces").renderers;
+      return { accurate: accurate.data_source.data.force.length, naive: naive.data_source.data.force.length,
                dash: String(naive.glyph.line_dash.value ?? naive.glyph.line_dash) };
     }"""))
 
@@ -88,18 +88,18 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
         return tip.count() > 0
 
     until(page, told)
-    for words in ("live steps", "error", "s, ", "evaluations", "order 3.9"):
+    for words in ("default steps", "error", "s, ", "evaluations", "order 3.9"):
         expect(tip).to_contain_text(words)
     page.mouse.move(0, 0)
-    naive_force_lies_over_the_certified_one(page, sheet)
+    naive_force_lies_over_the_accurate_one(page, sheet)
     fits(page, sheet)
 
 
-def naive_force_lies_over_the_certified_one(page: Page, sheet: Locator) -> None:
+def naive_force_lies_over_the_accurate_one(page: Page, sheet: Locator) -> None:
     """It is dashed, has as many points, and its error is said for the chosen steps."""
     expect(sheet.locator(".naive canvas").first).to_be_visible()
     drawn = naive_line(page)
-    assert drawn["certified"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
+    assert drawn["accurate"] == drawn["naive"] > 50 and drawn["dash"] not in ("", "solid")
     said = sheet.locator(".naive p")
     expect(said).to_contain_text("With 200 steps a period the force is off by")
     first = said.inner_text()

@@ -73,7 +73,7 @@ def test_an_observers_forces_are_drawn(tmp_path: Path, capsys: pytest.CaptureFix
 
 def test_accuracy_is_drawn_for_the_accuracy_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def measured(chosen: Scene, *_: object) -> WorkPrecision:
-        return WorkPrecision(chosen, "dop853", "SciPy's DOP853", 1e-11, [Row("rk4", "2 × the live steps", 1e-5, 0.001, 7, 2.0)])
+        return WorkPrecision(chosen, "dop853", "SciPy's DOP853", 1e-11, [Row("rk4", "2 × the default steps", 1e-5, 0.001, 7, 2.0)])
 
     monkeypatch.setattr(granchain_core.accuracy, "work_precision", measured)
     assert main(["accuracy", *SHORT, "--set", "accuracy=1e-4", "--picture", str(tmp_path / "a.html")]) == 0

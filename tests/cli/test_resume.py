@@ -15,9 +15,9 @@ import pytest
 
 from app.cli import main
 from granchain_core import BadInput, resonance_curve, scene
-from granchain_core.kept import Kept, folder_of
+from granchain_core.checkpoints import Kept, folder_of
 from granchain_core.steady.curve import resonance_curve as curves
-from granchain_core.steady.curve.kept_points import kept_points, points_in
+from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
 from tools.kills.finished import differing, finished_in
 from tools.kills.processes import Command
 from tools.kills.trial import COMMANDS
@@ -140,12 +140,12 @@ def test_known_points_are_not_computed_again_and_the_others_are_the_same(start: 
     """Where the state is carried along they go on from the last known point; a gap ends what is known."""
     chosen, frequencies = scene("sec2").evolve(N=3), np.linspace(900.0, 1100.0, 7)
     whole = resonance_curve(chosen, frequencies, start, workers=1)
-    kept = kept_points(chosen, frequencies, start, tmp_path / "c.h5")
+    kept = point_checkpoints(chosen, frequencies, start, tmp_path / "c.h5")
     order = sorted(whole.points, key=lambda p: p.frequency, reverse=start == "down")
     for point in (*order[:3], order[4]):
         kept.add(point)
     kept.write()
-    again = kept_points(chosen, frequencies, start, tmp_path / "c.h5")
+    again = point_checkpoints(chosen, frequencies, start, tmp_path / "c.h5")
     again.open(resume=True)
     known, new = points_in(again), []
     assert [p.frequency for p in known] == [p.frequency for p in (*order[:3], order[4])]

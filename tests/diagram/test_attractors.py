@@ -49,7 +49,7 @@ def test_every_start_leads_to_one_attractor_and_shares_add_up(many: list[Attract
 
 
 def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
-    # the live and the certified method know nothing of batches: they start from the state that is listed
+    # the fixed-step and the adaptive method know nothing of batches: they start from the state that is listed
     for one in (named(many, "rest"), named(many, "down")):
         origin = next(o for o in one.origins if o.name.startswith("random"))
         alone = settled(one.scene, origin.state)
@@ -57,7 +57,7 @@ def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
         assert alone.run.max_output_force == pytest.approx(one.max_output_force, rel=2e-4)  # its error_estimate
 
 
-def test_periodic_ones_are_certified_orbits_and_stable(many: list[Attractor]) -> None:
+def test_periodic_ones_are_accurate_orbits_and_stable(many: list[Attractor]) -> None:
     periodic = [one for one in many if one.regime.period]
     for one in periodic:
         assert one.orbit is not None and one.orbit.residual <= 1e-11 and one.stable

@@ -56,11 +56,11 @@ def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
     told = follow(tree, "-c", """
 import numpy as np
 from granchain_core import scene
-from granchain_core.integrate import Engine, State, live
+from granchain_core.integrate import Engine, State, fixed_step_setting
 from granchain_core.kernels.forces.largest import acceleration
 one = scene("drag").evolve(N=3, c=100.0)
-engine = Engine(one, live(), 1)
-lo, work = engine.lowered, engine.stepper.work
+engine = Engine(one, fixed_step_setting(), 1)
+lo, work = engine.scaled, engine.stepper.work
 engine.start(State(np.array([3.0, 2.0, 1.0]) * lo.scales.length, np.array([1.0, -0.5, 2.0]) * lo.scales.velocity))
 y, dy, h = engine.y.copy(), work.k[0].copy(), 1e-5
 engine.place()
@@ -81,10 +81,10 @@ def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> No
     told = follow(tree, "-c", """
 from app.cli.explain import explanation
 from granchain_core import scene
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 one = scene("drag")
 print(one.effects, one.equation_latex(), one.evolve(c=0.0).effects)
-print(lower(one.evolve(c=0.0)).slots.drag)
+print(scale_chain(one.evolve(c=0.0)).slots.drag)
 from granchain_core.scene.cite import citations
 print(dict(citations(one))["ground drag"])
 print(explanation(one, None, 96))
@@ -119,8 +119,8 @@ print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name
 
 @pytest.mark.parametrize(("path", "right", "wrong", "sentence"), [
     ("kernels/effects/drag.py", "@drag_loss.of(Drag)\n", "", "Drag (granchain_core.kernels.effects.drag) has no `drag_loss`"),
-    ("lower.py", '    "drag": lambda', '    "dragged": lambda',
-     "effect 'drag': lower.py does not say how its slot 'drag' is filled"),
+    ("scaling.py", '    "drag": lambda', '    "dragged": lambda',
+     "effect 'drag': scaling.py does not say how its slot 'drag' is filled"),
     ("kernels/equations/motion.py", "    drag: Any = None\n", "",
      "effect 'drag': Slots (kernels/equations/motion.py) has no field 'drag'"),
     ("quantities.py", 'Quantity("c", "c"', 'Quantity("C", "c"', "effect 'drag': its knob 'c' is not among QUANTITIES"),

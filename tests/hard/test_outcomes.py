@@ -123,7 +123,7 @@ def test_step_too_small() -> None:
     """A contact so stiff that no step is small enough, met on the way."""
     engine = Engine(scene("sec2"), Setting("dop853", 1.0, 1e-6), 8)
     engine.record(1)
-    engine.lowered.slots.chain.stiffness[:] = 1e30
+    engine.scaled.slots.chain.stiffness[:] = 1e30
     engine.stepper.work.next_step[0] = 1e-14
     with pytest.raises(NumbersFailed, match="shrank to nothing") as caught:
         engine.record(8)
@@ -204,7 +204,7 @@ def test_the_command_line_says_what_failed_where_and_what_it_had_cost(capsys: py
 
     def spoiled(engine: Engine, state: State) -> None:
         begin(engine, state)
-        engine.lowered.slots.chain.stiffness[3] = np.inf
+        engine.scaled.slots.chain.stiffness[3] = np.inf
 
     monkeypatch.setattr(Engine, "start", spoiled)
     assert main(["run", "sec2", "--json"]) == 3

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from granchain_core import Cancelled, State, run, scene
-from granchain_core.integrate import Engine, Setting, live
+from granchain_core.integrate import Engine, Setting, fixed_step_setting
 from granchain_core.kernels.status import STEPS_BETWEEN_STOP_CHECKS
 from granchain_core.steady.lyapunov import exponents
 from granchain_core.stop import Stop
@@ -30,7 +30,7 @@ def test_two_halves_are_the_whole_bit_by_bit(method, _):
     together = whole.record(32)
     first, second = halves.record(16), halves.record(16)
     if method == "dop853":
-        # a certified step ends at the record's end, so its steps differ; a hundred tolerances of 1e-11 between them
+        # a accurate step ends at the record's end, so its steps differ; a hundred tolerances of 1e-11 between them
         near = {"rtol": 0.0, "atol": 1e-9}
         np.testing.assert_allclose(np.vstack([first.displacement, second.displacement[1:]]), together.displacement, **near)
     else:
@@ -133,8 +133,8 @@ def test_stop_flag_ends_a_long_run_soon(method, recording):
 def test_stop_flag_ends_a_lyapunov_exponent_soon():
     """Two chains side by side for a period of a hundred thousand steps: the flag is asked every 4096 steps of both."""
     stop = Stop()
-    exponents(Engine(scene("sec2").evolve(f=1e5, N=300), live(), 1), 1, 1)  # compiling asks no flag
-    slow = Engine(scene("sec2").evolve(f=0.5, N=300), live(16), 1, stop=stop)
+    exponents(Engine(scene("sec2").evolve(f=1e5, N=300), fixed_step_setting(), 1), 1, 1)  # compiling asks no flag
+    slow = Engine(scene("sec2").evolve(f=0.5, N=300), fixed_step_setting(16), 1, stop=stop)
     assert steps_after_the_flag(slow, stop, lambda: exponents(slow, 1, 1)) <= 2 * 2 * STEPS_BETWEEN_STOP_CHECKS
 
 
@@ -143,7 +143,7 @@ def test_a_stopped_period_counts_the_steps_that_were_taken(beads):
     """A flag that is up from the start is seen after 4096 steps at most, of a period of some ten thousand."""
     stop = Stop()
     stop.set()
-    engine = Engine(scene("sec2").evolve(f=1.0, N=beads), live(), 1, stop=stop)
+    engine = Engine(scene("sec2").evolve(f=1.0, N=beads), fixed_step_setting(), 1, stop=stop)
     assert engine.grid > 3 * 4096
     with pytest.raises(Cancelled):
         engine.periods(1)

@@ -26,7 +26,7 @@ def test_a_contact_that_is_not_a_number_is_said_by_the_kernel(method: str) -> No
     """The state is finite when the call begins; what begins in a step ends the run with its sentence."""
     engine = Engine(scene("sec2").evolve(N=3), Setting(method, tolerance=1e-6), 4)
     engine.record(8)
-    engine.lowered.slots.chain.stiffness[1] = np.nan
+    engine.scaled.slots.chain.stiffness[1] = np.nan
     with pytest.raises(NumbersFailed, match=r"bead [12] ") as caught:
         engine.record(4)
     assert caught.value.status == "not-finite"
@@ -39,4 +39,4 @@ def test_the_time_of_a_failure_inside_a_call_counts_from_the_start() -> None:
     engine.stepper.drive[40] = np.nan
     with pytest.raises(NumbersFailed, match=r"\(20 drive periods\)") as caught:
         engine.periods(2)
-    assert caught.value.time == pytest.approx(20.0 * engine.lowered.scene.period, rel=1e-12)
+    assert caught.value.time == pytest.approx(20.0 * engine.scaled.scene.period, rel=1e-12)

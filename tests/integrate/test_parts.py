@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from granchain_core import Cancelled, Scene, Stop, scene
-from granchain_core.integrate import Engine, fixed, live
+from granchain_core.integrate import Engine, fixed, fixed_step_setting
 
 SHORT = scene("sec2")
 LONG = scene("sec2").evolve(N=200)
@@ -17,7 +17,7 @@ LONG = scene("sec2").evolve(N=200)
 
 def motion(chain: Scene, samples: int) -> dict[str, np.ndarray]:
     """Three periods and four samples of one chain."""
-    engine = Engine(chain, live(), samples, balance=True)
+    engine = Engine(chain, fixed_step_setting(), samples, balance=True)
     strobes, maxima = engine.periods(3)
     recorded = engine.record(2 * samples + 1)
     return {"strobes": strobes, "maxima": maxima, "displacement": recorded.displacement, "force": recorded.force,
@@ -53,9 +53,9 @@ class Counting(Stop):
 @pytest.mark.parametrize("chain", [scene("sec2").evolve(N=2000, A0=1e-5), scene("sec2").evolve(f=0.5)], ids=["long", "slow"])
 def test_there_is_a_pause_within_a_period(chain: Scene) -> None:
     stop = Counting()
-    Engine(chain, live(), 1, stop=stop).periods(2)
+    Engine(chain, fixed_step_setting(), 1, stop=stop).periods(2)
     assert stop.pauses > 4
-    engine = Engine(chain, live(), 2, stop=stop)
+    engine = Engine(chain, fixed_step_setting(), 2, stop=stop)
     before = stop.pauses
     engine.record(2)
     assert stop.pauses > before + 2
@@ -64,7 +64,7 @@ def test_there_is_a_pause_within_a_period(chain: Scene) -> None:
 def test_a_long_chain_ends_soon_after_the_flag_is_set() -> None:
     """4096 steps of 10,000 beads take seconds; no bound on the clock is tested, but on the number of parts that follow."""
     stop = Counting()
-    engine = Engine(scene("sec2").evolve(N=10_000, A0=1e-4), live(), 1, stop=stop)
+    engine = Engine(scene("sec2").evolve(N=10_000, A0=1e-4), fixed_step_setting(), 1, stop=stop)
 
     def end() -> None:
         while stop.pauses < 4:

@@ -101,7 +101,7 @@ def flow_types(knobs: dict) -> tuple:
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=3, **knobs), 1)
     e = stroboscopic_map.engine
     course = Course(e.stepper.trajectory(e.y)._replace(work=stroboscopic_map._work), stroboscopic_map._contacts,
-                    new_tangent(np.eye(6), e.lowered.bodies, 0))
+                    new_tangent(np.eye(6), e.scaled.bodies, 0))
     return tuple(map(numba.typeof, (e.stepper.method, course, 1, e.counts.array, e.stop.flag)))
 
 

@@ -8,28 +8,28 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 
 
 @pytest.mark.parametrize("absent", ["dissipation", "tension", "foundation", "preload", "balance"])
 def test_absent_effect_has_an_empty_slot(absent):
     """What a scene does not call for is None, not zero."""
     bare = scene("sec2").evolve(dissipation="none", k=0.0, F0=0.0)
-    assert getattr(lower(bare).slots, absent) is None
+    assert getattr(scale_chain(bare).slots, absent) is None
 
 
 @pytest.mark.parametrize("knobs", [{"D": 0.0}, {"dissipation": "none"}, {"D": 0.0, "tension": "cut"}])
 def test_no_damping_means_no_dissipation_slot_no_cut_and_no_array(knobs):
     """D = 0 is as absent as the law `none`, and without damping there is nothing to cut."""
-    lowered = lower(scene("sec2").evolve(**knobs))
-    assert lowered.slots.dissipation is None
-    assert lowered.slots.tension is None
-    assert lowered.forces().G is None
+    scaled = scale_chain(scene("sec2").evolve(**knobs))
+    assert scaled.slots.dissipation is None
+    assert scaled.slots.tension is None
+    assert scaled.forces().G is None
 
 
 def test_an_effect_switched_on_has_its_slot_and_its_array():
     """The opposite of the above, so that it is no accident."""
-    full = lower(scene("sec2").evolve(k=1e4, F0=1.0, tension="cut"), balance=True)
+    full = scale_chain(scene("sec2").evolve(k=1e4, F0=1.0, tension="cut"), balance=True)
     assert None not in full.slots
     assert full.forces().G is not None
 

@@ -28,7 +28,7 @@ print(json.dumps([sum(sum(getattr(k.stats, name).values()) for k in kernels) for
 
 
 def hits_and_misses(cache: Path, tree: Path) -> tuple[int, int]:
-    """Numba's own count in a new process that runs one fixed-step and one certified computation with the core in `tree`."""
+    """Numba's own count in a new process that runs one fixed-step and one adaptive computation with the core in `tree`."""
     environment = {**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(cache)}
     done = subprocess.run([sys.executable, "-c", PROGRAM], env=environment, cwd=tree, text=True, capture_output=True,
                           timeout=300, check=False)
@@ -89,5 +89,5 @@ def test_second_process_compiles_nothing_nor_does_another_copy_of_the_sources(tm
         os.utime(path, ns=(0, 0))
     for there in (tree, copy):
         hits, misses = hits_and_misses(cache, there)
-        assert hits >= 3  # run_steps, run_certified, place
+        assert hits >= 3  # run_steps, run_dop853, place
         assert misses == 0

@@ -9,19 +9,19 @@ import pytest
 
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels.dop853 import run as certified
+from granchain_core.kernels.dop853 import run as accurate
 
 
 def grazing(depth: float, method: str, tolerance: float = 1e-9):
     """One bead at rest `depth` (scaled) below the top of a slow driver's stroke, held apart from both sides.
 
-    The bead is thrown by a touch that lasts only while the driver is above 1 − depth.
+    The bead is random_count by a touch that lasts only while the driver is above 1 − depth.
     """
     chain = scene("sec2").evolve(N=1, f=500.0, D=100.0)
     engine = Engine(chain, Setting(method, refine=1, tolerance=tolerance), 64)
-    slots = engine.lowered.slots
+    slots = engine.scaled.slots
     far = slots.chain._replace(stiffness=np.array([1.0, 0.0]))  # the wall pushes with no force
-    engine.use(replace(engine.lowered, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0))))
+    engine.use(replace(engine.scaled, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0))))
     engine.start(State(np.array([(1.0 - depth) * chain.A0]), np.zeros(1), phase=0.125))
     return engine, engine.record(16)
 
@@ -35,14 +35,14 @@ def test_a_brief_touch_is_not_stepped_over(depth, tolerance):
     """
     engine, kept = grazing(depth, "dop853", tolerance)
     assert engine.counts.events == 2
-    expected = 3 * np.pi * np.sqrt(2) / 8 * depth**2 / engine.lowered.beta
+    expected = 3 * np.pi * np.sqrt(2) / 8 * depth**2 / engine.scaled.beta
     # the motion is measured against a displacement of 1, 1/depth of the touch; the bead's own motion and cos θ are
     # corrections of order depth
     assert kept.velocity[-1, 0] == pytest.approx(expected, rel=max(4e-3, 4 * depth))
 
 
 def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows():
-    """Sign changes of all overlaps in 4096 samples a period, against the events counted by the certified method."""
+    """Sign changes of all overlaps in 4096 samples a period, against the events counted by the adaptive method."""
     chain = scene("sec2").evolve(accuracy=1e-8)
     engine = Engine(chain, Setting("dop853", tolerance=1e-10), 4096)
     engine.record(4096 * 2)
@@ -53,7 +53,7 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
     assert seen <= engine.counts.events <= 1.1 * seen + 3
 
 
-def test_across_events_the_certified_method_keeps_to_a_hundred_tolerances():
+def test_across_events_the_accurate_method_keeps_to_a_hundred_tolerances():
     """What event location is for: without it a method of order 8 has the order of the kink that it steps over."""
     chain = scene("sec2").evolve(F0=0.0)
     true = Engine(chain, Setting("dop853", tolerance=1e-14), 8).record(16).displacement
@@ -68,15 +68,15 @@ def test_a_chain_that_never_opens_has_no_events():
     assert result.cost.events == 0
 
 
-def test_certified_steps_end_on_the_events():
+def test_accurate_steps_end_on_the_events():
     """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
     engine = Engine(chain, Setting("dop853", tolerance=1e-9), 1)
     engine.periods(2)
     t, landed = 0.0, []
     for _ in range(400):
-        status, h, contact = certified.certified_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
-                                                      engine.lowered.period, engine.counts.array)
+        status, h, contact = accurate.located_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
+                                                      engine.scaled.period, engine.counts.array)
         assert status == 0
         if contact >= 0:
             end = engine.stepper.work.end
@@ -84,7 +84,7 @@ def test_certified_steps_end_on_the_events():
         engine.y[:] = engine.stepper.work.end
         engine.stepper.work.k[0] = engine.stepper.work.k[12]
         t += h
-        if t >= engine.lowered.period * (1 - 1e-12):
+        if t >= engine.scaled.period * (1 - 1e-12):
             break
     assert len(landed) > 5
     # the search for the end just past an event aims at 1e-15 and stops at four times that (dop853/run.py); some events are too slow for Newton

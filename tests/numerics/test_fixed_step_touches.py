@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import State, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 
 
 @pytest.mark.parametrize("vectors", [True, False])
@@ -22,12 +22,12 @@ def test_a_touch_inside_a_step_throws_the_bead(depth: float, vectors: bool) -> N
     """
     chain = scene("sec2").evolve(N=1, f=500.0, D=100.0)
     finer = (Setting("rk4-split", refine=1.0 + 0.01 * i) for i in range(100))
-    engine = Engine(chain, next(s for s in finer if s.steps_per_period(lower(chain), 1) % 4 == 2), 1)
-    slots = engine.lowered.slots
+    engine = Engine(chain, next(s for s in finer if s.steps_per_period(scale_chain(chain), 1) % 4 == 2), 1)
+    slots = engine.scaled.slots
     far = slots.chain._replace(stiffness=np.array([1.0, 0.0]))  # the wall pushes with no force
-    engine.use(replace(engine.lowered, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0))))
+    engine.use(replace(engine.scaled, slots=slots._replace(chain=far, dissipation=type(slots.dissipation)(0.0))))
     engine.stepper.work = engine.stepper.work._replace(simd=engine.stepper.new_simd_workspace() if vectors else None)
-    beta = engine.lowered.beta
+    beta = engine.scaled.beta
     assert 2.0 * np.sqrt(2.0 * depth) / beta < 0.9 * engine.stepper.h  # shorter than the step in whose middle the top is
     engine.start(State(np.array([(1.0 - depth) * chain.A0]), np.zeros(1)))
     kept = engine.record(1)

@@ -15,8 +15,8 @@ LAW = "tsuji"
 SAMPLES = 4096
 
 
-def thrown() -> Scene:
-    """Beads pressed together, the last one thrown at the wall: the contact behind it stops pushing at once, and pushes
+def random_count() -> Scene:
+    """Beads pressed together, the last one random_count at the wall: the contact behind it stops pushing at once, and pushes
     again before it opens."""
     pressed = scene("sec2").evolve(N=3, f=300.0, A0=1.2e-8, F0=0.18, D=850.0, dissipation=LAW, tension="cut")
     return replace(pressed, start_velocity=((3, 1e-3),))
@@ -25,7 +25,7 @@ def thrown() -> Scene:
 def test_a_force_free_contact_pushes_again() -> None:
     """Against RK4 with steps so short that the one kink, which it does not see, costs it less than 1e-8: its own change
     from half as many steps."""
-    chain = thrown()
+    chain = random_count()
     found, fine, finer = (Engine(chain, setting, SAMPLES).record(SAMPLES // 8) for setting in (
         Setting("dop853", 1.0, 1e-12), Setting("rk4", 32.0), Setting("rk4", 64.0)))
     largest = np.abs(finer.displacement).max()
@@ -46,7 +46,7 @@ def test_a_force_free_contact_moves_as_if_it_were_open() -> None:
     engine = Engine(apart, Setting("dop853", 1.0, 1e-10), SAMPLES)
     kept = engine.record(SAMPLES // 64)
     assert (kept.force[1:, 1] == 0.0).all()
-    static = apart.static_overlap()[1] / engine.lowered.scales.length
+    static = apart.static_overlap()[1] / engine.scaled.scales.length
     overlap = kept.displacement[:, 0] - kept.displacement[:, 1] + static
     assert overlap[0] > 0.0 > overlap[-1]
     fine = Engine(apart, Setting("rk4", 64.0), SAMPLES).record(SAMPLES // 64)
@@ -59,7 +59,7 @@ def test_a_start_on_the_kink_may_be_taken_for_either_side() -> None:
     for preload in 10.0 ** rng.uniform(-3.0, 0.0, 30):
         chain = scene("sec2").evolve(N=2, f=300.0, A0=1e-9, F0=preload, D=800.0, dissipation=LAW, tension="cut")
         engine = Engine(chain, Setting("dop853", 1.0, 1e-12), SAMPLES)
-        scales, slots = engine.lowered.scales, engine.lowered.slots
+        scales, slots = engine.scaled.scales, engine.scaled.slots
         overlap = slots.preload.static[1]
         kink = slots.chain.stiffness[1] * overlap**1.5 / damping(slots.dissipation, overlap)
         ends = []

@@ -51,7 +51,7 @@ LOST = {"rk4": 3.0, "rk4-naive": 2.0}
 def motion(regime: str, f: float, setting: Setting) -> tuple[np.ndarray, int]:
     """Eight samples a period in scaled units, and the steps they took.
 
-    The certified method carries the energy account along, as in a run: these kernels are compiled for other tests too.
+    The adaptive method carries the energy account along, as in a run: these kernels are compiled for other tests too.
     """
     engine = Engine(scene("sec2").evolve(f=f, **REGIMES[regime]), setting, 8, balance=METHODS[setting.method].adaptive)
     return engine.record(8 * PERIODS).displacement, engine.counts.steps
@@ -63,7 +63,7 @@ def frequencies(regime: str) -> tuple[float, ...]:
 
 
 def errors(regime: str, settings) -> np.ndarray:
-    """(settings, scenes): largest relative displacement error, against the certified method at 1e-14 per step."""
+    """(settings, scenes): largest relative displacement error, against the adaptive method at 1e-14 per step."""
     found = np.empty((len(settings), len(frequencies(regime))))
     for j, f in enumerate(frequencies(regime)):
         true = motion(regime, f, Setting("dop853", tolerance=1e-14))[0]
@@ -74,7 +74,7 @@ def errors(regime: str, settings) -> np.ndarray:
 
 @functools.cache
 def order(method: str, regime: str) -> float:
-    """Slope of log error over log step: 1.5 decades of steps, or eight of the certified method's tolerance."""
+    """Slope of log error over log step: 1.5 decades of steps, or eight of the adaptive method's tolerance."""
     if METHODS[method].adaptive:
         return adaptive_order(method, regime)
     found = errors(regime, [Setting(method, refine=r) for r in REFINED])
@@ -115,7 +115,7 @@ def test_the_table_of_methods_claims_no_more_than_is_measured(method):
 
 
 @pytest.mark.parametrize("regime", [r for r in REGIMES if r not in ("none", "cut")])
-def test_error_of_the_certified_method_follows_its_tolerance(regime):
+def test_error_of_the_accurate_method_follows_its_tolerance(regime):
     """At every tolerance the error stays below a thousand times it: each of some hundred events and steps may add one
     tolerance, and the sensitivity of these motions is below 10 (reference.npz). Without damping, and where a force is
     cut, sensitivities are thousands."""

@@ -1,4 +1,4 @@
-"""The certified method misses no touch, however brief, and no moment of one; what is symmetric stays so."""
+"""The adaptive method misses no touch, however brief, and no moment of one; what is symmetric stays so."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COUNT = 2000
 
 @functools.cache
 def found(driven: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Random touches and near misses, and what the certified method made of them."""
+    """Random touches and near misses, and what the adaptive method made of them."""
     cases = touches.draw(COUNT, 7, driven)
     return cases, touches.run(cases, driven)
 
@@ -25,7 +25,7 @@ def found(driven: bool) -> tuple[np.ndarray, np.ndarray]:
 def test_no_touch_is_missed_and_none_is_invented(driven):
     """By 1e-7 to 1e-2 of an amplitude, or short of it by as much: exactly those with amplitude above the gap touch.
 
-    A thrown bead's own motion is computed to 1e-11 at the worst, a ten-thousandth of the least depth.
+    A random_count bead's own motion is computed to 1e-11 at the worst, a ten-thousandth of the least depth.
     """
     cases, seen = found(driven)
     assert len(touches.missed(cases, seen)) == 0

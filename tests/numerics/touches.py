@@ -1,4 +1,4 @@
-"""Program and kernel: brief touches by the hundred thousand, and whether the certified method misses one.
+"""Program and kernel: brief touches by the hundred thousand, and whether the adaptive method misses one.
 
     python -m tests.numerics.touches --count 100000 [--seed 1]
 
@@ -26,7 +26,7 @@ from granchain_core.hard.touches import (
     run,
     workspace,
 )
-from granchain_core.kernels.dop853.run import certified_step
+from granchain_core.kernels.dop853.run import located_step
 from granchain_core.kernels.dop853.step import STAGES, Cycle, Dop853, evaluate
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
@@ -39,7 +39,7 @@ __all__ = ["DEPTH", "ONSETS", "ONSET_ERROR", "RELEASE_ERROR", "TOLERANCE", "draw
 
 @numba.njit(nogil=True, error_model="numpy")
 def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
-    """Times at which two beads on springs, thrown apart with amplitude 1, reach standing driver and wall."""
+    """Times at which two beads on springs, random_count apart with amplitude 1, reach standing driver and wall."""
     static[0], static[1], static[2] = -gaps[0], -1e3, -gaps[1]
     slots = Slots(chain, None, None, Foundation(rate * rate), Preload(static), Harmonic(0.0, rate), None)
     end = 0.5 * pi / rate
@@ -49,7 +49,7 @@ def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
     evaluate(slots, rate, t, y, work.k[0], work.forces)
     trajectory = Trajectory(slots, Cycle(rate, 4.0 * end), y, work)
     while t < end * (1.0 - 1e-12):
-        status, h, _ = certified_step(Dop853(tolerance, 0.25 * end), trajectory, t, end, counts)
+        status, h, _ = located_step(Dop853(tolerance, 0.25 * end), trajectory, t, end, counts)
         if status != 0:
             return
         t += h
@@ -89,7 +89,7 @@ def main() -> None:
         found = run(cases, driven)
         wrong, touches = missed(cases, found), cases[:, DEPTH] > 0.0
         onset = found[touches, ONSET_ERROR]
-        print(f"{'driver' if driven else 'thrown bead'}: {touches.sum()} touches and {(~touches).sum()} near misses, "
+        print(f"{'driver' if driven else 'random_count bead'}: {touches.sum()} touches and {(~touches).sum()} near misses, "
               f"{len(wrong)} wrong, onset within {np.median(onset):.1e} (median), {onset.max():.1e} (worst) of a period, "
               f"{(onset > 1e-12).sum()} above 1e-12, {time.perf_counter() - began:.1f} s")
         if driven:

@@ -1,4 +1,4 @@
-"""Forces that tests feed to observers: computed by the certified method from a chain whose states are known too."""
+"""Forces that tests feed to observers: computed by the adaptive method from a chain whose states are known too."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def recorded(scene: Scene, samples: int, periods: int = 3) -> Recorded:
     start = periodic_orbit(scene).state
     engine = Engine(scene, Setting("dop853", tolerance=1e-12), samples)
     engine.start(start)
-    rows, scales = engine.record(periods * samples), engine.lowered.scales
+    rows, scales = engine.record(periods * samples), engine.scaled.scales
     return Recorded(np.arange(periods * samples + 1) / samples / scene.f, rows.force[:, 0] * scales.force,
                     rows.force[:, -1] * scales.force, rows.displacement * scales.length, start)
 

@@ -64,7 +64,7 @@ def test_the_chain_of_a_pair_moves_as_it_does_alone() -> None:
     pair.start(rest(FOUNDED), periodic_orbit(FOUNDED).state)
     alone = Engine(FOUNDED, Setting("dop853", tolerance=1e-13), 16)
     together, single = pair.engine.record(80), alone.record(80)
-    # two runs of the certified method with other steps
+    # two runs of the adaptive method with other steps
     assert together.displacement[:, : FOUNDED.N] == pytest.approx(single.displacement, abs=1e-9)
 
 
@@ -73,7 +73,7 @@ def test_the_observers_multipliers_are_finite_differences_of_the_pair() -> None:
     orbit = periodic_orbit(shown, observer=True)
     n, h = shown.N, 1e-5
     pair = Pair(shown, 1)
-    scales = pair.engine.lowered.scales
+    scales = pair.engine.scaled.scales
 
     def after(unit: np.ndarray) -> np.ndarray:
         start = type(orbit.state)(orbit.state.displacement + unit[:n] * scales.length,

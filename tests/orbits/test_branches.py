@@ -18,7 +18,7 @@ from granchain_core.orbits import (
     switch_to_doubled,
 )
 
-#: What the settled picture is asked for; its certified orbit then agrees with a branch's to some multiples of it.
+#: What the settled picture is asked for; its converged orbit then agrees with a branch's to some multiples of it.
 _ASKED = 1e-8
 
 

@@ -79,7 +79,7 @@ def test_an_orbits_section_is_its_own_points_at_every_phase() -> None:
     for phase in (0, 12, 37):
         late, own = long.points(7, phase)[-3:], points.points(7, phase)
         size = np.abs(own).max(axis=0)
-        # every late point of the live method is one of the orbit's three, to the live method's error
+        # every late point of the fixed-step method is one of the orbit's three, to the fixed-step method's error
         assert max(np.abs((own - one) / size).max(axis=1).min() for one in late) < 1e-3
 
 
@@ -89,7 +89,7 @@ def test_a_section_is_the_run_looked_at_once_a_period() -> None:
     record = LiveChain(shown, samples=48).advance(6 * 48)
     for phase in (0, 13):
         expected = np.stack([record.displacement[phase:-1:48, 4], record.velocity[phase:-1:48, 4]], axis=1)
-        # two runs of the live method, the second with half the step
+        # two runs of the fixed-step method, the second with half the step
         assert (np.abs(found.points(5, phase) - expected).max(axis=0) < 1e-3 * np.abs(expected).max(axis=0)).all()
 
 

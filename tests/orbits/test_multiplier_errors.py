@@ -27,11 +27,11 @@ def found(request: pytest.FixtureRequest) -> Orbit:
 def of_a_coarser_map(chain: Scene, exact: Orbit, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
     """Multipliers and stated errors of the same orbit by a map of this tolerance."""
     coarse = StroboscopicMap(chain, exact.period, tolerance=tolerance)
-    x = coarse.inner(coarse.engine.lowered.scaled(exact.state))
+    x = coarse.inner(coarse.engine.scaled.from_si(exact.state))
     for _ in range(3):
         flow = coarse(x)
         x = x + np.linalg.solve(np.eye(len(x)) - flow.derivative, flow.end - x)
-    derivative, state = coarse(x).derivative, coarse.engine.lowered.unscaled(coarse.engine.lowered.embed(x))
+    derivative, state = coarse(x).derivative, coarse.engine.scaled.to_si(coarse.engine.scaled.embed(x))
     change = derivative_change(chain, exact.period, state, derivative, tolerance=tolerance)
     multipliers = sorted_multipliers(derivative)
     return multipliers, errors_of(multipliers, derivative, change)

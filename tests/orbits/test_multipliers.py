@@ -112,9 +112,9 @@ def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_m
 def dashpot_wall(damping: float, period: float) -> StroboscopicMap:
     """The map of one bead far from the driver whose contact with the wall at 0 has a dashpot and no spring."""
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, F0=0.5), 1)
-    lowered, beta = stroboscopic_map.engine.lowered, 2.0 * np.pi / period
-    slots = lowered.slots._replace(chain=Chain(lowered.slots.chain.inverse_mass, np.array([1.0, 0.0])),
+    scaled, beta = stroboscopic_map.engine.scaled, 2.0 * np.pi / period
+    slots = scaled.slots._replace(chain=Chain(scaled.slots.chain.inverse_mass, np.array([1.0, 0.0])),
                                    preload=Preload(np.array([-10.0, 0.0])),  # a negative one is a gap
                                    dissipation=LinearDashpot(damping), driver=Harmonic(1.0, beta))
-    stroboscopic_map.engine.use(replace(lowered, slots=slots, beta=beta))
+    stroboscopic_map.engine.use(replace(scaled, slots=slots, beta=beta))
     return stroboscopic_map

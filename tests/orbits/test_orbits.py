@@ -95,5 +95,5 @@ def test_a_period_out_of_range_is_refused() -> None:
 def test_the_state_of_an_orbit_comes_back_after_its_period() -> None:
     orbit = periodic_orbit(scene("sec2").evolve(f=1130.0))
     stroboscopic_map = StroboscopicMap(orbit.scene, 3)
-    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     assert np.abs(stroboscopic_map(x).end - x).max() < 1e-10 * np.abs(x).max()  # the residual, after conversion to SI and back

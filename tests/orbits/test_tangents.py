@@ -9,7 +9,7 @@ import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, Cancelled, scene
-from granchain_core.integrate import Engine, certified
+from granchain_core.integrate import Engine, adaptive_setting
 from granchain_core.kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from granchain_core.kernels.forces.peaks import PEAKS
 from granchain_core.kernels.status import CANCELLED
@@ -125,7 +125,7 @@ def test_a_flow_stops_when_it_is_told_to() -> None:
 
 def test_a_record_along_an_orbit_stops_within_its_period() -> None:
     stop = Stop()
-    engine = Engine(scene("sec2"), certified(1e-9), 1, stop=stop)
+    engine = Engine(scene("sec2"), adaptive_setting(1e-9), 1, stop=stop)
     stop.set()
     record = OrbitRecord(np.zeros((64, 4)), np.zeros(PEAKS))
     status, _, _ = record_orbit(engine.stepper.method, engine.stepper.trajectory(engine.y), 1, record,

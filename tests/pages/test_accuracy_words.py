@@ -10,11 +10,11 @@ import pytest
 
 from app.format import duration, short_error
 from app.pages.accuracy.page import measured_for
-from app.pages.accuracy.view import described_reference, described_rows, described_ways, naive_message
+from app.pages.accuracy.view import described_methods, described_reference, described_rows, naive_message
 from app.pictures.theme import THEMES
 from app.session.active_setting import locate, page_setting
 from granchain_core import scene, settled
-from granchain_core.accuracy import Row, WorkPrecision, ways
+from granchain_core.accuracy import Row, WorkPrecision, compared_methods
 from granchain_core.accuracy.naive import lesson
 from granchain_core.integrate import METHODS, Setting
 from granchain_core.steady.settling import recorded, relax
@@ -24,7 +24,7 @@ from granchain_core.stop import Stop
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rule in app/session/active_setting.py is the one of steady/settling/relax.py: the finest engine of a certified picture."""
+    """The rule in app/session/active_setting.py is the one of steady/settling/relax.py: the finest engine of a final picture."""
     used: list[Setting] = []
     engine = recorded.Engine
 
@@ -70,14 +70,14 @@ def test_a_measurement_belongs_to_all_knobs_but_the_accuracy() -> None:
 
 
 def test_every_way_has_all_of_the_table() -> None:
-    shown = described_ways()
-    assert [one["name"] for one in shown] == list(ways())
+    shown = described_methods()
+    assert [one["name"] for one in shown] == list(compared_methods())
     for one in shown:
         assert one["title"] and one["order"] and one["restrictions"] and one["reference"]
 
 
 def test_failed_rows_keep_their_sentence_and_are_json() -> None:
-    rows = [Row("rk4", "1 × the live steps", float("inf"), 0.0, 0, 1.0, "It was not done."),
+    rows = [Row("rk4", "1 × the default steps", float("inf"), 0.0, 0, 1.0, "It was not done."),
             Row("dop853", "tolerance 1e-6", float("nan"), 0.1, 5, 1e-6), Row("rk4", "", 1e-5, 0.001, 7, 2.0)]
     shown = json.loads(json.dumps(described_rows(rows), allow_nan=False))
     assert [(one["way"], one["failure"]) for one in shown] == [

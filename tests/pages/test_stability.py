@@ -132,7 +132,7 @@ def test_the_sections_points_are_the_computed_ones() -> None:
     shown = section_points(section, transient(found, section), analysis(f=1130.0).points, 3, 12)
     assert shown.units == ("nm", "mm/s") and (len(shown.points), len(shown.own)) == (section.periods, 3)
     assert shown.points == pytest.approx(section.points(3, 12) * [1e9, 1e3], rel=1e-5)
-    # the orbit's own points are those of the certified picture a quarter of a period on
+    # the orbit's own points are those of the final picture a quarter of a period on
     expected = np.stack([found.run.displacement[24:-1:96, 2], found.run.velocity[24:-1:96, 2]], axis=1) * [1e9, 1e3]
     assert np.abs(shown.own - expected).max() < 1e-4 * np.abs(expected).max()
 

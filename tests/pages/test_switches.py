@@ -8,7 +8,7 @@ from app.session.energy_residual import with_account
 from app.session.session import Session
 from app.session.switches import ACCOUNT, EFFECTS, changes, present, variants
 from granchain_core import BadInput, scene, scene_names, settled
-from granchain_core.lower import slots_of
+from granchain_core.scaling import slots_of
 from granchain_core.stop import Stop
 from granchain_core.warm import structure
 

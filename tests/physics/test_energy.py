@@ -51,7 +51,7 @@ def test_the_account_closes_after_discarded_periods_too(law):
 
 
 @pytest.mark.parametrize(("law", "tension", "kappa", "preload"), [("linear", "cut", 0.0, 0.0), ("tsuji", "cut", 0.002, 0.05)])
-def test_the_certified_account_of_cut_contacts_closes(law, tension, kappa, preload):
+def test_the_accurate_account_of_cut_contacts_closes(law, tension, kappa, preload):
     """Kinks where a contact stops pushing, and force-free contacts, lose no energy that is not accounted for."""
     engine = Engine(chain(law, tension, kappa, preload).evolve(D=400.0), Setting("dop853", tolerance=1e-11), 16, balance=True)
     stored, work, lost = engine.record(16 * 6).energy.T
@@ -67,15 +67,15 @@ def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, k
     """
     shown = chain(law, tension, kappa, preload)
     engine = Engine(shown, Setting("dop853", tolerance=1e-9), 4096, balance=True)
-    kept, lowered = engine.record(2 * 4096), engine.lowered
+    kept, scaled = engine.record(2 * 4096), engine.scaled
     theta = 2 * np.pi * np.arange(2 * 4096 + 1) / 4096
-    v0 = lowered.beta * np.cos(theta)
+    v0 = scaled.beta * np.cos(theta)
     bodies = np.hstack([np.sin(theta)[:, None], kept.displacement, np.zeros((len(theta), 1))])
     speeds = np.hstack([v0[:, None], kept.velocity, np.zeros((len(theta), 1))])
-    static = shown.static_overlap() / lowered.scales.length
+    static = shown.static_overlap() / scaled.scales.length
     overlap = np.maximum(bodies[:, :-1] - bodies[:, 1:] + static, 0.0)
-    elastic = lowered.slots.chain.stiffness * overlap**1.5
-    spacing = lowered.period / 4096
+    elastic = scaled.slots.chain.stiffness * overlap**1.5
+    spacing = scaled.period / 4096
     work = np.trapezoid(kept.force[:, 0] * v0, dx=spacing)
     lost = np.trapezoid(((kept.force - elastic) * (speeds[:, :-1] - speeds[:, 1:])).sum(axis=1), dx=spacing)
     _, found_work, found_lost = kept.energy[-1] - kept.energy[0]
@@ -84,7 +84,7 @@ def test_work_and_loss_are_the_integrals_of_force_times_velocity(law, tension, k
     assert found_work == pytest.approx(work, abs=near)
     assert found_lost == pytest.approx(lost, abs=near)
     assert abs(work) > 20 * near  # the comparison says something
-    stored = (0.5 * kept.velocity**2).sum(axis=1) + (0.4 * lowered.slots.chain.stiffness * overlap**2.5).sum(axis=1)
+    stored = (0.5 * kept.velocity**2).sum(axis=1) + (0.4 * scaled.slots.chain.stiffness * overlap**2.5).sum(axis=1)
     stored += 0.5 * shown.kappa * (kept.displacement**2).sum(axis=1)
     np.testing.assert_allclose(kept.energy[:, 0], stored, rtol=1e-9, atol=1e-12)  # the same formula on the same samples
 
@@ -113,9 +113,9 @@ def test_without_damping_nothing_is_lost_and_the_chain_keeps_what_the_driver_gav
 
 def test_a_moving_bead_brings_its_energy_along():
     """A start velocity is stored energy before anything is driven."""
-    thrown = replace(chain("linear", "allowed", 0.0, 0.0), start_velocity=((3, 0.01),))
-    engine = Engine(thrown, Setting("dop853", tolerance=1e-10), 8, balance=True)
-    energy = engine.record(8).energy * engine.lowered.scales.energy
-    assert energy[0, 0] == pytest.approx(0.5 * thrown.bead(3).mass * 0.01**2, rel=1e-12)  # nothing else moves at t = 0
+    random_count = replace(chain("linear", "allowed", 0.0, 0.0), start_velocity=((3, 0.01),))
+    engine = Engine(random_count, Setting("dop853", tolerance=1e-10), 8, balance=True)
+    energy = engine.record(8).energy * engine.scaled.scales.energy
+    assert energy[0, 0] == pytest.approx(0.5 * random_count.bead(3).mass * 0.01**2, rel=1e-12)  # nothing else moves at t = 0
     stored, work, lost = energy[-1] - energy[0]
     assert work - lost == pytest.approx(stored, abs=1e-8 * energy[0, 0])  # the method's tolerance times its steps

@@ -66,11 +66,11 @@ def swing(chain, mode: int, amplitude: float) -> float:
     shape = shapes[:, mode] / np.abs(shapes[:, mode]).max()
     clock = chain.evolve(f=frequencies[mode] / 3.0)
     engine = Engine(clock, Setting("dop853", tolerance=1e-12), 48)
-    lowered = engine.lowered
-    slots = lowered.slots._replace(driver=Harmonic(0.0, lowered.beta), dissipation=LinearDashpot(0.0))
-    engine.use(replace(lowered, slots=slots))
+    scaled = engine.scaled
+    slots = scaled.slots._replace(driver=Harmonic(0.0, scaled.beta), dissipation=LinearDashpot(0.0))
+    engine.use(replace(scaled, slots=slots))
     engine.start(State(amplitude * shape, np.zeros(chain.N)))
-    moved = engine.record(48).displacement * lowered.scales.length
+    moved = engine.record(48).displacement * scaled.scales.length
     linear = amplitude * np.outer(np.cos(2 * np.pi * 3 * np.arange(49) / 48), shape)
     return float(np.abs(moved - linear).max() / amplitude)
 

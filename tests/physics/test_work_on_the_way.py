@@ -17,15 +17,15 @@ def test_work_and_loss_on_the_way_are_the_integrals_up_to_there() -> None:
     """
     shown = scene("sec2").evolve(N=5, f=900.0, kappa=0.002, F0=2.0)
     engine = Engine(shown, Setting("dop853", tolerance=1e-9), SAMPLES, balance=True)
-    kept, lowered = engine.record(SAMPLES), engine.lowered
+    kept, scaled = engine.record(SAMPLES), engine.scaled
     theta = 2 * np.pi * np.arange(SAMPLES + 1) / SAMPLES
-    v0, rows = lowered.beta * np.cos(theta), np.zeros((SAMPLES + 1, 1))
+    v0, rows = scaled.beta * np.cos(theta), np.zeros((SAMPLES + 1, 1))
     bodies = np.hstack([np.sin(theta)[:, None], kept.displacement, rows])
     speeds = np.hstack([v0[:, None], kept.velocity, rows])
-    overlap = np.maximum(-np.diff(bodies, axis=1) + shown.static_overlap() / lowered.scales.length, 0.0)
-    damped = kept.force - lowered.slots.chain.stiffness * overlap**1.5
+    overlap = np.maximum(-np.diff(bodies, axis=1) + shown.static_overlap() / scaled.scales.length, 0.0)
+    damped = kept.force - scaled.slots.chain.stiffness * overlap**1.5
     for power, found in ((kept.force[:, 0] * v0, kept.energy[:, 1]), ((damped * -np.diff(speeds, axis=1)).sum(axis=1), kept.energy[:, 2])):
-        spacing = lowered.period / SAMPLES
+        spacing = scaled.period / SAMPLES
         summed = np.concatenate([[0.0], np.cumsum(0.5 * spacing * (power[1:] + power[:-1]))])
         near = 20 * 0.5 * spacing * np.abs(np.diff(power)).max()
         np.testing.assert_allclose(found - found[0], summed, atol=near)

@@ -9,16 +9,16 @@ from bokeh.models import ColumnDataSource
 from app.pictures.accuracy import Annotations, accuracy, marks, points, styles
 from app.pictures.naive_forces import naive_columns, naive_forces
 from app.pictures.theme import THEMES
-from granchain_core.accuracy import Row, ways
+from granchain_core.accuracy import Row, compared_methods
 
-ROWS = [Row("rk4", "1 × the live steps", float("inf"), 0.0, 0, 1.0, "It was not done."),
-        Row("dop853", "tolerance 1e-6", float("nan"), 0.1, 5, 1e-6), Row("rk4", "2 × the live steps", 1e-5, 0.001, 7, 2.0),
-        Row("euler" if "euler" in ways() else "rk4", "", 40.0, 0.002, 9, 1.0)]
+ROWS = [Row("rk4", "1 × the default steps", float("inf"), 0.0, 0, 1.0, "It was not done."),
+        Row("dop853", "tolerance 1e-6", float("nan"), 0.1, 5, 1e-6), Row("rk4", "2 × the default steps", 1e-5, 0.001, 7, 2.0),
+        Row("euler" if "euler" in compared_methods() else "rk4", "", 40.0, 0.002, 9, 1.0)]
 
 
 def test_every_way_has_a_mark_of_its_own_without_colour() -> None:
     shown = styles()
-    assert list(shown) == list(ways())
+    assert list(shown) == list(compared_methods())
     assert len({(one["marker"], str(one["dash"]), one["filled"]) for one in shown.values()}) == len(shown)
 
 

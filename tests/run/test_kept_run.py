@@ -8,20 +8,20 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Cancelled, Run, Stop, run, scene
-from granchain_core.kept import folder_of
-from granchain_core.run.kept_run import KeptRun, Reached
+from granchain_core.checkpoints import folder_of
+from granchain_core.run.run_checkpoints import Reached, RunCheckpoints
 
 CHOSEN = scene("sec2").evolve(N=5, f=1130.0)
 PERIODS, RECORD, SAMPLES = 100, 3, 8
 
 
-def kept_in(out: Path, resume: bool = False, method: str | None = None) -> KeptRun:
-    kept = KeptRun(CHOSEN, PERIODS, RECORD, SAMPLES, method, out)
+def kept_in(out: Path, resume: bool = False, method: str | None = None) -> RunCheckpoints:
+    kept = RunCheckpoints(CHOSEN, PERIODS, RECORD, SAMPLES, method, out)
     kept.open(resume)
     return kept
 
 
-def computed(kept: KeptRun | None, method: str | None = None, stop: Stop | None = None) -> Run:
+def computed(kept: RunCheckpoints | None, method: str | None = None, stop: Stop | None = None) -> Run:
     return run(CHOSEN, PERIODS, RECORD, SAMPLES, method, kept=kept, stop=stop)
 
 
@@ -41,29 +41,29 @@ def test_a_run_cut_anywhere_is_the_same_run(method: str | None, cut: int, tmp_pa
                                             monkeypatch: pytest.MonkeyPatch) -> None:
     """Checkpoints come 50 times in each computation; after the one with the number `cut` the process might be killed."""
     whole, stop, added = computed(None, method), Stop(), [0]
-    add = KeptRun.add
+    add = RunCheckpoints.add
 
-    def add_until(self: KeptRun, reached: Reached) -> None:
+    def add_until(self: RunCheckpoints, reached: Reached) -> None:
         add(self, reached)
         added[0] += 1
         if added[0] == cut:
             self.kept.write()
             stop.set()
 
-    monkeypatch.setattr(KeptRun, "add", add_until)
+    monkeypatch.setattr(RunCheckpoints, "add", add_until)
     with pytest.raises(Cancelled):
         computed(kept_in(tmp_path / "a.h5", method=method), method, stop)
-    monkeypatch.setattr(KeptRun, "add", add)
+    monkeypatch.setattr(RunCheckpoints, "add", add)
     again = kept_in(tmp_path / "a.h5", resume=True, method=method)
     begun: list[int] = []
-    begin = KeptRun.begin
+    begin = RunCheckpoints.begin
 
-    def noted(self: KeptRun, computation: int, engine: object) -> Reached | None:
+    def noted(self: RunCheckpoints, computation: int, engine: object) -> Reached | None:
         reached = begin(self, computation, engine)
         begun.append(reached.done if reached else 0)
         return reached
 
-    monkeypatch.setattr(KeptRun, "begin", noted)
+    monkeypatch.setattr(RunCheckpoints, "begin", noted)
     assert_same(computed(again, method), whole)
     assert begun[: (cut - 1) // 50 + 1] == [PERIODS] * ((cut - 1) // 50) + [2 * ((cut - 1) % 50 + 1)]
     again.kept.remove()
@@ -77,5 +77,5 @@ def test_another_run_is_refused(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match="go on with --resume"):
         kept_in(tmp_path / "a.h5")
     with pytest.raises(BadInput, match="holds another run, sec2 with 100 \\+ 3 periods of 8 samples"):
-        KeptRun(CHOSEN, PERIODS, RECORD + 1, SAMPLES, None, tmp_path / "a.h5").open(True)
+        RunCheckpoints(CHOSEN, PERIODS, RECORD + 1, SAMPLES, None, tmp_path / "a.h5").open(True)
     assert np.isfinite(computed(kept_in(tmp_path / "a.h5", resume=True)).max_output_force)  # an empty one begins anew

@@ -23,7 +23,7 @@ STEPS = 10_000
 
 
 def shown(differences: list[float], refines: tuple[float, ...] = REFINES) -> Computations:
-    """Computations of the live method with these differences, one after another."""
+    """Computations of the fixed-step method with these differences, one after another."""
     found = Computations(False)
     found.begin(Setting("rk4-split", refines[0]))
     for refine, difference in zip(refines[1:], differences, strict=False):
@@ -70,7 +70,7 @@ def test_an_error_of_a_tenth_is_none_worth_the_name_unless_it_was_asked_for() ->
     assert found.final(done=True)[0] == pytest.approx(0.15)
 
 
-#: Scenes of `python -m tests.numerics.honesty --seed 101` whose stated error was below the true one: two computations in
+#: Scenes of `python -m tests.numerics.stated_errors --seed 101` whose stated error was below the true one: two computations in
 #: which the same contact event happened to lie alike in its step.
 CHANCE = [
     ({"f": 145.0107398227187, "A0": 5.420547110388205e-06, "D": 187.64768194099608, "N": 1, "F0": 0.0718184022107687,
@@ -80,9 +80,9 @@ CHANCE = [
 ]
 
 
-@pytest.mark.parametrize(("knobs", "thrown"), CHANCE, ids=["pressed", "thrown"])
-def test_scenes_in_which_two_computations_agreed_by_chance_are_bounded(knobs, thrown) -> None:
-    chosen = replace(scene("sec2").evolve(**knobs), start_velocity=thrown)
+@pytest.mark.parametrize(("knobs", "random_count"), CHANCE, ids=["pressed", "random_count"])
+def test_scenes_in_which_two_computations_agreed_by_chance_are_bounded(knobs, random_count) -> None:
+    chosen = replace(scene("sec2").evolve(**knobs), start_velocity=random_count)
     found, true = run(chosen, periods=0, record=3, samples=16), located(chosen, 0, 3, 16).displacement
     assert np.abs(found.displacement - true).max() <= found.error_estimate * np.abs(true).max()
 

@@ -24,7 +24,7 @@ def results(frequencies: list[float]) -> dict[float, SteadyState]:
 
 
 def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
-    """Batches, which follow slow approaches, and the live method, which runs on until it is there, from rest."""
+    """Batches, which follow slow approaches, and the fixed-step method, which runs on until it is there, from rest."""
     by_batch = results(FREQUENCIES)
     for f in FREQUENCIES:
         settling = run_until_settled(scene("sec2").evolve(f=f), None, None)
@@ -33,8 +33,8 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
         if found.regime.period is None:
             continue
         assert found.regime.period == settling.regime.period
-        top = settling.engine.periods(found.regime.period)[1][:, 1].max() * settling.engine.lowered.scales.force
-        # the live method's own error at these steps is a few 1e-5 of the displacement, more on steep flanks
+        top = settling.engine.periods(found.regime.period)[1][:, 1].max() * settling.engine.scaled.scales.force
+        # the fixed-step method's own error at these steps is a few 1e-5 of the displacement, more on steep flanks
         assert found.maxima[1] == pytest.approx(top, rel=2e-3)
 
 
@@ -55,7 +55,7 @@ def test_up_and_down_really_differ_there() -> None:
 
 
 def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
-    """The rig between 134 and 160 Hz: what batches call periodic is stable, what the live method shows to be so."""
+    """The rig between 134 and 160 Hz: what batches call periodic is stable, what the fixed-step method shows to be so."""
     found = [point for point in resonance_curve(scene("rig"), np.linspace(134.0, 160.0, 14)).points
              if point.regime.name == "periodic"]
     for point in found:

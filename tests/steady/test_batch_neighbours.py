@@ -10,7 +10,7 @@ import pytest
 from granchain_core import Scene, scene
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.kernels.width import BATCH_SIZE
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 from granchain_core.steady.batch.settle import batch_results
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
@@ -47,9 +47,9 @@ def test_a_scene_alone_and_among_others_is_the_same() -> None:
 
 def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> None:
     chain = scene("sec2").evolve(f=1130.0)
-    lowered, batch = lower(chain), Batch(chain, Stop())
+    scaled, batch = scale_chain(chain), Batch(chain, Stop())
     for member in range(BATCH_SIZE):
-        batch.put(member, lowered, np.zeros(2 * lowered.bodies), 1, return_at=3, earliest=NEVER)
+        batch.put(member, scaled, np.zeros(2 * scaled.bodies), 1, return_at=3, earliest=NEVER)
     assert sorted(batch.run()[0] for _ in range(BATCH_SIZE)) == list(range(BATCH_SIZE))
     assert list(batch.state.periods) == [3] * BATCH_SIZE
 
@@ -57,10 +57,10 @@ def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> 
 @pytest.mark.parametrize("wrong", [0, 1])
 def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int) -> None:
     chain = scene("sec2").evolve(f=1130.0)
-    lowered, batch = lower(chain), Batch(chain, Stop())
+    scaled, batch = scale_chain(chain), Batch(chain, Stop())
     for pair in (0, 1):
-        y = np.full(2 * lowered.bodies, np.nan) if pair == wrong else np.zeros(2 * lowered.bodies)
+        y = np.full(2 * scaled.bodies, np.nan) if pair == wrong else np.zeros(2 * scaled.bodies)
         for member in (2 * pair, 2 * pair + 1):
-            batch.put(member, lowered, y + 1e-9 * (member % 2), 1, return_at=4, earliest=NEVER)
+            batch.put(member, scaled, y + 1e-9 * (member % 2), 1, return_at=4, earliest=NEVER)
     growth = batch.run_pairs(1e-8, 4)
     assert np.isnan(growth[wrong]).all() and np.isfinite(growth[1 - wrong]).all()

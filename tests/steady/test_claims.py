@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import State, resonance_curve, run, scene, settled
-from granchain_core.integrate import Engine, Setting, certified
+from granchain_core.integrate import Engine, Setting, adaptive_setting
 from granchain_core.kernels.strobes import periodicity as section
 from granchain_core.steady import regime
 from granchain_core.steady.settling import alone, recorded, relax
@@ -142,7 +142,7 @@ def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr(alone, "run_until_settled", lambda *words: settling)
     stated = []
     for modulus in (0.1, 0.9):
-        engine = Engine(settling.scene, certified(1e-6), 1)
+        engine = Engine(settling.scene, adaptive_setting(1e-6), 1)
         engine.start(settling.engine.state)
         monkeypatch.setattr(alone, "relax", lambda *words, engine=engine: (engine, 0.0))
         settling.regime = replace(settling.regime, multiplier=modulus)

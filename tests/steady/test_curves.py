@@ -48,7 +48,7 @@ def test_every_point_of_the_curve_has_its_regime_and_an_error_where_one_can_be_c
 
 
 def test_errors_claimed_on_the_curve_bound_the_true_ones(curve):
-    """Against the certified orbit sampled 512 times a period, at every twelfth periodic point."""
+    """Against the converged orbit sampled 512 times a period, at every twelfth periodic point."""
     honest, compared = 0, 0
     for p in [q for q in curve.points if q.regime.name == "periodic"][::12]:
         found = settled(curve.scene.evolve(f=p.frequency), samples=512)

@@ -1,4 +1,4 @@
-"""Lyapunov exponents by the shadow against an independent way: products of the certified map's derivatives with QR."""
+"""Lyapunov exponents by the shadow against an independent way: products of the stroboscopic map's derivatives with QR."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import pytest
 
 from granchain_core import Scene, State, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.lower import lower
 from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.scaling import scale_chain
 from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
 from granchain_core.steady.settling.settling import run_until_settled
 from granchain_core.stop import Stop
@@ -18,9 +18,9 @@ QUASI = scene("sec2").evolve(f=1640.0)
 
 
 def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int = 2) -> tuple[np.ndarray, np.ndarray]:
-    """The `count` largest exponents per period and their standard errors, by the certified motion and its tangents."""
+    """The `count` largest exponents per period and their standard errors, by the adaptive motion and its tangents."""
     stroboscopic_map = StroboscopicMap(shown, 1)
-    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(state))
+    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(state))
     frame, _ = np.linalg.qr(np.random.default_rng(3).standard_normal((len(x), count)))
     growth = []
     for _ in range((blocks + 1) * block):
@@ -36,8 +36,8 @@ def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
     """Mean and standard error by the one-scene shadow and by the one in a batch."""
     engine = Engine(shown, Setting("rk4-split"), 1)
     engine.start(state)
-    lowered = lower(shown)
-    found = exponents(engine, 10, 20)[0], exponents_in_pairs([(lowered, lowered.scaled(state))], 10, 20,
+    scaled = scale_chain(shown)
+    found = exponents(engine, 10, 20)[0], exponents_in_pairs([(scaled, scaled.from_si(state))], 10, 20,
                                                              Stop())[0][0]
     return [(float(growth.mean()), float(growth.std(ddof=1) / np.sqrt(10))) for growth in found]
 
@@ -62,12 +62,12 @@ def test_a_quasi_periodic_chain_has_one_zero_exponent_and_the_rest_below() -> No
 
 
 def test_exponents_of_a_scene_do_not_depend_on_those_beside_it() -> None:
-    lowered = lower(QUASI)
-    y = lowered.scaled(run_until_settled(QUASI, None, None).engine.state)
-    slower = lower(QUASI.evolve(f=QUASI.f / 2.2))
-    alone = exponents_in_pairs([(lowered, y)], 5, 20, Stop())[0]
-    beside = exponents_in_pairs([(slower, 0.5 * y), (lowered, y)], 5, 20, Stop())[1]
+    scaled = scale_chain(QUASI)
+    y = scaled.from_si(run_until_settled(QUASI, None, None).engine.state)
+    slower = scale_chain(QUASI.evolve(f=QUASI.f / 2.2))
+    alone = exponents_in_pairs([(scaled, y)], 5, 20, Stop())[0]
+    beside = exponents_in_pairs([(slower, 0.5 * y), (scaled, y)], 5, 20, Stop())[1]
     for first, second in zip(alone, beside, strict=True):
         assert (first == second).all()
     with pytest.raises(ValueError, match="differ by more than a factor"):
-        exponents_in_pairs([(lowered, y), (lower(QUASI.evolve(f=QUASI.f / 9.0)), y)], 5, 20, Stop())
+        exponents_in_pairs([(scaled, y), (scale_chain(QUASI.evolve(f=QUASI.f / 9.0)), y)], 5, 20, Stop())

@@ -30,7 +30,7 @@ SILENT = 1e-3
 _ROUNDING, _MAGNIFIED = 1e-10, 1e3
 #: An energy account is a quadrature along the motion: it was seen to close to 17 times the error of the displacements.
 _ENERGY = 50.0
-#: Seconds SciPy takes, in both its runs, for one step of the certified method: a scene that would take too long is not
+#: Seconds SciPy takes, in both its runs, for one step of the adaptive method: a scene that would take too long is not
 #: begun.
 _SCIPY_STEP = 2.5e-4
 #: A motion that is known less well than this is chaotic: only outcome, time and symmetries are judged.
@@ -40,7 +40,7 @@ _CHAOS = 1e-4
 @dataclass
 class Verdict:
     """The result of a draw. Errors are relative to the largest displacement; `known` is the error of the truth itself,
-    `steps` how many the certified method took.
+    `steps` how many the adaptive method took.
 
     `faults` are (name, figure) of what did not hold. `others` are outcomes and errors of the naive solvers.
     """
@@ -68,7 +68,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
     """The verdict on one draw; `compute` takes the place of `run`.
 
     The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds; where tension is cut, `run`
-    itself is certified, and that solver is the only independent one. Naive RK4 and LSODA are judged too, for at most
+    itself is accurate, and that solver is the only independent one. Naive RK4 and LSODA are judged too, for at most
     `others` seconds each.
     """
     try:
@@ -88,7 +88,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
         with limit(2.0 * budget) as stop:
             truth = _judge(verdict, found, stop)
             _properties(verdict, chosen, stop)
-    except Cancelled:  # the certified method at its finest takes longer than the run: counted as not judged
+    except Cancelled:  # the adaptive method at its finest takes longer than the run: counted as not judged
         return verdict
     except NumbersFailed as problem:
         verdict.sentence = f"the judge failed: {problem}"
@@ -150,7 +150,7 @@ def _finite(verdict: Verdict, found: Run) -> None:
 
 
 def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
-    """Compare the run with the certified method at its finest, check its energy; returns the true displacements [m]."""
+    """Compare the run with the adaptive method at its finest, check its energy; returns the true displacements [m]."""
     chosen, kept = found.scene, []
     for tolerance in (3e-14, 3e-15):
         engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, balance=True, stop=stop)
@@ -166,8 +166,8 @@ def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
         verdict.faults.append(("done, and stated above what was asked", verdict.stated / chosen.accuracy))
     if verdict.known < _CHAOS:
         limits = 1e-9 + 100.0 * verdict.known, 1e-9 + _ENERGY * max(verdict.stated, chosen.accuracy)
-        figures = properties.energy(engine.lowered, kept[1]), found.energy_residual
-        for name, figure, bar in zip(("energy of the certified method", "energy"), figures, limits, strict=True):
+        figures = properties.energy(engine.scaled, kept[1]), found.energy_residual
+        for name, figure, bar in zip(("energy of the adaptive method", "energy"), figures, limits, strict=True):
             if figure is None or not figure <= bar:
                 verdict.faults.append((name, np.nan if figure is None else figure / bar))
     return true

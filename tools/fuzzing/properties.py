@@ -12,7 +12,7 @@ from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.preload import Preload
 from granchain_core.kernels.samples import Samples
-from granchain_core.lower import Lowered, lower
+from granchain_core.scaling import ScaledChain, scale_chain
 from granchain_core.state import rest
 from granchain_core.stop import Stop
 
@@ -28,9 +28,9 @@ def distance(one: np.ndarray, two: np.ndarray) -> float:
     return float(np.abs(one - two).max()) / largest if largest > 0.0 else float(np.abs(one).max())
 
 
-def energy(lowered: Lowered, kept: Samples) -> float:
+def energy(scaled: ScaledChain, kept: Samples) -> float:
     """How far work − lost is from the stored energy, ½mv² + ⅖Kδ^{5/2} + ½ku², over the largest of the three."""
-    slots = lowered.slots
+    slots = scaled.slots
     masses, theta = 1.0 / slots.chain.inverse_mass[1:-1], 2.0 * np.pi * np.arange(len(kept.velocity)) / SAMPLES
     ends = np.zeros((len(theta), 1))
     bodies = np.hstack([np.sin(theta)[:, None], kept.displacement, ends])
@@ -72,15 +72,15 @@ def mirrored(scene: Scene, rng: np.random.Generator, stop: Stop) -> tuple[float,
     """The scene made its own mirror image, its driver at rest: how far a symmetric start leads from symmetry, how far
     a start and its mirror image do from one another, and what the method's own error makes of the latter motion."""
     symmetric = _symmetric(scene)
-    thrown = rng.uniform(-1.0, 1.0, scene.N)
-    even = _thrown(symmetric, thrown - thrown[::-1], 1e-15, stop)
-    one, two = (_thrown(symmetric, v, 1e-15, stop) for v in (thrown, -thrown[::-1]))
-    return distance(-even[:, ::-1], even), distance(-two[:, ::-1], one), distance(_thrown(symmetric, thrown, 1e-13, stop), one)
+    random_count = rng.uniform(-1.0, 1.0, scene.N)
+    even = _thrown(symmetric, random_count - random_count[::-1], 1e-15, stop)
+    one, two = (_thrown(symmetric, v, 1e-15, stop) for v in (random_count, -random_count[::-1]))
+    return distance(-even[:, ::-1], even), distance(-two[:, ::-1], one), distance(_thrown(symmetric, random_count, 1e-13, stop), one)
 
 
-def _symmetric(scene: Scene) -> Lowered:
-    lowered = lower(scene, balance=True)
-    slots = lowered.slots
+def _symmetric(scene: Scene) -> ScaledChain:
+    scaled = scale_chain(scene, balance=True)
+    slots = scaled.slots
 
     def both(values: np.ndarray) -> np.ndarray:
         return 0.5 * (values + values[::-1])
@@ -89,11 +89,11 @@ def _symmetric(scene: Scene) -> Lowered:
     preload = None if slots.preload is None else Preload(both(slots.preload.static))
     stiffness = slots.chain.stiffness.copy()
     stiffness[: scene.N + 1] = both(stiffness[: scene.N + 1])
-    return replace(lowered, beta=beta, slots=slots._replace(
+    return replace(scaled, beta=beta, slots=slots._replace(
         chain=Chain(both(slots.chain.inverse_mass), stiffness), driver=Harmonic(0.0, beta), preload=preload))
 
 
-def _thrown(lowered: Lowered, velocity: np.ndarray, tolerance: float, stop: Stop) -> np.ndarray:
-    engine = Engine(lowered.scene, Setting("dop853", tolerance=tolerance), SAMPLES, stop=stop, lowered=lowered)
-    engine.start(State(np.zeros(len(velocity)), velocity * lowered.scales.velocity))
+def _thrown(scaled: ScaledChain, velocity: np.ndarray, tolerance: float, stop: Stop) -> np.ndarray:
+    engine = Engine(scaled.scene, Setting("dop853", tolerance=tolerance), SAMPLES, stop=stop, scaled=scaled)
+    engine.start(State(np.zeros(len(velocity)), velocity * scaled.scales.velocity))
     return engine.record(SAMPLES).displacement

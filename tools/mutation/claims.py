@@ -20,7 +20,7 @@ STEADY = (
            k.CLAIMS),
     Mutant("any-growth-is-chaos", _REGIME, "return mean > max(3.0 * error, _CHAOTIC)", "return mean > 0.0",
            "an exponent within its error is called chaos", k.CLAIMS),
-    Mutant("creeping-is-quasi-periodic", _REGIME, "if stays(strobes) and", "if",
+    Mutant("creeping-is-quasi-periodic", _REGIME, "if neither_converges_nor_departs(strobes) and", "if",
            "a slow approach with an exponent near zero is called quasi-periodic", k.CLAIMS),
     Mutant("drift-is-quasi-periodic", _REGIME, "and returns_near(strobes)", "",
            "a section that never comes back is called a closed curve", k.CLAIMS),
@@ -29,17 +29,17 @@ STEADY = (
     Mutant("settled-error-not-amplified", _PICTURES, "    integration /= 1.0 - motion.regime.contraction\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
     Mutant("relaxed-by-change", "steady/settling/relax.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
-           "the certified orbit is left too early", k.CLAIMS_SETTLED),
+           "the converged orbit is left too early", k.CLAIMS_SETTLED),
     Mutant("shadow-not-pulled-back", "kernels/rk4/lyapunov.py", "* (start / now)", "* 1.0",
            "the exponent is that of a distance long since large", k.LYAPUNOV),
 )
 
 STATED = (
-    Mutant("error-factor", "integrate/caution.py", "EVEN, UNEVEN = 1.5, 3.0", "EVEN, UNEVEN = 0.015, 0.03",
+    Mutant("error-factor", "integrate/safety_factors.py", "REGULAR, IRREGULAR = 1.5, 3.0", "REGULAR, IRREGULAR = 0.015, 0.03",
            "the stated error is a hundredth of what was seen", k.HONESTY),
     Mutant("same-steps-compared", _METHODS,
-           "while finer.steps_per_period(lowered, samples) == self.steps_per_period(lowered, samples):",
-           "while finer.steps_per_period(lowered, samples) < self.steps_per_period(lowered, samples):",
+           "while finer.steps_per_period(scaled, samples) == self.steps_per_period(scaled, samples):",
+           "while finer.steps_per_period(scaled, samples) < self.steps_per_period(scaled, samples):",
            "two computations by the same steps are compared", k.SAME_STEPS),
     Mutant("error-without-floor", _STATED, "np.maximum(least, self.rounding))", "self.rounding)",
            "an error of exactly nothing is stated", k.SAME_STEPS),
@@ -86,7 +86,7 @@ OBSERVED = (
            "between samples a measured force is above both, or below 0", k.SAMPLING),
     Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.rate ** np.arange(4)", "/ scales.rate ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observe/observation.py", "=UNEVEN * _difference(", "=1e-3 * UNEVEN * _difference(",
+    Mutant("loss-between-samples", "observe/observation.py", "=IRREGULAR * _difference(", "=1e-3 * IRREGULAR * _difference(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_CERTIFIED, _KINKS = "kernels/dop853/run.py", "kernels/dop853/force_kinks.py"
+_DOP853_RUN, _KINKS = "kernels/dop853/run.py", "kernels/dop853/force_kinks.py"
 _TENSION = "kernels/effects/tension.py"
 
 FORCE_FREE = (
-    Mutant("cut-kink-not-located", _CERTIFIED, "        if kink < 1.0:", "        if kink < -1.0:",
-           "certified steps go across the instant at which a cut contact stops pushing", k.CUT_ENERGY),
+    Mutant("cut-kink-not-located", _DOP853_RUN, "        if kink < 1.0:", "        if kink < -1.0:",
+           "adaptive steps go across the instant at which a cut contact stops pushing", k.CUT_ENERGY),
     Mutant("force-free-of-tsuji", _KINKS, "stiffness * d * (r / power(law, d, r))", "stiffness * d * r",
            "the instant at which Tsuji's force ends is another one",
            k.UNLIKE),
@@ -31,7 +31,7 @@ FORCE_FREE = (
            "w keeps the straight G where the law's own is meant", k.FORCE_FREE),
     Mutant("account-stays-force-free", _KINKS, "add_to_account(slots.balance, y, work_done - own_work, lost - own_lost)", "pass",
            "the account keeps the straight G where the law's own is meant", k.FORCE_FREE_ENERGY),
-    Mutant("force-free-slope-stays", _CERTIFIED, "if changed or end == period:", "if end == period:",
+    Mutant("force-free-slope-stays", _DOP853_RUN, "if changed or end == period:", "if end == period:",
            "the slope with the straight G begins the next step", k.FORCE_FREE),
     Mutant("force-free-offset", _TENSION, "- tension.slope[c] * d\n", "+ tension.slope[c] * d\n",
            "the straight G does not begin where the law's is", k.FORCE_FREE),

@@ -23,14 +23,14 @@ STEP_EVENTS = ("tests/kernels/rk4/test_step_events.py",)
 JUMPS_LOCATED = ("tests/kernels/forces/test_largest_forces.py::test_a_jump_is_read_where_the_overlap_vanishes",)
 STEP_TOUCH = ("tests/numerics/test_fixed_step_touches.py", "-k", "1e-06-True")
 
-#: Brief touches and certified steps.
+#: Brief touches and adaptive steps.
 TOUCHES = ("tests/numerics/test_touches.py", "-k", "none_is_invented and True or moment_of_a_touch or two_touches")
 GRAZING = ("tests/numerics/test_events.py", "-k", "brief_touch")
 
 #: Coefficients and orders of convergence.
 TABLEAU = ("tests/kernels/dop853/test_tableau.py",)
 RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-closed")
-CERTIFIED_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
+ADAPTIVE_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
 CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
 CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cut")
 FORCE_FREE = ("tests/numerics/test_force_free.py",)
@@ -81,8 +81,8 @@ FAILURES_T = ("tests/integrate/test_not_finite.py", "-k", "counts_from_the_start
 STIFFEST = ("tests/integrate/test_failures.py", "-k", "stiffest")
 
 #: What is claimed of a motion.
-HONESTY = ("tests/numerics/test_honesty.py", "-k", "not curve")
-SAME_STEPS = ("tests/numerics/test_honesty.py", "-k", "same_steps")
+HONESTY = ("tests/numerics/test_stated_errors.py", "-k", "not curve")
+SAME_STEPS = ("tests/numerics/test_stated_errors.py", "-k", "same_steps")
 REGIMES = ("tests/kernels/strobes/test_periodicity.py", "-k", "linear_map or slow_approach or roots_of_one or closed_curve")
 SETTLED = ("tests/steady/test_regimes.py", "-k", "section_2_from_rest")
 CLAIMS = ("tests/steady/test_claims.py", "-k", "not largest and not summed and not fixed_point and not relaxing")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_TIME, _STEP, _LANDING = "kernels/flow/time_map.py", "kernels/flow/attempt.py", "kernels/flow/events.py"
+_TIME, _STEP, _LANDING = "kernels/flow/event_time.py", "kernels/flow/attempt.py", "kernels/flow/events.py"
 _FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", "kernels/flow/saltation.py"
 _MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
 

@@ -1,4 +1,4 @@
-// The certified output force, and over it the one that a naive method with few steps would have drawn.
+// The accurate output force, and over it the one that a naive method with few steps would have drawn.
 
 import { element } from "../../parts/dom.js";
 import { Embedded } from "../../parts/embedded.js";
@@ -46,7 +46,7 @@ export class NaiveForces {
     this.data = { ...message, values: new Float32Array(buffer, byteOffset, length) };
     this.offer(message.drawn);
     this.root.hidden = false;
-    this.figure.load(message.figure, "output force, certified and naive");
+    this.figure.load(message.figure, "output force, accurate and naive");
   }
 
   // Fills both choices and keeps what was chosen. The first time it chooses the usual steps and the method whose

@@ -11,7 +11,7 @@ from panel.io import unlocked
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.kernels.width import machine
-from granchain_core.warm import ACCURACY, CERTIFIED, LIVE
+from granchain_core.warm import ACCURACY, ADAPTIVE, FIXED_STEP
 
 from ...format import duration, short_error
 from ...pictures.accuracy import Annotations
@@ -22,7 +22,7 @@ from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
-from .view import Accuracy, described_reference, described_ways
+from .view import Accuracy, described_methods, described_reference
 
 WORDS = StatusWords("the kernels of all methods", 20, kept="the measurements so far")
 
@@ -93,7 +93,7 @@ class AccuracyPage(Page):
         """When the page or its tab is opened, measure if nothing has been measured yet."""
         if not visible:
             return
-        self._view.update_state(ways=described_ways(), machine=machine())
+        self._view.update_state(ways=described_methods(), machine=machine())
         if self.status == "none":
             self._measure()
         self.describe()
@@ -114,7 +114,7 @@ class AccuracyPage(Page):
         def report(found: WorkPrecision) -> None:
             job.next_tick(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
 
-        job.compile(scene, LIVE, CERTIFIED, ACCURACY)
+        job.compile(scene, FIXED_STEP, ADAPTIVE, ACCURACY)
         job.say("measuring")
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.next_tick(self._progress, done))

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from bokeh.embed import json_item
 
-from granchain_core.accuracy import Lesson, Row, WorkPrecision, ways
+from granchain_core.accuracy import Lesson, Row, WorkPrecision, compared_methods
 
 from ...format import prefixed, short_error
 from ...parts.component import text
@@ -68,10 +68,10 @@ class Accuracy(FigurePart):
         self.send(type="no-naive")
 
 
-def described_ways() -> list[dict[str, Any]]:
+def described_methods() -> list[dict[str, Any]]:
     """The table of methods."""
     return [{"name": way.name, "title": way.title, "order": f"{way.order:g}", "restrictions": way.restrictions,
-             "reference": way.reference} for way in ways().values()]
+             "reference": way.reference} for way in compared_methods().values()]
 
 
 def described_rows(rows: list[Row]) -> list[dict[str, Any]]:
@@ -97,7 +97,7 @@ def described_reference(found: WorkPrecision) -> dict[str, Any]:
 
 
 def naive_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
-    """The certified and the naive output forces, in one array of rows; a naive one that failed has no row."""
+    """The accurate and the naive output forces, in one array of rows; a naive one that failed has no row."""
     largest = float(np.abs(shown.force).max())
     factor, letter = prefixed(largest)
     seconds, unit = prefixed(float(shown.time[-1]))

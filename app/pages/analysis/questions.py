@@ -17,7 +17,7 @@ from granchain_core.errors import check_range, unknown_name
 from granchain_core.quantities import QUANTITIES
 from granchain_core.steady.curve.order import STARTS
 from granchain_core.text import number_in, whole_in
-from granchain_core.warm import CERTIFIED, CURVE, LIVE, ORBIT
+from granchain_core.warm import ADAPTIVE, CURVE, FIXED_STEP, ORBIT
 
 from ...pictures.basins import basins as draw_basins
 from ...pictures.lyapunov import lyapunov as draw_lyapunov
@@ -30,7 +30,7 @@ from ...pictures.theme import Theme
 MOST_BEADS, MOST_VALUES, MOST_STARTS, MOST_PERIODS, MOST_STROBES = 300, 200, 40, 2000, 500
 #: Periods recorded of a motion without a period, and samples a period, as of `granchain spectrum`.
 _RECORD, _SAMPLES = 64, 256
-_MOTION = (LIVE, CERTIFIED)
+_MOTION = (FIXED_STEP, ADAPTIVE)
 
 Progress = Callable[[float], None]
 

@@ -12,7 +12,7 @@ from panel.io import unlocked
 from granchain_core import Scene
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.stop import Stop
-from granchain_core.warm import BRANCH, CERTIFIED, LIVE
+from granchain_core.warm import ADAPTIVE, BRANCH, FIXED_STEP
 
 from ...pictures.branches import BranchRows
 from ...serve.delays import BRANCH_EVERY
@@ -124,7 +124,7 @@ class BranchesPage(Page):
         self._task.start(lambda job: self._follow(begin, scene, job))
 
     def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
-        job.compile(scene, LIVE, CERTIFIED, BRANCH)
+        job.compile(scene, FIXED_STEP, ADAPTIVE, BRANCH)
         job.say("settling")
         for branch in begin(job.stop):
             continuation = Continuation(branch, job.stop)

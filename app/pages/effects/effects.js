@@ -15,7 +15,7 @@ const COLUMNS = [
   ["arithmetic alone", "What its code adds to a plain RK4 step, in which the arithmetic is always the same."],
   [
     "in this motion",
-    "How it changes the time of a step of the live method, which divides steps where contacts open or close.",
+    "How it changes the time of a step of the fixed-step method, which divides steps where contacts open or close.",
   ],
 ];
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from granchain_core import BadInput, Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
-from granchain_core.lower import slots_of
+from granchain_core.scaling import slots_of
 from granchain_core.scene.effects import ALWAYS
 from granchain_core.warm import COST, COST_ACCOUNT, structure
 

@@ -9,7 +9,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 
 from granchain_core import Cancelled
-from granchain_core.children import end_with_parent, starting
+from granchain_core.child_processes import end_with_parent, starting
 from granchain_core.hard import CASES, Case, Check, Picture, run_case
 from granchain_core.stop import Stop
 

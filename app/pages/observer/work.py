@@ -130,7 +130,7 @@ class ObserverRun:
             self.strobes.append(difference[0])
         self.strobes = [*self.strobes[1 - _REMEMBERED :], difference[-1]]
         self.in_step = bool(np.abs(difference).max() < SYNCHRONISED)
-        scales, number = engine.lowered.scales, self.number
+        scales, number = engine.scaled.scales, self.number
         self.number += 1
         u, v = rows.displacement * scales.length, rows.velocity * scales.velocity
         force, half_mass = rows.force * scales.force, 0.5 * self.scene.masses()

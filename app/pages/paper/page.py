@@ -6,7 +6,7 @@ from typing import Any
 
 from granchain_core import scene
 from granchain_core.paper import PaperFigure, Result, compute, figure_of
-from granchain_core.warm import CERTIFIED, CURVE, LIVE, OBSERVER, ORBIT
+from granchain_core.warm import ADAPTIVE, CURVE, FIXED_STEP, OBSERVER, ORBIT
 
 from ...serve.queues import LONG
 from ...session.hooks import Actions, Page
@@ -15,7 +15,7 @@ from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .view import Paper
 
-_MOTION = (LIVE, CERTIFIED)
+_MOTION = (FIXED_STEP, ADAPTIVE)
 _TRAINS = (("rig", _MOTION),)
 _FED = (("rig", (*_MOTION, CURVE, ORBIT, OBSERVER)),)
 #: The kernels of each figure: presets, and pieces of their structures. Figures without an entry need none.

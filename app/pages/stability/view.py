@@ -11,7 +11,7 @@ import numpy as np
 from bokeh.embed import json_item
 
 from granchain_core import Settled
-from granchain_core.integrate.methods import LIVE
+from granchain_core.integrate.methods import FIXED_STEP
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
 from granchain_core.regime import modulus_words
@@ -146,8 +146,8 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
     row("settled by", f"{cost.method}, {cost.steps} steps, {duration(cost.wall_s)}",
         "Method, steps and computing time of the settled picture.")
     if section is not None:
-        row("section", f"{section.periods} periods at {section.samples} phases, {LIVE}",
-            "Computed once more from the same start by the live method.")
+        row("section", f"{section.periods} periods at {section.samples} phases, {FIXED_STEP}",
+            "Computed once more from the same start by the fixed-step method.")
     return rows
 
 

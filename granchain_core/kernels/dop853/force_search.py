@@ -1,4 +1,4 @@
-"""The largest forces inside an accepted step of the certified method, on its dense output.
+"""The largest forces inside an accepted step of the adaptive method, on its dense output.
 
 A force is evaluated at the beginning, in the middle and at the end of a step. The step begins just past an event and
 ends just past the next, so these values are right limits and the jump of a closing contact is one of them. If the force

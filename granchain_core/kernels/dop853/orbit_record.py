@@ -1,6 +1,6 @@
 """A run along an orbit that keeps the turning points of all overlaps and the largest forces.
 
-Each accepted step of the certified method is searched on its dense output. A contact's overlap has a turning point
+Each accepted step of the adaptive method is searched on its dense output. A contact's overlap has a turning point
 where its bodies move equally fast; the smallest of these are the touches and separations about to appear or vanish. The
 largest forces are searched inside the steps (dop853/force_search.py).
 """
@@ -17,7 +17,7 @@ from ..samples import first_not_finite
 from ..status import CANCELLED, DONE, FULL, NOT_FINITE
 from .bracket import value_at
 from .force_search import follow_step
-from .run import certified_step
+from .run import located_step
 from .step import Overlap, Step, evaluate, new_scale, prepare_dense, turning_point
 from .tableau import STAGES
 
@@ -66,7 +66,7 @@ def record_orbit(method, trajectory, periods, record, counts, stop):
         while t < period:
             if stop[0] != 0:
                 return CANCELLED, p, row
-            status, h, _ = certified_step(method, trajectory, t, period, counts)
+            status, h, _ = located_step(method, trajectory, t, period, counts)
             if status != DONE:
                 return status, p, row
             step = Step(trajectory, t, h)

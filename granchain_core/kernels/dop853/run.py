@@ -162,7 +162,7 @@ def accepted_step(method, trajectory, t, h, counts):
 
 
 @inline_numba
-def certified_step(method, trajectory, t, limit, counts):
+def located_step(method, trajectory, t, limit, counts):
     """One accepted step from y at local time t, at most to `limit`; the result is work.end.
 
     Returns (status, step taken, contact that changed at its end or −1); work.next_step[0] is the next step to try.
@@ -245,7 +245,7 @@ def accept(trajectory):
 
 
 @kernel
-def run_certified(method, trajectory, stretch, samples, out):
+def run_dop853(method, trajectory, stretch, samples, out):
     """Run over a stretch of the grid; the largest forces, closings and samples on it are kept if it asks for them.
 
     Row 0 of `samples` is the start. Returns (status, rows or points done).
@@ -263,7 +263,7 @@ def run_certified(method, trajectory, stretch, samples, out):
             return CANCELLED, row if every > 0 else done
         goal = min(grid, g + points - done)
         limit = period if goal == grid else goal * spacing
-        status, h, contact = certified_step(method, trajectory, t, limit, out.counts)
+        status, h, contact = located_step(method, trajectory, t, limit, out.counts)
         if status != DONE:
             return status, row if every > 0 else done
         end = limit if limit - (t + h) < 1e-13 * period else t + h

@@ -91,7 +91,7 @@ def checked(*laws):
         a = exponent(law(1.0))
         if not 0.0 <= a < 1.5 or 4.0 * a % 1.0 != 0.0:
             raise TypeError(f"damping law {law.__name__} has the exponent {a}; the time of contact events "
-                            f"(flow/time_map.py) takes 0, 1/4, 1/2, … 5/4.")
+                            f"(flow/event_time.py) takes 0, 1/4, 1/2, … 5/4.")
         if any(not math.isclose(power(law(1.0), d, math.sqrt(d)), d**a) for d in (0.3, 1.0, 2.0)):
             raise TypeError(f"damping law {law.__name__}: `power` is not δ^{a}, which its `exponent` says.")
         in_simd_kernels(law)  # these kernels use the same two terms

@@ -29,7 +29,7 @@ from ..effects.preload import overlap
 from ..equations.motion import Trajectory
 from ..jit import by_slot, inline_numba, internal
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .time_map import Time, rate_at, slope_in_x, time_at
+from .event_time import Time, rate_at, slope_in_x, time_at
 
 
 class ContactStatus(NamedTuple):

@@ -13,7 +13,7 @@ from ..effects.preload import overlap
 from ..jit import inline_numba
 from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .attempt import accepted_in_time, attempt_in_time, first_change
-from .time_map import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
+from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.
 _LANDED = 1e-14

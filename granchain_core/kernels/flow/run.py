@@ -14,9 +14,9 @@ from ..equations.motion import copy
 from ..jit import by_slot, internal, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
+from .event_time import time_at
 from .events import flow_step
 from .tangent import Tangent, propagate
-from .time_map import time_at
 
 #: Most steps in one drive period.
 _MOST_STEPS = 5_000_000

@@ -22,9 +22,9 @@ from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope
 from ..jit import inline_numba
 from .attempt import keep_stage
+from .event_time import rate_at
 from .run import apply_saltation
 from .tangent import Stages, new_stages, propagate, write_stage
-from .time_map import rate_at
 
 
 class VelocityTangent(NamedTuple):

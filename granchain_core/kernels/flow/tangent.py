@@ -25,7 +25,7 @@ from ..equations.body_forces import add_force_slope, add_force_trace
 from ..jit import by_slot, by_slot_inlined, inline_llvm, inline_numba, internal
 from ..simd.vector import LANES, aligned, blank, load, store
 from .attempt import keep_stage
-from .time_map import rate_at
+from .event_time import rate_at
 
 
 class Stages(NamedTuple):

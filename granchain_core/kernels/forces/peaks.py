@@ -47,10 +47,16 @@ def watch(peaks, row, value):
     peaks[row + 4], peaks[row + 3], peaks[row + 2], peaks[row + 1] = b, c, d, value
 
 
-@inline_llvm
-def largest_forces(peaks):
-    """The largest input, output and elastic output force so far, as a view (3,)."""
+def largest_forces(peaks: np.ndarray) -> np.ndarray:
+    """The largest input, output and elastic output force so far, as a view (3,); for Python."""
     return peaks[:MEMORY:ROWS]
+
+
+@inline_llvm
+def keep_largest_forces(peaks, out):
+    """The largest input, output and elastic output force so far into `out` (3,)."""
+    for q in range(3):
+        out[q] = peaks[q * ROWS]
 
 
 @kernel

@@ -8,9 +8,9 @@ import numpy as np
 
 from ..effects.contact import elastic_force, positive_part
 from ..effects.preload import overlap
-from ..equations.motion import contact_force, copy, motion
+from ..equations.motion import contact_force, motion
 from ..forces.largest import SAMPLE, watch_state
-from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, largest_forces, next_period, watch
+from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, keep_largest_forces, next_period, watch
 from ..jit import by_slot_inlined, internal, kernel
 from ..samples import Samples, first_not_finite, keep, keep_strobe
 from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS, STEPS_BETWEEN_STOP_CHECKS
@@ -116,5 +116,5 @@ def run_steps(method, trajectory, first_step, stride, kept, out):
             keep(slots, i + 1, y, stages.k[0], stages.forces.e, kept.samples)
         else:
             keep_strobe(y, stages.k[0], kept.strobes[i + 1])
-            copy(largest_forces(log.peaks), kept.maxima[i])
+            keep_largest_forces(log.peaks, kept.maxima[i])
     return DONE, max(kept.samples.displacement.shape[0], kept.maxima.shape[0])

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...errors import BadInput, check_range
 from ...integrate import State
-from ...integrate.methods import CERTIFIED
+from ...integrate.methods import ADAPTIVE
 from ...scene import Amplitude, Scene
 from ...stop import Stop
 from ...tables import Labelled, Table, amplitude_attribute, provenance
@@ -97,7 +97,7 @@ class Branch(Labelled):
         header = {"knob": self.axis.knob, "start": self.axis.start, "end": self.axis.end, "period": self.period,
                 "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
                          for arm in self.arms]}
-        return {**provenance(self.scene, CERTIFIED, None), "branch": json.dumps(header),
+        return {**provenance(self.scene, ADAPTIVE, None), "branch": json.dumps(header),
                 **amplitude_attribute(self.axis.amplitude)}
 
     def summary(self) -> list[str]:
@@ -180,7 +180,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
     orbit = periodic_orbit(axis.scene_at(seed_at), period, start_state, stop=stop)
     equations = BranchEquations(axis, orbit.period, stop)
     stroboscopic_map = equations.stroboscopic_map(seed_at)
-    x = stroboscopic_map.inner(stroboscopic_map.engine.lowered.scaled(orbit.state))
+    x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     _refuse_shorter(equations, x, seed_at)
     return Branch(axis, orbit.period, arms_from(equations, x, seed_at, (1, -1) if both else (axis.direction,)))
 

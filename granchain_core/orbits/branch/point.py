@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
-from ...integrate import Engine, State, certified
+from ...integrate import Engine, State, adaptive_setting
 from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from ...kernels.forces.peaks import PEAKS, largest_forces
 from ...kernels.status import FULL
-from ...lower import lower
+from ...scaling import scale_chain
 from ...scene import Scene
 from ..orbit import liouville_error, sorted_multipliers
 from .equations import BranchEquations, Solved
@@ -83,7 +83,7 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
     x, value = equations.state(solved.z), equations.value(solved.z)
     multipliers = sorted_multipliers(solved.flow.derivative)
     engine, record = record_along(equations, x, value)
-    maxima = largest_forces(record.peaks) * engine.lowered.scales.force
+    maxima = largest_forces(record.peaks) * engine.scaled.scales.force
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
@@ -94,13 +94,13 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
 
 def state_at(scene: Scene, x: np.ndarray) -> State:
     """The scaled state x of a scene at phase 0 in SI."""
-    lowered = lower(scene)
-    return lowered.unscaled(lowered.embed(x))
+    scaled = scale_chain(scene)
+    return scaled.to_si(scaled.embed(x))
 
 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:
     """Largest forces and turning points of all overlaps along the way from the scaled state x."""
-    engine = Engine(equations.axis.scene_at(value), certified(_TOLERANCE), 1, stop=equations.stop)
+    engine = Engine(equations.axis.scene_at(value), adaptive_setting(_TOLERANCE), 1, stop=equations.stop)
     stepper, room = engine.stepper, _ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)

@@ -6,17 +6,17 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...integrate import Engine, State, live
+from ...integrate import Engine, State, fixed_step_setting
 from ...integrate.batch import Batch
 from ...integrate.methods import AT_A_JUMP, typical_error
 from ...integrate.stated import relative_changes
-from ...lower import Lowered
 from ...regime import Regime
+from ...scaling import ScaledChain
 from ...scene import Scene
 from ...state import rest
 from ...stop import Stop
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
-from ..regime import SLOW_RECORD, shrinking
+from ..regime import SLOW_RECORD, some_changes_shrink
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
 from ..settling.settling import MOST_STEPS
 from ..steady_state import SteadyState
@@ -24,7 +24,7 @@ from ..steady_state import SteadyState
 #: Steps of the finer run of a batch for one of the coarse run.
 FINER = 3
 #: Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
-_LOCATED = live(8)
+_LOCATED = fixed_step_setting(8)
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
 
@@ -47,7 +47,7 @@ class Job:
     """
 
     scene: Scene
-    lowered: Lowered
+    scaled: ScaledChain
     y: np.ndarray
     run: int = 0
     coarse: tuple[Regime, np.ndarray] | None = None
@@ -61,7 +61,7 @@ class Job:
     @property
     def affordable_periods(self) -> int:
         """Periods of the coarse run that the budget of steps allows."""
-        return max(2, MOST_STEPS // self.lowered.steps_per_period())
+        return max(2, MOST_STEPS // self.scaled.steps_per_period())
 
     @property
     def affordable(self) -> bool:
@@ -76,16 +76,16 @@ class Job:
         y, distance = batch.state.y[:, member], float(batch.state.last_check[member, 2])
         maxima, jumps = batch.maxima(member, regime.period), batch.jumps(member, regime.period)
         farther = max(distance, regime.distance)
-        left = force_distances(farther, self.lowered, maxima, y)
+        left = force_distances(farther, self.scaled, maxima, y)
         # each of the two runs has come to its own orbit: the change is the difference of these orbits
         errors = orbit_force_errors(relative_changes(maxima, before), left,
-                                    least=typical_error(live(FINER)) / (1.0 - regime.contraction))
+                                    least=typical_error(fixed_step_setting(FINER)) / (1.0 - regime.contraction))
         at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
         if at_jump.any():
             located, apart = self._located_maxima(y, regime, farther, batch.stop)
             maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, apart, errors)
-        maxima = maxima * self.lowered.scales.force
-        return SteadyState(self.scene, maxima, replace(regime, distance=distance), errors, self.lowered.unscaled(y),
+        maxima = maxima * self.scaled.scales.force
+        return SteadyState(self.scene, maxima, replace(regime, distance=distance), errors, self.scaled.to_si(y),
                           number=self.number)
 
     def _located_maxima(self, y: np.ndarray, regime: Regime, distance: float,
@@ -97,10 +97,10 @@ class Job:
         much they depend on the step at a jump, where the order is uneven.
         """
         assert regime.period is not None
-        engine = Engine(self.scene, _LOCATED, 1, stop=stop, lowered=self.lowered)
-        engine.start_scaled(self.lowered.beads_of(y))
+        engine = Engine(self.scene, _LOCATED, 1, stop=stop, scaled=self.scaled)
+        engine.start_scaled(self.scaled.beads_of(y))
         first = engine.largest_forces(regime.period)
-        finer = Engine(self.scene, _LOCATED.finer(), 1, stop=stop, lowered=self.lowered)
+        finer = Engine(self.scene, _LOCATED.finer(), 1, stop=stop, scaled=self.scaled)
         finer.start(engine.state)
         return finer.largest_forces(regime.period), errors_between(finer, first, regime.contraction, distance)
 
@@ -112,8 +112,8 @@ def draft_result(job: Job, batch: Batch, member: int) -> SteadyState:
     if period <= 0:
         return unsettled(job, batch, member, run)
     regime = _periodic(batch, member, run)
-    maxima = batch.settled_maxima(member, int(period)) * job.lowered.scales.force
-    state = job.lowered.unscaled(batch.state.y[:, member])
+    maxima = batch.settled_maxima(member, int(period)) * job.scaled.scales.force
+    state = job.scaled.to_si(batch.state.y[:, member])
     return SteadyState(job.scene, maxima, regime, None, state, number=job.number)
 
 
@@ -125,11 +125,11 @@ def outcome_of_coarse_run(job: Job, batch: Batch, member: int) -> SteadyState | 
     if period > 0:
         regime = _periodic(batch, member, run)
         settled = (regime, batch.settled_maxima(member, int(period)))
-        return Job(job.scene, job.lowered, batch.state.y[:, member].copy(), run, settled, number=job.number)
+        return Job(job.scene, job.scaled, batch.state.y[:, member].copy(), run, settled, number=job.number)
     if run >= job.affordable_periods:
         return unsettled(job, batch, member, run)
     record = batch.strobes(member)
-    if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not shrinking(record)):
+    if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not some_changes_shrink(record)):
         return _in_doubt(job, batch, member, run, record.copy())
     batch.state.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)
@@ -145,15 +145,15 @@ def _periodic(batch: Batch, member: int, run: int) -> Regime:
 
 def _in_doubt(job: Job, batch: Batch, member: int, run: int, record: np.ndarray) -> Job:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
-    maxima = batch.maxima(member, _IRREGULAR_PERIODS) * job.lowered.scales.force
+    maxima = batch.maxima(member, _IRREGULAR_PERIODS) * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
-    return Job(job.scene, job.lowered, y, run, in_doubt=True, record=record, maxima=maxima, number=job.number)
+    return Job(job.scene, job.scaled, y, run, in_doubt=True, record=record, maxima=maxima, number=job.number)
 
 
 def unsettled(job: Job, batch: Batch, member: int, run: int) -> SteadyState:
     """The result of a member whose budget of steps is spent."""
-    maxima = batch.maxima(member, _IRREGULAR_PERIODS) * job.lowered.scales.force
-    state = job.lowered.unscaled(batch.state.y[:, member])
+    maxima = batch.maxima(member, _IRREGULAR_PERIODS) * job.scaled.scales.force
+    state = job.scaled.to_si(batch.state.y[:, member])
     return SteadyState(job.scene, maxima, Regime.unsettled(run), None, state,
                       number=job.number)
 

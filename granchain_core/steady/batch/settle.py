@@ -18,7 +18,7 @@ import numpy as np
 
 from ...integrate.batch import NEVER, Batch
 from ...kernels.width import BATCH_SIZE
-from ...lower import lower
+from ...scaling import scale_chain
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import rest
@@ -65,12 +65,12 @@ class _JobsInBatch:
         """The coarse run is checked once it may have settled, the finer one once the difference has decayed."""
         if job.coarse is None:
             look = min(_DRAFT if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
-            self.batch.put(member, job.lowered, job.y, 1, look)
+            self.batch.put(member, job.scaled, job.y, 1, look)
             return
         regime, maxima = job.coarse
         assert regime.period is not None
         rate = max(1e-3, regime.contraction)
-        self.batch.put_fine(member, job.lowered, job.y, FINER, regime.period, rate, maxima)
+        self.batch.put_fine(member, job.scaled, job.y, FINER, regime.period, rate, maxima)
 
     def step(self) -> SteadyState | None:
         """Run until a member is due for a check, and check it."""
@@ -96,7 +96,7 @@ class _JobsInBatch:
     def _free(self, member: int) -> None:
         """Leave a place at rest, without checks, until it is filled again."""
         job = self.jobs.pop(member)
-        self.batch.put(member, job.lowered, np.zeros_like(job.y), 1, NEVER, NEVER)
+        self.batch.put(member, job.scaled, np.zeros_like(job.y), 1, NEVER, NEVER)
 
     def undecided(self) -> list[Job]:
         """Doubtful jobs of similar steps a period, one for a pair of members; fewer only if nothing else is to do."""
@@ -109,7 +109,7 @@ class _JobsInBatch:
     def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
         """Classify doubtful jobs by their Lyapunov exponents; one whose neighbours come closer runs on."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
-        found = exponents_in_pairs([(job.lowered, job.y) for job in jobs], EXPONENT_BLOCKS, PERIODS_IN_BLOCK, self.stop)
+        found = exponents_in_pairs([(job.scaled, job.y) for job in jobs], EXPONENT_BLOCKS, PERIODS_IN_BLOCK, self.stop)
         for job, (growth, strobes, maxima, y) in zip(jobs, found, strict=True):
             if not np.isfinite(growth).all():
                 yield failed(job)
@@ -135,7 +135,7 @@ class _JobsInBatch:
                 self.waiting.append(job)
             else:
                 unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
-                yield SteadyState(job.scene, job.maxima, regime, None, job.lowered.unscaled(y), number=job.number,
+                yield SteadyState(job.scene, job.maxima, regime, None, job.scaled.to_si(y), number=job.number,
                                  doubtful=unclear and job.affordable)
 
 
@@ -177,19 +177,19 @@ def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
     regime, scene = result.regime, result.scene
     if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:
         return result
-    y = lower(scene).scaled(result.state).reshape(2, -1)
+    y = scale_chain(scene).from_si(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
     return result if largest < _SURE else replace(result, doubtful=True)
 
 
 def _steps(job: Job) -> int:
-    return job.lowered.steps_per_period()
+    return job.scaled.steps_per_period()
 
 
 def _new_job(start: Start) -> Job:
-    lowered = lower(start.scene)
+    scaled = scale_chain(start.scene)
     state = rest(start.scene) if start.state is None else start.state
-    return Job(start.scene, lowered, lowered.scaled(state), number=start.number)
+    return Job(start.scene, scaled, scaled.from_si(state), number=start.number)
 
 
 def _job_or_none(starts: Iterator[Start]) -> Job | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...integrate import State
 from ...integrate.batch import can_share_batch
-from ...integrate.methods import CERTIFIED, LIVE
+from ...integrate.methods import ADAPTIVE, FIXED_STEP
 from ...regime import Regime
 from ...result import ForceErrors, said_forces
 from ...scene import Amplitude, Scene
@@ -141,7 +141,7 @@ class Curve(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Start and cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""
-        single = f"{LIVE} or {CERTIFIED} point by point"
+        single = f"{FIXED_STEP} or {ADAPTIVE} point by point"
         method = f"rk4 in batches, {single}" if can_share_batch(self.scene) else single
         reached = [p.error_estimate for p in self.points if p.error_estimate is not None]
         return {**provenance(self.scene, method, max(reached) if reached else None), "start": self.start,

@@ -22,7 +22,7 @@ STRONG = 0.7
 ENDED = 0.05
 #: A peak or valley counts if it differs from both neighbouring extrema by this part of the larger: a valley is at least
 #: 20 % below both neighbouring peaks.
-STANDS_OUT = 0.2
+PROMINENCE = 0.2
 #: A state is on a peak if its force is below the peak by at most this fraction of the height above the next valley.
 _ON_TOP = 0.2
 #: A state is in a valley if its force is above the valley by less than this fraction of that height; states in between
@@ -109,7 +109,7 @@ def extrema(force: np.ndarray) -> list[int]:
         rising = force[i] > force[turns[-1]]
         if len(turns) > 1 and rising == (force[turns[-1]] > force[turns[-2]]):
             turns[-1] = i
-        elif abs(force[i] - force[turns[-1]]) >= STANDS_OUT * max(force[i], force[turns[-1]]):
+        elif abs(force[i] - force[turns[-1]]) >= PROMINENCE * max(force[i], force[turns[-1]]):
             turns.append(i)
     return turns
 

@@ -25,7 +25,7 @@ def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     settling = run_until_settled(scene, start, stop)
     if settling.regime.name == "periodic":
         return _on_its_orbit(settling)
-    maxima = settling.maxima[-min(len(settling.maxima), 100) :].max(axis=0) * settling.engine.lowered.scales.force
+    maxima = settling.maxima[-min(len(settling.maxima), 100) :].max(axis=0) * settling.engine.scaled.scales.force
     return SteadyState(scene, maxima, settling.regime, None, settling.engine.state)
 
 
@@ -39,7 +39,7 @@ def _on_its_orbit(settling: Settling) -> SteadyState:
     finer.start(engine.state)
     maxima = finer.largest_forces(n)
     errors = errors_between(finer, before, settling.regime.contraction, distance)
-    return SteadyState(settling.scene, maxima * finer.lowered.scales.force, settling.regime, errors, finer.state)
+    return SteadyState(settling.scene, maxima * finer.scaled.scales.force, settling.regime, errors, finer.state)
 
 
 def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:

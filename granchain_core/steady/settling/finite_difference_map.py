@@ -1,8 +1,8 @@
-"""The n-period stroboscopic map by the live method, its derivative by finite differences, and its fixed points.
+"""The n-period stroboscopic map by the fixed-step method, its derivative by finite differences, and its fixed points.
 
 While a chain settles, claims near |μ| = 1 are tested with this map: its kernels are already compiled, and it allows cut
 tension. `StroboscopicMap` (`granchain_core/orbits/flow.py`), whose derivative is the tangent flow, is for orbits that
-are asked for. Both agree on |μ| to 1e-5 (tests/numerics/test_label_honesty.py).
+are asked for. Both agree on |μ| to 1e-5 (tests/numerics/test_regime_labels.py).
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
-from ...integrate import Engine, certified, live
+from ...integrate import Engine, adaptive_setting, fixed_step_setting
 from ...scene import Scene
 from ...stop import Stop
 
-#: Steps in place of one live step: multipliers then differ from those of a tangent flow by about 1e-6.
+#: Steps in place of one default step: multipliers then differ from those of a tangent flow by about 1e-6.
 _REFINE = 4.0
-#: Tolerance of the certified method, which scenes that cut tension need.
+#: Tolerance of the adaptive method, which scenes that cut tension need.
 _TOLERANCE = 1e-11
 #: Half the distance of the two states of a central difference, relative to the largest displacement or w. The error is
 #: its square times the map's third derivative, plus the method's noise, about 1e-10, divided by it.
@@ -36,10 +36,10 @@ _HALVINGS = 5
 
 
 class FiniteDifferenceMap:
-    """x → the state n drive periods later by the live method, for scaled x = (u, w) (2N,) at phase 0."""
+    """x → the state n drive periods later by the fixed-step method, for scaled x = (u, w) (2N,) at phase 0."""
 
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, refine: float = _REFINE) -> None:
-        setting = certified(_TOLERANCE) if scene.cuts_tension else live(refine)
+        setting = adaptive_setting(_TOLERANCE) if scene.cuts_tension else fixed_step_setting(refine)
         self.engine = Engine(scene, setting, 1, stop=stop)
         self.periods = periods
 
@@ -65,7 +65,7 @@ class FiniteDifferenceMap:
 
     def inner(self, y: np.ndarray) -> np.ndarray:
         """The beads' part of a whole state array."""
-        return self.engine.lowered.beads_of(y)
+        return self.engine.scaled.beads_of(y)
 
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by differences; one-sided ones take half the time and are good to about 1e-4."""

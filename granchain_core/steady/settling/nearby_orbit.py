@@ -109,7 +109,7 @@ class NearbyOrbit:
         now, later = (float(_lengths(rows, states - self.point.x).max()) for states in passed)
         return now, later
 
-    def enlarged_departure(self) -> np.ndarray | None:
+    def amplified_departure(self) -> np.ndarray | None:
         """A later state of a motion that leaves this orbit, with its part along the growing directions enlarged.
 
         None if it is that far away already.

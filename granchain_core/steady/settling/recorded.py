@@ -1,6 +1,6 @@
 """Records of settling: pictures of the motion on its way, and the refined periodic orbit with its error.
 
-Motions that are not periodic are recorded by the live method, without a claim on their error.
+Motions that are not periodic are recorded by the fixed-step method, without a claim on their error.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from ...integrate import Counts, Engine, Setting, State, live
+from ...integrate import Counts, Engine, Setting, State, fixed_step_setting
 from ...integrate.methods import typical_error
 from ...kernels.samples import Samples
 from ...regime import Regime
@@ -31,7 +31,7 @@ from .settling import Settling, run_until_settled
 PICTURE_SAMPLES = 96
 #: Periods shown of a motion that is not periodic.
 _SHOWN = 4
-#: Finest steps of a picture without a drive, the live method's over this.
+#: Finest steps of a picture without a drive, the fixed-step method's over this.
 _MOST_REFINED = 64
 #: Time after which a first picture is shown although nothing is decided yet [s].
 _PREVIEW_AFTER = 0.012
@@ -52,7 +52,7 @@ class Settled(Labelled):
     start : str
         Where the motion came from: "rest" or "previous state".
     preview : bool
-        Whether this is a first picture by the live method.
+        Whether this is a first picture by the fixed-step method.
     final : bool
         Whether it is the last and best.
 
@@ -144,8 +144,9 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
             stop: Stop | None = None) -> Settled:
     """The steady state that a chain reaches. Also called `settle`.
 
-    The live method runs until the distance to the orbit is bounded or the regime is decided otherwise; a periodic orbit
-    is then computed again with a setting fine enough for the accuracy asked for (docs/design.md, "Settled is a bound").
+    The fixed-step method runs until the distance to the orbit is bounded or the regime is decided otherwise; a periodic
+    orbit is then computed again with a setting fine enough for the accuracy asked for (docs/design.md, "Settled is a
+    bound").
 
     Parameters
     ----------
@@ -191,7 +192,7 @@ def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAM
 
 def from_start(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
     """The motion of a chain without a drive from its start, over the time 1/f, to the accuracy asked for."""
-    begin, setting, total = rest(scene) if start is None else start, live(), Counts()
+    begin, setting, total = rest(scene) if start is None else start, fixed_step_setting(), Counts()
 
     def recorded(chosen: Setting) -> tuple[Engine, Samples]:
         engine = Engine(scene, chosen, samples, stop=stop)
@@ -202,7 +203,7 @@ def from_start(scene: Scene, start: State | None, samples: int, began: float, st
 
     coarse, before = recorded(setting)
     while True:
-        setting = setting.finer_than(coarse.lowered, samples)
+        setting = setting.finer_than(coarse.scaled, samples)
         fine, rows = recorded(setting)
         largest = float(np.abs(rows.displacement).max())
         change = float(np.abs(rows.displacement - before.displacement).max()) / largest if largest > 0 else 0.0
@@ -216,7 +217,7 @@ def from_start(scene: Scene, start: State | None, samples: int, began: float, st
 
 
 def live_picture(motion: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
-    """The present motion by the live method, over one orbit or a few periods; the settling itself is not advanced."""
+    """The present motion by fixed steps, over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
     state = motion.engine.state
     engine.start(state)

@@ -15,7 +15,7 @@ from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
 from ..lyapunov import exponents
-from ..regime import agree, changes, clearly_chaotic, departing, regime_from_exponents, slowing, undecided
+from ..regime import agree, changes, clearly_chaotic, converging, departing, regime_from_exponents, undecided
 from .nearby_orbit import MOST_BEADS, NEAR, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
@@ -73,7 +73,7 @@ class Decisions:
                     return found
         if regime.periods_run >= MOST_PERIODS * (_PATIENCE if self._leaves else 1):
             return Decision(regime)
-        if slowing(strobes) or departing(strobes):
+        if converging(strobes) or departing(strobes):
             return Decision()
         return self._measure(engine, strobes, regime)
 
@@ -112,7 +112,7 @@ class Decisions:
         self._leaves = self._leaves or orbit.unstable
         if not orbit.unstable or self._departures >= _MOST_DEPARTURES:
             return None
-        further = orbit.enlarged_departure()
+        further = orbit.amplified_departure()
         if further is None:
             return None
         self._departures += 1
@@ -151,7 +151,7 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
 
     `engine` is a live one where the strobes (P, 2, N) end; it goes on where a Lyapunov exponent is measured.
     """
-    scene, stop = engine.lowered.scene, engine.stop
+    scene, stop = engine.scaled.scene, engine.stop
     if regime.period is not None:
         if (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY or scene.N > MOST_BEADS:
             return regime
@@ -163,7 +163,7 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
         for orbit in orbits_beside(scene, strobes, scaled(engine), stop):
             if orbit.approached():
                 return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)
-            if orbit.unstable and orbit.enlarged_departure() is not None:
+            if orbit.unstable and orbit.amplified_departure() is not None:
                 return regime
     return _classified_by_exponent(engine, strobes, regime)
 
@@ -190,4 +190,4 @@ def _classified_by_exponent(engine: Engine, strobes: np.ndarray, regime: Regime)
 
 def scaled(engine: Engine) -> np.ndarray:
     """The engine's state (2N,) of displacements, then w."""
-    return engine.lowered.beads_of(engine.y)
+    return engine.scaled.beads_of(engine.y)

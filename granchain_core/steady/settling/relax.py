@@ -26,7 +26,7 @@ def orbit_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
 def relax(settling: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
     """The finer method on its own orbit, and the bound on the distance left.
 
-    The orbit of the live method differs from the true one by its error; a few more periods remove it. With r the
+    The orbit of the fixed-step method differs from the true one by its error; a few more periods remove it. With r the
     contraction of the regime (|μ| where it was computed, else the decay) and `change` from one n-period map to the
     next, the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; if
     these are not smaller, the extrapolation is undone.
@@ -70,6 +70,6 @@ def move_to_limit(engine: Engine, states: np.ndarray, change: float, rate: float
     largest = np.abs(states).max(axis=(0, 2))[:, None]
     if not within_reach(states[-1] / largest, there / largest, change, rate):
         return False
-    scales = engine.lowered.scales
+    scales = engine.scaled.scales
     engine.start(State(there[0] * scales.length, there[1] * scales.velocity))
     return True

@@ -1,8 +1,8 @@
 """Bringing a chain to its steady state, and deciding whether it is there.
 
-The live method runs from the start until the distance bound is small (regime.py) or the regime is decided otherwise
-(regime_decisions.py). A periodic orbit is then computed again with finer steps (relax.py); recorded.py records what
-was reached.
+The fixed-step method runs from the start until the distance bound is small (regime.py) or the regime is decided
+otherwise (regime_decisions.py). A periodic orbit is then computed again with finer steps (relax.py); recorded.py
+records what was reached.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...integrate import Engine, State, live
+from ...integrate import Engine, State, fixed_step_setting
 from ...regime import Regime
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
@@ -21,17 +21,17 @@ from ...stop import Stop
 from ..regime import find_period
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
-#: Most steps of the live method while settling: about half a minute.
+#: Most steps of the fixed-step method while settling: about half a minute.
 MOST_STEPS = 100_000_000
 
 
 class Settling:
-    """Runs a chain by the live method towards its steady state, chunk by chunk, until the regime is decided."""
+    """Runs a chain by the fixed-step method towards its steady state, chunk by chunk, until the regime is decided."""
 
     def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
         refuse_undriven(scene)
         self.scene = scene
-        self.engine = Engine(scene, live(), 1, stop=stop)
+        self.engine = Engine(scene, fixed_step_setting(), 1, stop=stop)
         self.stop = self.engine.stop
         self.engine.start(start if start is not None else rest(scene))
         self._steps = self.engine.grid
@@ -42,7 +42,7 @@ class Settling:
 
     def _begin(self, run: int) -> None:
         """A new record of strobes from where the engine is, after `run` periods; `_here` counts its periods."""
-        first, scales = self.engine.state, self.engine.lowered.scales
+        first, scales = self.engine.state, self.engine.scaled.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
         self._run, self._here, self._stop_at = run, 0, EXAMINED_AFTER
         self.regime = Regime.unsettled(run)

@@ -29,7 +29,7 @@ WIDE = has_avx512()
 WIDTH = 8 if WIDE else 4
 _FLAGS = ("-O3", "-march=native", "-mprefer-vector-width=512" if WIDE else "-mno-avx512f", "-ffp-contract=fast",
           "-fno-math-errno", "-fno-trapping-math", "-shared", "-fPIC")
-#: Step in scaled time at `refine` 1, the same as granchain's live method; settings of the ladder are steps.
+#: Step in scaled time at `refine` 1, the same as granchain's fixed-step method; settings of the ladder are steps.
 STEP = 0.2
 #: Registers of scenes side by side and contacts that use the square-root unit, tried in this order.
 SHAPES = ((1, 4), (1, 3), (1, 5), (1, 2), (1, 6), (2, 4)) if WIDE else ((1, 12), (1, 9), (1, 6), (1, 4), (2, 12), (2, 6))

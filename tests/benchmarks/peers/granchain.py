@@ -13,17 +13,17 @@ from granchain_core.errors import NumbersFailed
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.kernels.width import BATCH_SIZE
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 from granchain_core.stop import Stop
 
 from .. import problem
 from ..case import Case, Peaks, rungs
 from ..problem import Solved
 
-#: Its fixed-step methods and the multiples of the live method's steps that are tried.
+#: Its fixed-step methods and the multiples of the fixed-step method's steps that are tried.
 FIXED = ("rk4-split", "rk4")
 REFINES = (0.5, 0.6, 0.7, 0.8, 1, 1.2, 1.4, 1.6, 2, 2.5, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 96, 128, 256)
-#: The reference: the certified method at its finest; for the curve, where 300 points are needed, coarser.
+#: The reference: the adaptive method at its finest; for the curve, where 300 points are needed, coarser.
 FINEST, CURVE_TOLERANCE = 3e-15, 1e-9
 
 
@@ -37,7 +37,7 @@ def _scene(frequency: float = problem.FREQUENCY) -> Scene:
 
 
 def reference() -> Solved:
-    """The trajectory by the certified method at its finest; states are displacements and velocities."""
+    """The trajectory by the adaptive method at its finest; states are displacements and velocities."""
     samples = Engine(_scene(), Setting("dop853", tolerance=FINEST), problem.SAMPLES).record(
         problem.PERIODS * problem.SAMPLES)
     return Solved(np.hstack([samples.displacement, samples.velocity]), None)
@@ -60,8 +60,8 @@ def _recording(setting: Setting) -> Callable[[], Solved]:
     return record
 
 
-def certified_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE) -> tuple[np.ndarray, np.ndarray]:
-    """Peaks of all points and whether each is periodic, by the certified method on all cores."""
+def reference_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE) -> tuple[np.ndarray, np.ndarray]:
+    """Peaks of all points and whether each is periodic, by the adaptive method on all cores."""
 
     def point(frequency: float) -> tuple[float, bool]:
         engine = Engine(_scene(frequency), Setting("dop853", tolerance=tolerance), 1)
@@ -84,21 +84,21 @@ def _returns(strobes: np.ndarray, near: float = 1e-6) -> bool:
 
 def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
     """Exactly 100 + 20 periods of every point in batches on this thread: longest first, places filled as they end."""
-    lowered = [lower(_scene(f)) for f in sorted(frequencies)]
+    scaled = [scale_chain(_scene(f)) for f in sorted(frequencies)]
     total = problem.PASSED + problem.WATCHED
-    values, rest = np.zeros(len(lowered)), np.zeros(2 * lowered[0].bodies)
+    values, rest = np.zeros(len(scaled)), np.zeros(2 * scaled[0].bodies)
     began = time.perf_counter()
-    batch = Batch(lowered[0].scene, Stop())
-    waiting, place = iter(range(len(lowered))), {}
+    batch = Batch(scaled[0].scene, Stop())
+    waiting, place = iter(range(len(scaled))), {}
 
     def fill(member: int) -> None:
         number = next(waiting, None)
         if number is None:
             place.pop(member, None)
-            batch.put(member, lowered[-1], rest, refine, NEVER, NEVER)
+            batch.put(member, scaled[-1], rest, refine, NEVER, NEVER)
         else:
             place[member] = number
-            batch.put(member, lowered[number], rest, refine, total, NEVER)
+            batch.put(member, scaled[number], rest, refine, total, NEVER)
 
     for member in range(BATCH_SIZE):
         fill(member)
@@ -107,7 +107,7 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
         values[place[member]] = batch.maxima(member, problem.WATCHED)[2]
         fill(member)
     seconds = time.perf_counter() - began
-    evaluations = 4 * total * round(refine * sum(one.steps_per_period() for one in lowered))
+    evaluations = 4 * total * round(refine * sum(one.steps_per_period() for one in scaled))
     order = np.argsort(np.argsort(frequencies))
     return Peaks(values[order], seconds, evaluations)
 

@@ -11,7 +11,7 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.kernels.width import BATCH_SIZE
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 from granchain_core.state import rest
 from granchain_core.stop import Stop
 
@@ -33,8 +33,8 @@ def scenes_of(case: str):
 
 def put(batch: Batch, member: int, one, refine: float) -> None:
     """Start a scene from rest; it is looked at after its periods."""
-    lowered = lower(one)
-    batch.put(member, lowered, lowered.scaled(rest(one)), refine, return_at=PERIODS, earliest=NEVER)
+    scaled = scale_chain(one)
+    batch.put(member, scaled, scaled.from_si(rest(one)), refine, return_at=PERIODS, earliest=NEVER)
 
 
 def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
@@ -92,7 +92,7 @@ def test_batches_converge_with_order_three_over_a_decade_of_steps(case):
 
 @pytest.mark.parametrize("case", CHAINS)
 def test_batches_are_as_near_as_a_curve_needs(case):
-    """1e-4 at the live step (one free bead, which the driver hits at any phase, amplifies that tenfold) and, by
+    """1e-4 at the default step (one free bead, which the driver hits at any phase, amplifies that tenfold) and, by
     order 3, a thousand times nearer at a twelfth of it."""
     found = errors(case).max(axis=1)
     assert found[0] < (2e-3 if case == "one bead" else 5e-4)

@@ -1,4 +1,4 @@
-"""Batches of unequal beads move as the certified method says; the drive's phase in a batch never drifts."""
+"""Batches of unequal beads move as the adaptive method says; the drive's phase in a batch never drifts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from granchain_core import Scene, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 from granchain_core.state import rest
 from granchain_core.stop import Stop
 
@@ -24,12 +24,12 @@ def dimer(f: float) -> Scene:
 
 
 def test_unlike_beads_in_a_batch() -> None:
-    """Strobes of three periods from rest, to the 2e-7 that a batch of order 3 reaches at a twelfth of the live step."""
+    """Strobes of three periods from rest, to the 2e-7 that a batch of order 3 reaches at a twelfth of the default step."""
     scenes = [dimer(f) for f in (400.0, 900.0, 1500.0)]
     batch = Batch(scenes[0], Stop())
     assert batch.members.unequal is not None
     for member, one in enumerate(scenes):
-        batch.put(member, lower(one), lower(one).scaled(rest(one)), 12.0, return_at=PERIODS, earliest=NEVER)
+        batch.put(member, scale_chain(one), scale_chain(one).from_si(rest(one)), 12.0, return_at=PERIODS, earliest=NEVER)
     for _ in scenes:
         member, finite = batch.run()
         assert finite
@@ -43,6 +43,6 @@ def test_the_drive_phase_in_a_batch_is_set_right_every_period() -> None:
     """Sine and cosine are turned from step to step; at the end of a period they are 0 and 1, not what turning left."""
     one = scene("sec2").evolve(N=1, f=1130.0)
     batch = Batch(one, Stop())
-    batch.put(3, lower(one), lower(one).scaled(rest(one)), 1.0, return_at=200, earliest=NEVER)
+    batch.put(3, scale_chain(one), scale_chain(one).from_si(rest(one)), 1.0, return_at=200, earliest=NEVER)
     assert batch.run() == (3, True)
     assert tuple(batch.state.phase[:, 3]) == (0.0, 1.0)

@@ -15,7 +15,7 @@ from granchain_core.kernels.effects.driver import driver_velocity
 from granchain_core.kernels.effects.given_force import Sampled
 from granchain_core.kernels.equations.motion import contact_force, motion, stored_energy
 from granchain_core.kernels.forces.peaks import quartic_top
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 from granchain_core.scene import Bead
 
 
@@ -52,9 +52,9 @@ def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
     elastic, damping = K * overlap**1.5, 0.0 if law == "none" else chosen.D
     total = elastic + damping * (overlap > 0.0) * (speeds[:-1] - speeds[1:])
     w = v - damping * (overlap[:-1] - overlap[1:]) / masses
-    lowered = lower(chosen)
-    row, scales, slots = lowered.bodies, lowered.scales, lowered.slots
-    y, dy, space = np.zeros(2 * row), np.zeros(2 * row), lowered.forces()
+    scaled = scale_chain(chosen)
+    row, scales, slots = scaled.bodies, scaled.scales, scaled.slots
+    y, dy, space = np.zeros(2 * row), np.zeros(2 * row), scaled.forces()
     y[1 : row - 1], y[row + 1 : -1] = u / scales.length, w / scales.velocity
     motion.py_func(slots, u0 / scales.length, v0 / scales.velocity, y, dy, space)
     near = {"rtol": 1e-11, "atol": 1e-11 * np.abs(total).max()}  # differences of displacements lose a digit or two
@@ -72,10 +72,10 @@ def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
 def test_the_damping_named_by_the_knob_is_that_at_the_reference_overlap(law: str, power: float, A0: float) -> None:
     """g = D (δ/δ_ref)^p N s/m at every drive amplitude, whatever the unit of length is."""
     chosen = scene("sec2").evolve(dissipation=law, A0=A0, D=31.0)
-    lowered = lower(chosen)
-    unit = chosen.bead(1).mass * lowered.scales.rate  # of damping
+    scaled = scale_chain(chosen)
+    unit = chosen.bead(1).mass * scaled.scales.rate  # of damping
     for overlap in (1e-8, 3e-6):
-        found = damping(lowered.slots.dissipation, overlap / lowered.scales.length) * unit
+        found = damping(scaled.slots.dissipation, overlap / scaled.scales.length) * unit
         assert found == pytest.approx(31.0 * (overlap / chosen.reference_overlap) ** power, rel=1e-12)
 
 

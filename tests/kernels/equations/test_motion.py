@@ -12,7 +12,7 @@ from chains import LAWS
 from granchain_core import scene
 from granchain_core.kernels.equations.motion import contact_force, motion, place
 from granchain_core.kernels.jit import kernel
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 
 #: law, tension, kappa, preload, wall: all structures, each wall often enough
 CASES = [(law, tension, kappa, preload, wall)
@@ -34,22 +34,22 @@ def compiled_force(slots, y, dy, e, c):
 
 
 def evaluated(chosen, u, v, time, compiled=True):
-    """(lowered, θ, state, slope, total forces) of the kernel in scaled units for SI displacements and velocities (N,).
+    """(scaled, θ, state, slope, total forces) of the kernel in scaled units for SI displacements and velocities (N,).
 
     Not compiled, it is the same source run by Python: dozens of structures would take a minute to compile.
     """
     slope_of, force = (compiled_motion, compiled_force) if compiled else (motion, contact_force)
-    lowered = lower(chosen)
-    row, scales, slots = lowered.bodies, lowered.scales, lowered.slots
-    y, dy, space = np.zeros(2 * row), np.zeros(2 * row), lowered.forces()
+    scaled = scale_chain(chosen)
+    row, scales, slots = scaled.bodies, scaled.scales, scaled.slots
+    y, dy, space = np.zeros(2 * row), np.zeros(2 * row), scaled.forces()
     y[1 : row - 1], y[row + 1 : -1] = u / scales.length, v / scales.velocity
     theta = 2 * np.pi * chosen.f * time
-    drive = np.sin(theta), lowered.beta * np.cos(theta)
+    drive = np.sin(theta), scaled.beta * np.cos(theta)
     slope_of(slots, *drive, y, dy, space)
     if space.G is not None:  # w = v − (G_left − G_right)/m
         y[row + 1 : -1] -= slots.chain.inverse_mass[1:-1] * (space.G[:-1] - space.G[1:])
     slope_of(slots, *drive, y, dy, space)
-    return lowered, theta, y, dy, np.array([force(slots, y, dy, space.e, c) for c in range(row - 1)])
+    return scaled, theta, y, dy, np.array([force(slots, y, dy, space.e, c) for c in range(row - 1)])
 
 
 def random_state(chosen, seed: int):
@@ -68,8 +68,8 @@ def test_forces_velocities_and_accelerations_are_those_of_the_paper(law, tension
         u, v = random_state(chosen, seed)
         time = 0.13 / chosen.f
         compiled = tension == "allowed" and kappa == 0.0
-        lowered, theta, y, dy, total = evaluated(chosen, u, v, time, compiled)
-        scales = lowered.scales
+        scaled, theta, y, dy, total = evaluated(chosen, u, v, time, compiled)
+        scales = scaled.scales
         expected, elastic = equations.forces(chosen, u, v, time)
         # formulas in double precision either way; differences of displacements lose a digit or two
         near = {"rtol": 1e-11, "atol": 1e-11 * max(np.abs(expected))}
@@ -80,24 +80,24 @@ def test_forces_velocities_and_accelerations_are_those_of_the_paper(law, tension
         if tension == "allowed":
             only_elastic = [(elastic[i] - elastic[i + 1] - chosen.k * u[i]) / m for i in range(chosen.N)]
             np.testing.assert_allclose(slope, only_elastic, rtol=1e-11, atol=1e-11 * np.abs(only_elastic).max())
-        assert acceleration_from_w(lowered, theta, y, compiled) * scales.length * scales.rate**2 == pytest.approx(
+        assert acceleration_from_w(scaled, theta, y, compiled) * scales.length * scales.rate**2 == pytest.approx(
             equations.acceleration(chosen, u, v, time), rel=2e-5, abs=2e-5 * max(np.abs(expected)) / m)
 
 
-def acceleration_from_w(lowered, theta, y, compiled, step=1e-6):
+def acceleration_from_w(scaled, theta, y, compiled, step=1e-6):
     """d²u/dτ² as the change of du/dτ along the flow itself: a central difference of the kernel's own velocities.
 
     Its error is (step·rate)² and rounding/step, with the kinks of the contacts further away than the step: about 1e-6.
     """
-    row, space = lowered.bodies, lowered.forces()
+    row, space = scaled.bodies, scaled.forces()
     slope = np.zeros_like(y)
     slope_of = compiled_motion if compiled else motion
-    slope_of(lowered.slots, y[0], lowered.slots.driver.beta * np.cos(theta), y.copy(), slope, space)
+    slope_of(scaled.slots, y[0], scaled.slots.driver.beta * np.cos(theta), y.copy(), slope, space)
     velocities = []
     for sign in (1.0, -1.0):
         moved, there = y + sign * step * slope, np.zeros_like(y)
-        angle = theta + sign * step * lowered.slots.driver.beta
-        slope_of(lowered.slots, np.sin(angle), lowered.slots.driver.beta * np.cos(angle), moved, there, space)
+        angle = theta + sign * step * scaled.slots.driver.beta
+        slope_of(scaled.slots, np.sin(angle), scaled.slots.driver.beta * np.cos(angle), moved, there, space)
         velocities.append(there[1 : row - 1])
     return (velocities[0] - velocities[1]) / (2 * step)
 
@@ -120,9 +120,9 @@ def test_rest_without_overlap_is_an_equilibrium_and_preload_keeps_it_one():
     """With the driver in its middle position nothing moves: no force without preload, F0 everywhere with it."""
     for preload in (0.0, 7.0):
         chosen = scene("sec2").evolve(F0=preload, D=0.0, wall="rigid")
-        lowered, _, _, dy, total = evaluated(chosen, np.zeros(11), np.zeros(11), 0.0)
-        np.testing.assert_allclose(total * lowered.scales.force, preload, rtol=1e-14)  # rounding of (F0/K)^{2/3·3/2}
-        np.testing.assert_allclose(dy[lowered.bodies + 1 : -1], 0.0, atol=1e-13)  # of forces of order one
+        scaled, _, _, dy, total = evaluated(chosen, np.zeros(11), np.zeros(11), 0.0)
+        np.testing.assert_allclose(total * scaled.scales.force, preload, rtol=1e-14)  # rounding of (F0/K)^{2/3·3/2}
+        np.testing.assert_allclose(dy[scaled.bodies + 1 : -1], 0.0, atol=1e-13)  # of forces of order one
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -130,9 +130,9 @@ def test_a_velocity_goes_into_w_and_comes_back(law):
     """`place` turns v into w = v − (G_left − G_right)/m, and the slope's first half is v again."""
     chosen = scene("sec2").evolve(N=5, dissipation=law)
     u, v = random_state(chosen, 1)
-    lowered, theta, expected, _, _ = evaluated(chosen, u, v, 0.2 / chosen.f)
+    scaled, theta, expected, _, _ = evaluated(chosen, u, v, 0.2 / chosen.f)
     y, dy = expected.copy(), np.zeros_like(expected)
-    y[lowered.bodies + 1 : -1] = v / lowered.scales.velocity
-    place(lowered.slots, theta, y, dy, lowered.forces(), True)
+    y[scaled.bodies + 1 : -1] = v / scaled.scales.velocity
+    place(scaled.slots, theta, y, dy, scaled.forces(), True)
     np.testing.assert_allclose(y, expected, atol=1e-14 * np.abs(expected).max())  # the same sums, rounded
-    np.testing.assert_allclose(dy[1:6], v / lowered.scales.velocity, atol=1e-14 * np.abs(expected).max())
+    np.testing.assert_allclose(dy[1:6], v / scaled.scales.velocity, atol=1e-14 * np.abs(expected).max())

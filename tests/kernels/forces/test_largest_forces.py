@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import Run, Scene, resonance_curve, run, scene, settled
 from granchain_core.diagram import diagram
-from granchain_core.integrate import METHODS, Engine, Setting, State, certified, live
+from granchain_core.integrate import METHODS, Engine, Setting, State, adaptive_setting, fixed_step_setting
 from granchain_core.integrate.methods import jump_errors
 
 #: One bead that touches the driver when that starts with its full speed: the first force there is D A₀ 2πf, at t = 0+.
@@ -57,11 +57,11 @@ def test_a_jump_is_read_where_the_overlap_vanishes(beads: int) -> None:
     Without a second look the errors are 2.5e-5 to 2e-7 here, with it 2e-7 and less: below what `jump_errors` knows of.
     """
     chain = scene("sec2").evolve(f=88.679, A0=1.60810e-8, D=211.888, k=2513.91, N=beads)
-    on_its_way = Engine(chain, live(), 1)
+    on_its_way = Engine(chain, fixed_step_setting(), 1)
     on_its_way.periods(36)
-    exact = jump_and_force(chain, certified(1e-11), on_its_way.state)[1]
+    exact = jump_and_force(chain, adaptive_setting(1e-11), on_its_way.state)[1]
     for refine in (4, 6, 8, 12, 16):
-        least, force = jump_and_force(chain, live(refine), on_its_way.state)
+        least, force = jump_and_force(chain, fixed_step_setting(refine), on_its_way.state)
         assert abs(force / exact - 1.0) < least
 
 
@@ -72,7 +72,7 @@ def jump_and_force(chain: Scene, setting: Setting, state: State) -> tuple[float,
     engine.reset_peaks()
     maxima = engine.largest_forces(1)
     assert engine.jumps[0] == maxima[0]
-    return jump_errors(setting, engine.lowered, setting.step(engine.lowered, 1), engine.jumps, maxima)[0], maxima[0]
+    return jump_errors(setting, engine.scaled, setting.step(engine.scaled, 1), engine.jumps, maxima)[0], maxima[0]
 
 
 def test_the_largest_force_is_that_of_a_jump() -> None:
@@ -137,7 +137,7 @@ def test_touches_shorter_than_a_step_are_found_or_said_not_to_be_resolved(method
     touched = engine.closings[engine.closings[:, 2] == 0]
     assert len(touched) == 1
     assert (engine.unresolved == 0) is resolves
-    rate = engine.lowered.beta * np.sqrt(1.0 - (1.0 - NEAR) ** 2)
-    expected = engine.lowered.slots.dissipation.coefficient * rate
+    rate = engine.scaled.beta * np.sqrt(1.0 - (1.0 - NEAR) ** 2)
+    expected = engine.scaled.slots.dissipation.coefficient * rate
     assert touched[0, 3] == pytest.approx(expected, rel=0.02 if resolves else 0.1)
     assert engine.maxima[0] >= touched[0, 3]

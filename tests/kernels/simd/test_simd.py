@@ -8,7 +8,7 @@ import pytest
 from granchain_core import Scene, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch, can_share_batch
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 from granchain_core.state import rest
 from granchain_core.steady.batch.settle import batch_results
 from granchain_core.steady.curve.curve import CurvePoint
@@ -56,8 +56,8 @@ def test_a_member_that_is_not_finite_does_not_lose_the_others() -> None:
     scenes = [scene("sec2").evolve(f=f) for f in (1000.0, 1130.0)]
     block = Batch(scenes[0], Stop())
     for member, one in enumerate(scenes):
-        y = lower(one).scaled(rest(one))
-        block.put(member, lower(one), y * (np.nan if member == 0 else 1.0), 1, return_at=5, earliest=5)
+        y = scale_chain(one).from_si(rest(one))
+        block.put(member, scale_chain(one), y * (np.nan if member == 0 else 1.0), 1, return_at=5, earliest=5)
     block.state.y[1, 0] = np.nan
     member, finite = block.run()
     assert member == 0 and not finite

@@ -1,6 +1,6 @@
 """Program: is what a sweep calls a motion true? Past the special points of section 2's period-1 branch, both ways.
 
-    python -m tests.numerics.label_honesty [--places 255.8 832.5] [--width 2] [--step 0.25] [--starts up down rest]
+    python -m tests.numerics.regime_labels [--places 255.8 832.5] [--width 2] [--step 0.25] [--starts up down rest]
 
 Every point is run once more from the state in which the sweep began it, through 5,000 periods of a quarter of the live
 method's step, and longer where that does not decide. It is periodic with the shortest n over which its strobes repeat

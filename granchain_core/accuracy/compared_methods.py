@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ..integrate import METHODS, Setting
 from .scipy_methods import SOLVERS
 
-#: Settings of fixed-step methods: factors on the live method's number of steps.
+#: Settings of fixed-step methods: factors on the fixed-step method's number of steps.
 _REFINES = (1, 2, 4, 8, 16)
 #: Settings of methods with error control: tolerances per step.
 _TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12)
@@ -31,8 +31,8 @@ class MeasuredMethod:
 
 
 @dataclass(frozen=True)
-class Choice:
-    """One setting of one method; `value` is its refinement of the live steps, or its tolerance."""
+class MeasuredSetting:
+    """One setting of one method; `value` is its refinement of the default steps, or its tolerance."""
 
     method: str
     label: str
@@ -40,7 +40,7 @@ class Choice:
     setting: Setting | None
 
 
-def ways() -> dict[str, MeasuredMethod]:
+def compared_methods() -> dict[str, MeasuredMethod]:
     """Everything that can be measured, by name: the table of methods as it is now, then SciPy's solvers."""
     own = [MeasuredMethod(m.name, m.title, "naive" if m.variables == "uv" else "granchain", m.order, m.restrictions,
                           m.reference) for m in METHODS.values()]
@@ -53,17 +53,17 @@ def label(setting: Setting) -> str:
     """A setting in words."""
     if METHODS[setting.method].adaptive:
         return f"tolerance {setting.tolerance:.2g}"
-    return f"{setting.refine:.3g} × the live steps"
+    return f"{setting.refine:.3g} × the default steps"
 
 
-def choices() -> Iterator[Choice]:
+def measured_settings() -> Iterator[MeasuredSetting]:
     """Every setting of every way, the cheap ones of each first."""
     for method in METHODS.values():
         values = _TOLERANCES if method.adaptive else _REFINES
         for value in values:
             setting = (Setting(method.name, tolerance=value) if method.adaptive
                        else Setting(method.name, refine=int(value)))
-            yield Choice(method.name, label(setting), float(value), setting)
+            yield MeasuredSetting(method.name, label(setting), float(value), setting)
     for solver in SOLVERS:
         for tolerance in _SCIPY_TOLERANCES:
-            yield Choice(SCIPY + solver, f"tolerance {tolerance:g}", tolerance, None)
+            yield MeasuredSetting(SCIPY + solver, f"tolerance {tolerance:g}", tolerance, None)

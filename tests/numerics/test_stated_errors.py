@@ -1,28 +1,28 @@
-"""The errors that `run` and the curve state bound the true ones, on random scenes (honesty.py, curve_honesty.py)."""
+"""The errors that `run` and the curve state bound the true ones, on random scenes (stated_errors.py, curve_errors.py)."""
 
 from __future__ import annotations
 
 import functools
 
-import curve_honesty
-import honesty
+import curve_errors
 import numpy as np
 import pytest
+import stated_errors
 
 from granchain_core import Run, run, scene
 from granchain_core.integrate.methods import method_for
-from granchain_core.lower import lower
+from granchain_core.scaling import scale_chain
 
 #: By what factor a stated error may at most be below the true one.
 AT_MOST = 4.0
-UNCUT = [s for s in honesty.FEW if s[1] == "allowed"]
-CUT = [s for s in honesty.FEW if s[1] == "cut"]
+UNCUT = [s for s in stated_errors.FEW if s[1] == "allowed"]
+CUT = [s for s in stated_errors.FEW if s[1] == "cut"]
 
 
 @functools.cache
 def uncut() -> list:
     """Forty random scenes without a tension cut."""
-    return [v for v in honesty.verdicts(40, 20, UNCUT) if v is not None]
+    return [v for v in stated_errors.verdicts(40, 20, UNCUT) if v is not None]
 
 
 def excess(found: list) -> np.ndarray:
@@ -31,7 +31,7 @@ def excess(found: list) -> np.ndarray:
 
 
 def test_the_stated_error_bounds_the_true_one():
-    """At any accuracy from 1e-3 to 1e-9: in 99 % of a thousand scenes (`python -m tests.numerics.honesty`), which is one
+    """At any accuracy from 1e-3 to 1e-9: in 99 % of a thousand scenes (`python -m tests.numerics.stated_errors`), which is one
     of these forty at most; two computations that agree by chance are then wrong by a small factor only."""
     ratio = excess(uncut())
     print(f"{len(ratio)} scenes: {np.mean(ratio <= 1.0):.1%} bounded, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
@@ -53,7 +53,7 @@ def test_most_scenes_are_done():
 
 def test_the_stated_error_bounds_the_true_one_with_a_tension_cut():
     """The same demand where tension is cut."""
-    ratio = excess([v for v in honesty.verdicts(20, 21, CUT) if v is not None])
+    ratio = excess([v for v in stated_errors.verdicts(20, 21, CUT) if v is not None])
     assert (ratio > 1.0).sum() <= 1
     assert ratio.max() < AT_MOST
 
@@ -72,19 +72,19 @@ def test_two_computations_by_the_same_steps_are_no_evidence():
 def test_computations_with_the_same_steps_are_not_compared():
     """A fast drive sampled 16 times: half the step, asked for from so coarse an accuracy, is still one step a sample."""
     chain = scene("sec2").evolve(f=5600.0, A0=1.7e-7, D=64.0, N=5, accuracy=7e-4)
-    setting, lowered = method_for(chain.accuracy), lower(chain)
-    halved, finer = (one.steps_per_period(lowered, honesty.SAMPLES)
-                     for one in (setting.finer(), setting.finer_than(lowered, honesty.SAMPLES)))
-    assert finer > halved == setting.steps_per_period(lowered, honesty.SAMPLES)
-    true = honesty.certified(chain, 3e-15)
-    result = run(chain, periods=0, record=honesty.PERIODS, samples=honesty.SAMPLES)
+    setting, scaled = method_for(chain.accuracy), scale_chain(chain)
+    halved, finer = (one.steps_per_period(scaled, stated_errors.SAMPLES)
+                     for one in (setting.finer(), setting.finer_than(scaled, stated_errors.SAMPLES)))
+    assert finer > halved == setting.steps_per_period(scaled, stated_errors.SAMPLES)
+    true = stated_errors.accurate(chain, 3e-15)
+    result = run(chain, periods=0, record=stated_errors.PERIODS, samples=stated_errors.SAMPLES)
     assert 0.0 < np.abs(result.displacement - true).max() / np.abs(true).max() <= result.error_estimate <= chain.accuracy
 
 
 @pytest.mark.parametrize("base", ["sec2", "rig"])
 def test_the_error_stated_by_a_curve_bounds_the_true_one(base):
-    """Periodic points of batches at random drive, A₀, D and k against the certified orbit, every one of them."""
-    found = list(curve_honesty.points(40, 9, base))
+    """Periodic points of batches at random drive, A₀, D and k against the converged orbit, every one of them."""
+    found = list(curve_errors.points(40, 9, base))
     assert len(found) >= 20
     ratio = np.array([p.error / p.stated for p in found])
     print(f"{base}: {len(found)} points, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")

@@ -1,4 +1,4 @@
-"""Checkpoints of a run on disk (kept.py): killed, it goes on with the discarded periods that it has finished.
+"""Checkpoints of a run on disk (checkpoints.py): killed, it goes on with the discarded periods that it has finished.
 
 A run computes its motion several times, each time finer. For each computation the newest checkpoint among its discarded
 periods is kept; the recorded periods are computed again, since writing them would take longer.
@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from ..checkpoints import Kept, digest_of
 from ..integrate import Engine
 from ..integrate.checkpoint import Checkpoint, checkpoint, resumed
-from ..kept import Kept, digest_of
 from ..scene import Scene
 from ..stop import Stop
 
@@ -29,7 +29,7 @@ class Reached:
     strobes: np.ndarray
 
 
-class KeptRun:
+class RunCheckpoints:
     """The folder of one run: P discarded and R recorded periods of S samples, by a method or the chosen one (None)."""
 
     def __init__(self, scene: Scene, periods: int, record: int, samples: int, method: str | None,

@@ -1,4 +1,4 @@
-"""Finished orbits of a branch on disk (kept.py), as JSON: their numbers come back bit by bit.
+"""Finished orbits of a branch on disk (checkpoints.py), as JSON: their numbers come back bit by bit.
 
 A piece is what one arm has grown by: the number of its first new orbit and special point, these, and how it goes on.
 """
@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ...kept import Kept, digest_of
+from ...checkpoints import Kept, digest_of
 from .axis import KnobAxis
 from .branch import Branch
 from .point import BranchPoint
@@ -30,7 +30,7 @@ def asked_digest(axis: KnobAxis, both: bool) -> str:
                       **driven})
 
 
-class KeptOrbits:
+class OrbitCheckpoints:
     """The folder of one branch, which grows while the branch is followed; each arm may have a thread of its own."""
 
     def __init__(self, axis: KnobAxis, both: bool, out: str | Path) -> None:

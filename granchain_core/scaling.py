@@ -29,8 +29,8 @@ from .scene import Scene
 from .scene.effects import ACCOUNT, ALWAYS, EFFECTS, effects_of
 from .state import State
 
-#: Step of the live method in scaled time where overlaps are about one drive amplitude. Its usual error is
-#: `_LIVE_ERROR` in integrate/methods.py.
+#: Step of the fixed-step method in scaled time where overlaps are about one drive amplitude. Its usual error is
+#: `_FIXED_STEP_ERROR` in integrate/methods.py.
 _STEP = 0.2
 #: The same for the oscillation of a bead on its foundation, in radians of phase.
 _FOUNDATION_STEP = 0.1
@@ -63,7 +63,7 @@ class Scales:
 
 
 @dataclass(frozen=True)
-class Lowered:
+class ScaledChain:
     """A scene ready for the kernels."""
 
     scene: Scene
@@ -91,7 +91,7 @@ class Lowered:
         """Length of the whole state array."""
         return 2 * self.bodies + (2 if self.slots.balance is not None else 0)
 
-    def own(self) -> Lowered:
+    def own(self) -> ScaledChain:
         """A copy with its own flags of force-free contacts, if there are any: an engine writes into them."""
         if self.slots.tension is None:
             return self
@@ -118,7 +118,7 @@ class Lowered:
             row[:] = values
         return y
 
-    def scaled(self, state: State) -> np.ndarray:
+    def from_si(self, state: State) -> np.ndarray:
         """The scaled (u, w) array (2(N + 2),) of a state at phase 0."""
         y = np.zeros(2 * self.bodies)
         displacement, velocity = self.rows(y)
@@ -128,7 +128,7 @@ class Lowered:
         y[0] = 0.0
         return y
 
-    def unscaled(self, y: np.ndarray) -> State:
+    def to_si(self, y: np.ndarray) -> State:
         """The state in SI of a scaled (u, w) array at phase 0.
 
         The second half of y is w, not velocity; v is recovered from w and the overlaps.
@@ -139,7 +139,7 @@ class Lowered:
 
     @cached_property
     def step(self) -> float:
-        """The live method's step in scaled time."""
+        """The fixed-step method's step in scaled time."""
         slots = self.slots
         lightest = float(slots.chain.inverse_mass.max())
         stiffest = float(slots.chain.stiffness.max())
@@ -179,7 +179,7 @@ class Lowered:
         return (2.5 * energy / float(slots.chain.stiffness.min())) ** 0.4
 
     def steps_per_period(self, multiple_of: int = 1) -> int:
-        """Steps of the live method in one period, a multiple of `multiple_of`."""
+        """Steps of the fixed-step method in one period, a multiple of `multiple_of`."""
         steps = max(multiple_of, math.ceil(self.period / self.step / multiple_of) * multiple_of, 16)
         if steps > MOST_STEPS:
             raise BadInput(
@@ -214,12 +214,12 @@ _FILLED: dict[str, Callable[[Scene, Scales], Any]] = {
 require_complete()
 for _effect in EFFECTS:
     if _effect.slot not in _FILLED:
-        raise TypeError(f"effect {_effect.name!r}: lower.py does not say how its slot {_effect.slot!r} is filled.")
+        raise TypeError(f"effect {_effect.name!r}: scaling.py does not say how its slot {_effect.slot!r} is filled.")
     if _effect.slot not in Slots._fields:
         raise TypeError(f"effect {_effect.name!r}: Slots (kernels/equations/motion.py) has no field {_effect.slot!r}.")
 
 
-def lower(scene: Scene, balance: bool = False) -> Lowered:
+def scale_chain(scene: Scene, balance: bool = False) -> ScaledChain:
     """Scaled arrays and slots of `scene`; `balance` adds the energy account to the equations."""
     scales = scales_of(scene)
     beta = 2 * math.pi * scene.f / scales.rate
@@ -232,7 +232,7 @@ def lower(scene: Scene, balance: bool = False) -> Lowered:
         balance=Balance(1) if balance else None,
         **filled,
     )
-    return Lowered(scene, scales, slots, beta)
+    return ScaledChain(scene, scales, slots, beta)
 
 
 _TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
@@ -240,6 +240,6 @@ _TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
 
 def slots_of(scene: Scene, balance: bool) -> list[tuple[str, str, str | None]]:
     """Every slot of the scene's kernel: name, title, and the type compiled into it or None where it is absent."""
-    slots = lower(scene, balance=balance).slots
+    slots = scale_chain(scene, balance=balance).slots
     found = zip(slots._fields, slots, strict=True)
     return [(name, _TITLES[name], None if slot is None else type(slot).__name__) for name, slot in found]

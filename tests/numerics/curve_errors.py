@@ -1,8 +1,8 @@
 """Program: is the error that a curve states for a periodic point above the true one? Random drive, A₀, D and k.
 
-    python -m tests.numerics.curve_honesty --count 1000 [--seed 1]
+    python -m tests.numerics.curve_errors --count 1000 [--seed 1]
 
-Points come from batches, from rest. True is the certified method on the same orbit: from the point's state through
+Points come from batches, from rest. True is the adaptive method on the same orbit: from the point's state through
 as many periods as it takes until the orbit repeats itself to 1e-9, then its largest output force.
 """
 

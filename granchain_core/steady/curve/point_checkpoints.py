@@ -1,4 +1,4 @@
-"""Finished points of a resonance curve on disk (kept.py), as JSON: its numbers come back bit by bit."""
+"""Finished points of a resonance curve on disk (checkpoints.py), as JSON: its numbers come back bit by bit."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from ...checkpoints import Kept, digest_of
 from ...integrate import State
-from ...kept import Kept, digest_of
 from ...result import ForceErrors
 from ...scene import Amplitude, Scene
 from ..regime import Regime
@@ -27,7 +27,7 @@ def curve_digest(scene: Scene, frequencies: np.ndarray, start: str, amplitude: A
                       "start": start, **driven})
 
 
-def kept_points(scene: Scene, frequencies: np.ndarray, start: str, out: str | Path,
+def point_checkpoints(scene: Scene, frequencies: np.ndarray, start: str, out: str | Path,
                 amplitude: Amplitude | None = None) -> Kept[CurvePoint]:
     """The folder for the points of the curve that is to be written to `out`."""
     words = f"{scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, {start})"

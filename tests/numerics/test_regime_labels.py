@@ -1,4 +1,4 @@
-"""What a motion is called is what becomes of it: a slice of label_honesty.py, and the orbit beside a motion by itself."""
+"""What a motion is called is what becomes of it: a slice of regime_labels.py, and the orbit beside a motion by itself."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from granchain_core import resonance_curve, run, scene, settled
-from granchain_core.lower import lower
 from granchain_core.orbits import periodic_orbit
+from granchain_core.scaling import scale_chain
 from granchain_core.steady.settling.finite_difference_map import FiniteDifferenceMap, fixed_point, sizes
 from granchain_core.steady.settling.nearby_orbit import NearbyOrbit, orbit_of
 from granchain_core.steady.settling.settling import run_until_settled
 from granchain_core.stop import Stop
-from tests.numerics.label_honesty import judged
+from tests.numerics.regime_labels import judged
 
 
 @pytest.mark.parametrize(("place", "width"), [(256.0, 0.75), (832.5, 0.25)])
@@ -28,7 +28,7 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
     """The orbit found from a state so far away from the exact one, relative."""
     chain = scene("sec2").evolve(f=f, **knobs)
     exact = periodic_orbit(chain, period)
-    x = FiniteDifferenceMap(chain, period).inner(lower(chain).scaled(exact.state))
+    x = FiniteDifferenceMap(chain, period).inner(scale_chain(chain).from_si(exact.state))
     shape = np.random.default_rng(1).standard_normal(len(x))
     found = orbit_of(chain, period, x + offset * sizes(x) * shape, Stop())
     assert found is not None
@@ -37,7 +37,7 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (1130.0, 3), (1980.0, 1), (1330.0, 1)])
 def test_differences_give_the_multipliers_of_the_tangent_flow(f: float, period: int) -> None:
-    """Two routes to |μ|. At four times the live steps the map is right to some 1e-7, its differences to some 1e-5."""
+    """Two routes to |μ|. At four times the default steps the map is right to some 1e-7, its differences to some 1e-5."""
     exact = float(np.abs(periodic_orbit(scene("sec2").evolve(f=f), period).multipliers[0]))
     assert beside(f, period, 1e-4).modulus == pytest.approx(exact, abs=2e-5)
 
@@ -46,16 +46,16 @@ def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
     """The fixed point of the map by steps of a quarter is the orbit to the map's error over 1 − |μ|."""
     chain = scene("sec2").evolve(f=340.0)
     stroboscopic_map = FiniteDifferenceMap(chain, 1)
-    exact = stroboscopic_map.inner(lower(chain).scaled(periodic_orbit(chain, 1).state))
+    exact = stroboscopic_map.inner(scale_chain(chain).from_si(periodic_orbit(chain, 1).state))
     found = fixed_point(stroboscopic_map, exact + 1e-3 * sizes(exact))
     assert found is not None and found.residual <= 1e-9
-    assert np.abs((found.x - exact) / sizes(exact)).max() < 1e-6  # 7e-6 at the live step, /4⁴, over 1 − 0.36: 4e-8
+    assert np.abs((found.x - exact) / sizes(exact)).max() < 1e-6  # 7e-6 at the default step, /4⁴, over 1 − 0.36: 4e-8
 
 
 def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
     """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period."""
     chain = scene("sec2").evolve(f=340.0)
-    x = FiniteDifferenceMap(chain, 4).inner(lower(chain).scaled(settled(chain).state))
+    x = FiniteDifferenceMap(chain, 4).inner(scale_chain(chain).from_si(settled(chain).state))
     found = orbit_of(chain, 4, x, Stop())
     assert found is not None and found.period == 1 and found.modulus == pytest.approx(0.361, abs=1e-3)
 
@@ -65,14 +65,14 @@ def test_a_slow_orbit_is_approached_and_an_unstable_one_is_not() -> None:
     slow, left = beside(1980.0, 1, 1e-4), beside(1330.0, 1, 1e-6)
     assert slow.stable and not slow.unstable and slow.approached()
     assert left.unstable and not left.stable and not left.approached()
-    further = left.enlarged_departure()
+    further = left.amplified_departure()
     assert further is not None
     assert np.abs((further - left.point.x) / sizes(left.point.x)).max() == pytest.approx(3e-3, rel=1e-9)
     now, later = (np.linalg.norm((s - left.point.x) / sizes(left.point.x), axis=1).max()
                   for s in left.stroboscopic_map.passed(further, 16, 16))
     assert later / now == pytest.approx(left.modulus**32, rel=0.1)  # in a turn of 16 orbits, and still nearly linear
     beyond = left.point.x + 1.5 * (further - left.point.x)
-    assert NearbyOrbit(left.stroboscopic_map, left.point, beyond, left.modulus).enlarged_departure() is None
+    assert NearbyOrbit(left.stroboscopic_map, left.point, beyond, left.modulus).amplified_departure() is None
 
 
 def test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit() -> None:

@@ -1,0 +1,21 @@
+"""Safety factors: the stated error of a computation is its difference from a coarser one times one of these.
+
+Two errors of displacements have no factor. That of a settled orbit is the difference over 1 − |μ|; that of a motion
+without a drive, as the page shows it, is at least the method's typical error (both steady/settling/recorded.py).
+
+Where the error falls with the method's order, the difference is itself a bound: with half the step at order 4 it is
+about 15 times the error of the finer computation. Contact events make the fall irregular.
+"""
+
+from __future__ import annotations
+
+#: Displacements. REGULAR: the error falls by the method's order at every refinement (`Method.converges_regularly`).
+#: IRREGULAR: it does not, as at contact events with the other methods, with tension cut, and between the samples of a
+#: measured force.
+REGULAR, IRREGULAR = 1.5, 3.0
+#: Largest forces of a run, on top of the factor above: where no force jumps, and where one does, whose error varies
+#: from one step size to the next. Found by trial (`python -m tests.numerics.forces run`).
+RUN_FORCES, RUN_FORCES_THAT_JUMP = 1.5, 3.0
+#: Largest forces on a periodic orbit, in place of both factors above: only two computations are compared, and their
+#: change is enlarged by 1/(1 − |μ|) as well (`orbit_force_errors`).
+ORBIT_FORCES = 2.0
