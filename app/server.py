@@ -18,9 +18,9 @@ from tornado.web import ErrorHandler
 
 from granchain_core.experiment.measured import MOST_BYTES
 
+from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
-from .pages.curve.sweep import CURVES_SHARED
 from .serve import logs
 from .serve.compiler import COMPILER
 from .serve.guard import Rules, guarded

@@ -11,7 +11,7 @@ from panel.io import unlocked
 
 from granchain_core import BadInput, Scene, Settled, State
 
-from ..pages.curve.page import Curves
+from ..curve.page import CurveController
 from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..pictures.theme import Theme
@@ -53,25 +53,25 @@ class Controller:
         self.views = views = Views(session, self.received, partial(self._guarded, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
         self.pictures = Pictures(self, views, self.sentences.note, self._arrived)
-        self.curves = Curves(self, views.curve, views.curvebar, partial(show_regime, views))
-        self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self._header,
+        self.curves = CurveController(self, views.curve, views.curvebar, partial(show_regime, views))
+        self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self._update_header,
                                       self.pictures.redraw)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
-        self._looked_at: dict[str, Page | Curves] = {
+        self._looked_at: dict[str, Page | CurveController] = {
             "curve": self.curves, **{row.name: page for row, page in zip(PAGES, self.pages, strict=True)}}
         own: Actions = {
             "ping": lambda _: views.chain.send(type="pong"),
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
-            "narrow": lambda m: views.fit(bool(m.get("value"))),
+            "narrow": lambda m: views.set_compact(bool(m.get("value"))),
             "visible": self._visible,
             "painted": lambda m: self.pictures.painted(m.get("number")),
             "set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go,
             "gallery": lambda _: views.header.send(type="gallery", cards=cards()),
             **self.sentences.actions,
         }
-        playback = Playback(session, self.pictures, self._compute, self._header, self.say)
+        playback = Playback(session, self.pictures, self._compute, self._update_header, self.say)
         self.owners: dict[str, Actions] = {
             "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
             "display choices": self.choices.actions, "pins": self.pinned.actions,
@@ -158,7 +158,7 @@ class Controller:
             self.pictures.live = None
         elif state is not None or self.pictures.live is None:
             self.pictures.live = LiveRun(scene, self.session.used, state)
-        self._header()
+        self._update_header()
         self._send_knob_values()
         self._scene_changed(state)
 
@@ -175,7 +175,7 @@ class Controller:
             return
         if curves:
             session.curves = self.curves.select(scene, curves)
-        self._header()
+        self._update_header()
         self._send_knob_values()
         self._scene_changed(state)
 
@@ -205,7 +205,7 @@ class Controller:
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
         gather_writes(self._document)
-        self.views.fit(bool(message.get("narrow")))
+        self.views.set_compact(bool(message.get("narrow")))
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.choose({"value": message.get("theme")})
         self.pinned.show()
@@ -225,7 +225,7 @@ class Controller:
         self.views.tabs.update_state(look_at=scene.look_at, paper=scene.paper)
         self._tell_pages()
         self.session.curves = self.curves.open(scene, self.session.curves)
-        self._header()
+        self._update_header()
         if self.session.mode == "live":
             self.pictures.live = LiveRun(scene, self.session.used)
         self._compute(start)
@@ -235,7 +235,7 @@ class Controller:
             page.picture_requested()
         self.pictures.compute(start)
 
-    def _header(self) -> None:
+    def _update_header(self) -> None:
         session = self.session
         self.views.header.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
@@ -306,8 +306,8 @@ class Controller:
         else:
             if session.curves != curves:
                 session.curves = self.curves.select(session.scene, session.curves)
-            self._header()
+            self._update_header()
             self._send_knob_values()
             self._scene_changed(start)
         self.say(" ".join(refused))
-        self.views.header.send(type="went", query=session.link)
+        self.views.header.send(type="address-applied", query=session.link)

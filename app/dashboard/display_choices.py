@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..pages.curve.page import Curves
+from ..curve.page import CurveController
 from ..pictures.theme import THEMES, Theme
 from ..session.hooks import Actions
 from ..session.session import Session
@@ -15,14 +15,14 @@ from .layout import Views
 class DisplayChoices:
     """Actions that change how things are shown; only choosing a curve starts a computation."""
 
-    def __init__(self, session: Session, views: Views, curves: Curves,
+    def __init__(self, session: Session, views: Views, curves: CurveController,
                  theme_changed: Callable[[Theme], None], header: Callable[[], None],
                  redraw: Callable[[], None]) -> None:
         self._session = session
         self._views = views
         self._curves = curves
         self._theme_changed = theme_changed
-        self._header = header
+        self._update_header = header
         self._redraw = redraw
         self.actions: Actions = {
             "theme": self.choose, "scale": self._scale,
@@ -41,10 +41,10 @@ class DisplayChoices:
 
     def _scale(self, message: dict[str, Any]) -> None:
         self._session.set_scale(message.get("value"))
-        self._header()
+        self._update_header()
         self._redraw()
 
     def _curve(self, message: dict[str, Any]) -> None:
         self._curves.choose(str(message.get("name")), bool(message.get("value")), self._session.scene)
         self._session.curves = self._curves.selection(self._session.scene)
-        self._header()
+        self._update_header()

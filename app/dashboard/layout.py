@@ -15,8 +15,8 @@ from panel.io import unlocked
 from granchain_core import Settled
 from granchain_core.experiment.measured import MOST_BYTES
 
-from ..pages.curve.bar import CurveBar
-from ..pages.curve.view import Curve
+from ..curve.bar import CurveBar
+from ..curve.view import Curve
 from ..parts.chain import SCALES, Chain
 from ..parts.component import text
 from ..parts.energy import EnergyMap
@@ -64,12 +64,12 @@ class Views:
         self.status_line = StatusLine(received)
         self.shown: Settled | None = None
 
-    def fit(self, narrow: bool) -> None:
+    def set_compact(self, narrow: bool) -> None:
         """Shorten titles and leave out numbers on the axes over time if there is little room for them."""
         with unlocked():  # sent like the pictures, which write the same titles, so that neither overtakes the other
-            self.trains.fit(narrow)
-            self.energy.fit(narrow)
-            self.curve.fit(narrow)
+            self.trains.set_compact(narrow)
+            self.energy.set_compact(narrow)
+            self.curve.set_compact(narrow)
 
     def apply_theme(self, theme: Theme) -> None:
         """Draw the figures of all pages in another theme."""

@@ -12,12 +12,12 @@ from granchain_core import BadInput, Run, Settled
 from granchain_core.experiment import Measured, Series
 from granchain_core.store import save
 
-from ..pages.curve.page import Curves
+from ..curve.page import CurveController
 from ..serve.queues import FILES
+from ..session.export import EXPORTS, TEXTS, Screen
 from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.message_checks import quoted
-from ..session.take_along import EXPORTS, TEXTS, Screen
 from ..session.task import Job, Task, say_nothing
 from .layout import Views
 from .main_picture import Pictures
@@ -31,7 +31,7 @@ _PASSES = ("Only a settled picture can be exported as a script; a live run depen
 class LinksAndFiles:
     """Actions of the page that deal with links and files; files are written in the background."""
 
-    def __init__(self, host: Host, views: Views, curves: Curves, pictures: Pictures) -> None:
+    def __init__(self, host: Host, views: Views, curves: CurveController, pictures: Pictures) -> None:
         self._host = host
         self._views = views
         self._curves = curves

@@ -30,7 +30,7 @@ from granchain_core.experiment.units import QUANTITIES, UNITS
 from granchain_core.scene import ASSETS
 from granchain_core.scene.driven import refuse_undriven
 
-from ..pages.curve.page import Curves
+from ..curve.page import CurveController
 from ..pictures.axes import in_words, signed_in_words
 from ..serve.compiler import PICTURE_PIECES
 from ..serve.queues import FILES
@@ -61,7 +61,7 @@ _TOO_LARGE = (f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve 
 class Measurement:
     """Actions of the data tab. `tabs` shows what was understood, what is asked, and the misfit."""
 
-    def __init__(self, host: Host, views: Views, curves: Curves) -> None:
+    def __init__(self, host: Host, views: Views, curves: CurveController) -> None:
         self._host = host
         self._views = views
         self._tabs = views.tabs

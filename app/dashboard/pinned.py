@@ -10,8 +10,8 @@ from panel.io import unlocked
 
 from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
 
+from ..curve.sweep import Progress, Sweep
 from ..frames import samples_for
-from ..pages.curve.sweep import Progress, Sweep
 from ..parts.pinned_trains import SIGNS
 from ..serve.compiler import PICTURE_PIECES
 from ..serve.queues import ANALYSES, CURVES

@@ -19,7 +19,7 @@ class Playback:
         self._session = session
         self._pictures = pictures
         self._compute = compute
-        self._header = header
+        self._update_header = header
         self._say = say
         self.actions: Actions = {
             "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
@@ -29,17 +29,17 @@ class Playback:
     def _mode(self, message: dict[str, Any]) -> None:
         self._session.set_mode(message.get("value"))
         self._pictures.live = LiveRun(self._session.scene, self._session.used) if self._session.mode == "live" else None
-        self._header()
+        self._update_header()
         self._compute()
 
     def _start(self, message: dict[str, Any]) -> None:
         self._session.set_start(message.get("value"))
-        self._header()
+        self._update_header()
         self._compute()
 
     def _speed(self, message: dict[str, Any]) -> None:
         self._session.set_speed(message.get("value"))
-        self._header()
+        self._update_header()
 
     def _playing(self, message: dict[str, Any]) -> None:
         self._session.playing = bool(message.get("value"))
@@ -53,7 +53,7 @@ class Playback:
         """The browser lost its server and has loaded the page again from its share link, which has all but this."""
         if not message.get("playing"):
             self._playing({"value": False})
-            self._header()
+            self._update_header()
         gone = " and your uploaded data are gone" if message.get("uploaded") else ""
         self._say("The connection was lost. Your settings are restored, but the chain has started again from rest"
                   f"{gone}.")

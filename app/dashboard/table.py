@@ -32,8 +32,8 @@ from ..session.host import Host
 
 
 @dataclass(frozen=True)
-class Tab:
-    """A tab that belongs to no page; the fields mean what they mean in a `Row`."""
+class TabSpec:
+    """A tab that belongs to no page; the fields mean what they mean in a `PageSpec`."""
 
     name: str
     group: str
@@ -47,7 +47,7 @@ class Tab:
 
 
 @dataclass(frozen=True)
-class Row:
+class PageSpec:
     """One page: its name in messages, the title of its tab, what is computed and how it is drawn.
 
     `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
@@ -70,29 +70,29 @@ class Row:
 GROUPS = ("learn", "try", "check")
 
 #: The pages and the tabs without one, in the order of the tabs; the first is open when nothing else is said.
-TABS: tuple[Row | Tab, ...] = (
-    Row("stories", "stories", StoriesPage, None, group="learn"),
-    Tab("look at", "learn"),
-    Tab("regimes", "learn"),
-    Row("probe", "probe", ProbePage, Probe),
-    Row("stability", "stability", StabilityPage, Stability, works_hidden=False),
-    Row("accuracy", "accuracy", AccuracyPage, Accuracy, group="check"),
-    Row("map", "map", MapPage, None),
-    Row("effects", "effects", EffectsPage, None, group="check"),
-    Row("branches", "branches", BranchesPage, Branches,
+TABS: tuple[PageSpec | TabSpec, ...] = (
+    PageSpec("stories", "stories", StoriesPage, None, group="learn"),
+    TabSpec("look at", "learn"),
+    TabSpec("regimes", "learn"),
+    PageSpec("probe", "probe", ProbePage, Probe),
+    PageSpec("stability", "stability", StabilityPage, Stability, works_hidden=False),
+    PageSpec("accuracy", "accuracy", AccuracyPage, Accuracy, group="check"),
+    PageSpec("map", "map", MapPage, None),
+    PageSpec("effects", "effects", EffectsPage, None, group="check"),
+    PageSpec("branches", "branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable."),
-    Row("analysis", "analysis", AnalysisPage, Analysis,
+    PageSpec("analysis", "analysis", AnalysisPage, Analysis,
         "Spectrum, strobes over a knob, basins and Lyapunov exponents of the present scene."),
-    Row("observer", "observer", ObserverPage, Observer,
+    PageSpec("observer", "observer", ObserverPage, Observer,
         "A copy of the chain that feels its input force and nothing else.", works_hidden=False),
-    Row("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),
-    Row("paper", "paper", PaperPage, Paper,
+    PageSpec("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),
+    PageSpec("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
         group="learn"),
-    Row("numbers", "numbers", NumbersPage, None, group=""),
-    Tab("data", "", taller=True),
+    PageSpec("numbers", "numbers", NumbersPage, None, group=""),
+    TabSpec("data", "", taller=True),
 )
-PAGES = tuple(row for row in TABS if isinstance(row, Row))
+PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
 
 
 def described_tabs() -> list[dict[str, Any]]:

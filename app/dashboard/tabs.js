@@ -113,7 +113,7 @@ class Tabs {
     if (name !== "stories") leaveStories();
     document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
     this.show();
-    window.granchain.placed({ tab: name === this.first ? "" : name });
+    window.granchain.setLocation({ tab: name === this.first ? "" : name });
     window.granchain.emit("tab", name);
   }
 
@@ -166,7 +166,7 @@ export function render({ model }) {
     window.granchain.on(`page:${name}`, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
-  window.granchain.on("overlay", (name) => window.granchain.placed({ page: name ?? "" }));
+  window.granchain.on("overlay", (name) => window.granchain.setLocation({ page: name ?? "" }));
   window.granchain.on("compare", () => {
     window.granchain.closePage();
     tabs.choose("numbers");

@@ -77,7 +77,7 @@
   const wherever = new URLSearchParams(location.search);
   const place = { tab: wherever.get("tab") ?? "", page: wherever.get("page") ?? "" };
   if (page.embedded) place.embed = "1";
-  const placed = (where) => {
+  const setLocation = (where) => {
     const acted = known && Object.entries(where).some(([name, value]) => place[name] !== value);
     Object.assign(place, where);
     follow(acted);
@@ -147,7 +147,7 @@
     link = linkOf(location.search);
   });
   // The server shows what the address says.
-  const went = (query) => {
+  const addressApplied = (query) => {
     linkRefined(query);
     steps.returning = false;
   };
@@ -285,5 +285,5 @@
     });
   }
   Object.assign(page, { again, requested, linkReceived, linkRefined, answerReceived, connect, address, isSettled });
-  Object.assign(page, { place, placed, went, undo, redo, steps });
+  Object.assign(page, { place, setLocation, addressApplied, undo, redo, steps });
 })();

@@ -30,7 +30,7 @@ class EnergyMap:
         plot.add_tools(self._hover)
         return plot
 
-    def fit(self, narrow: bool) -> None:
+    def set_compact(self, narrow: bool) -> None:
         """Number fewer beads where there is little room."""
         self._narrow = narrow
         self.figure.xaxis[0].axis_label = "bead" if narrow else "bead, numbered as above"
@@ -50,7 +50,7 @@ class EnergyMap:
         self._mapper.high = high / factor
         self.figure.x_range.end = frames.beads + 0.5
         self._beads = frames.beads
-        self.fit(self._narrow)
+        self.set_compact(self._narrow)
         self._hover.tooltips = [
             ("bead", "$x{0}"), ("time", f"$y{{0.000}} {unit}"),
             ("kinetic energy", f"@image{{0.000}} {letter}J"),

@@ -8,7 +8,7 @@ const SMALLEST = 0.55;
 export function render({ model }) {
   const root = element("div", { className: "formula" });
   root.title = "The equation being computed, with its active terms only.";
-  const fit = () => {
+  const shrinkToWidth = () => {
     for (const line of root.children) {
       line.style.fontSize = "";
       const widest = Math.max(...[...line.children].map((equation) => equation.getBoundingClientRect().width));
@@ -29,7 +29,7 @@ export function render({ model }) {
       }
       root.append(line);
     }
-    fit();
+    shrinkToWidth();
   };
   model.on("state", show);
   onWidth(root, fit);

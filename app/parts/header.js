@@ -1,7 +1,7 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
 import { button, download, element, onWidth } from "./dom.js";
-import { wholePage } from "./embed.js";
+import { wholePage } from "./iframe_link.js";
 import { Gallery } from "./gallery.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
@@ -55,7 +55,7 @@ class Header {
     ];
     this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
-    this.root.append(this.gallery.root); // not among what fit() moves, which would close it
+    this.root.append(this.gallery.root); // not among what layoutControls() moves, which would close it
   }
 
   makeButtons() {
@@ -88,11 +88,11 @@ class Header {
       (name) => this.request("scene", name, { name }),
     );
     this.scenes = iconButton(icon("scenes"), "Scenes with pictures", () => this.gallery.open(this.scene.value));
-    for (const end of ["change", "blur"]) this.scene.addEventListener(end, () => this.fit());
+    for (const end of ["change", "blur"]) this.scene.addEventListener(end, () => this.layoutControls());
   }
 
   // Puts into the menu “⋯” what the bar has no room for, the least needed first.
-  fit() {
+  layoutControls() {
     const { root, popovers } = this;
     const focused = root.getRootNode().activeElement;
     const steps = [
@@ -159,7 +159,7 @@ class Header {
 
   drawPlay() {
     this.play.innerHTML = icon(this.playing ? "pause" : "play");
-    this.fit();
+    this.layoutControls();
   }
 
   setPlaying(value) {
@@ -232,7 +232,7 @@ class Header {
     for (const one of this.modes) one.ariaPressed = String(one.value === mode);
     this.start.value = start;
     this.start.style.display = mode === "live" ? "none" : "";
-    this.fit();
+    this.layoutControls();
   }
 
   showPlaying({ playing = this.playing }) {
@@ -254,7 +254,7 @@ class Header {
   receive(message) {
     if (message.type === "link" || message.type === "address") window.granchain.linkRefined(message.query);
     if (message.type === "gallery") this.gallery.receive(message.cards);
-    if (message.type === "went") window.granchain.went(message.query);
+    if (message.type === "address-applied") window.granchain.addressApplied(message.query);
     if (message.type === "link") this.popovers.showLink();
     if (message.type === "file") download(message.name, new Blob([message.content]));
   }
@@ -275,9 +275,9 @@ export function render({ model }) {
   window.granchain.on("pause", () => header.setPlaying(false));
   window.granchain.on("theme", (value) => {
     header.send("theme", { value });
-    header.fit(); // the projector's words are larger
+    header.layoutControls(); // the projector's words are larger
   });
-  onWidth(header.root, () => header.fit());
+  onWidth(header.root, () => header.layoutControls());
   document.addEventListener("keydown", (event) => keyPressed(event, header));
   document.addEventListener("pointerdown", (event) => {
     if (!event.composedPath().includes(header.root)) header.popovers.close();

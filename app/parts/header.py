@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from ..scripts import module
+from ..session.export import EXPORTS
 from ..session.share import EXTRAS
-from ..session.take_along import EXPORTS
 from .component import Component, text
 
 _MODES = {

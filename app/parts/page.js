@@ -123,12 +123,12 @@ window.granchain = (() => {
     again: null, // the same, in the page built again
     place: null, // the open tab and the page over the pictures
     steps: null,
-    placed: null,
+    setLocation: null,
     requested: null,
     linkReceived: null,
     linkRefined: null,
     answerReceived: null,
-    went: null,
+    addressApplied: null,
     undo: null,
     redo: null,
     connect: null,

@@ -1,7 +1,7 @@
 // What opens over the pictures from the bar on top: the help, and the link to the picture.
 
 import { button, element } from "./dom.js";
-import { takeAlong } from "./take_along.js";
+import { exportMenu } from "./export_menu.js";
 
 const HELP = [
   ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
@@ -48,7 +48,7 @@ export class Popovers {
     this.help.append(title("Overview"), list(HELP), title("Keys"), list(KEYS));
     this.copied = element("p", { role: "status" });
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
-    this.take = element("div", { className: "popover", hidden: true }, takeAlong(save, files));
+    this.take = element("div", { className: "popover", hidden: true }, exportMenu(save, files));
     this.menu = element("div", { className: "popover menu", hidden: true });
     this.all = [this.help, this.link, this.take, this.menu];
   }

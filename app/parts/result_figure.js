@@ -1,7 +1,7 @@
 // The figure of a result, sent whole as a message (result_figure.py), and again in another theme.
 
 import { element } from "./dom.js";
-import { Embedded } from "./embedded.js";
+import { BokehFigure } from "./bokeh_figure.js";
 
 export class ResultFigure {
   // In the page of this name; `place` tells several figures of a page apart.
@@ -10,7 +10,7 @@ export class ResultFigure {
     this.place = place;
     this.item = null;
     this.root = element("div", { className, hidden: true });
-    this.figure = new Embedded(this.root);
+    this.figure = new BokehFigure(this.root);
     window.granchain.on("overlay", () => requestAnimationFrame(() => this.draw()));
   }
 

@@ -129,7 +129,7 @@ class Trains:
         """The colour of what was measured: dark on light, light on dark."""
         self._measured.ink(colour)
 
-    def fit(self, narrow: bool) -> None:
+    def set_compact(self, narrow: bool) -> None:
         """Fewer ticks and shorter titles where there is little room."""
         self._narrow = narrow
         for axis in (*self.left.xaxis, *self.right.xaxis):

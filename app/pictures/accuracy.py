@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 from granchain_core.accuracy import Row, compared_methods
 
 from ..format import duration, short_error
-from .theme import AMBER, GREY, TEAL, VIOLET, Theme, dress, frame, in_theme
+from .theme import AMBER, GREY, TEAL, VIOLET, Theme, apply_theme, frame, themed
 
 _PALETTE = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")
@@ -92,9 +92,9 @@ def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: boo
     plot = frame(name="accuracy", x_axis_type="log", y_axis_type="log", min_border=4,
                  toolbar_location=None if compact else "right")
     state = marks(asked, rows)
-    good = in_theme(BoxAnnotation(name="good", fill_alpha=0.09, level="underlay"), fill_color="accent",
+    good = themed(BoxAnnotation(name="good", fill_alpha=0.09, level="underlay"), fill_color="accent",
                     line_color="accent", line_width=2.0)
-    limit = in_theme(Span(name="agreement line", dimension="width", line_dash=[1, 5], line_cap="round",
+    limit = themed(Span(name="agreement line", dimension="width", line_dash=[1, 5], line_cap="round",
                           level="underlay"), line_color="soft", line_width=1.5)
     for model in (good, limit):
         model.update(**state[model.name])
@@ -107,7 +107,7 @@ def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: boo
         plot.yaxis.axis_label = "largest error / largest displacement"
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker.desired_num_ticks = 4 if compact else 6
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: bool) -> list[Any]:
@@ -120,9 +120,9 @@ def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: b
         dots = plot.scatter("ms", "error", source=source, marker=style["marker"], size=8 if compact else 12,
                             line_color=style["colour"], line_width=2.0, fill_color=style["colour"],
                             name=f"{name}, order {compared_methods()[name].order:g}")
-        in_theme(line, line_width=1.8)
+        themed(line, line_width=1.8)
         if not style["filled"]:
-            in_theme(dots, fill_color="card")
+            themed(dots, fill_color="card")
         shown.append(dots)
         items.append(LegendItem(label=name.replace("scipy ", "SciPy "), renderers=[line, dots]))
     plot.add_tools(HoverTool(renderers=shown, tooltips=[("", "$name"), ("", "@setting"), ("", "@tooltip")]))
@@ -139,8 +139,8 @@ def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> 
     ring = plot.scatter("ms", "error", source=made["cheapest"], size=18 if compact else 26, fill_color=None)
     now = plot.scatter("ms", "error", source=made["now"], marker="square_cross", size=14 if compact else 20,
                        fill_color=None)
-    in_theme(ring, line_color="accent", line_width=3.0)
-    in_theme(now, line_color="ink", line_width=1.8)
+    themed(ring, line_color="accent", line_width=3.0)
+    themed(now, line_color="ink", line_width=1.8)
     words: list[tuple[str, Any, str, dict[str, Any]]] = [
         ("asked", {"field": "words"}, "accent", {"text_baseline": "bottom", "y_offset": -3}),
         ("agreement", {"value": "the references agree to here"}, "soft",
@@ -148,7 +148,7 @@ def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> 
         ("cheapest", {"value": "cheapest"}, "accent", {"x_offset": 17, "y_offset": 5}),
         ("now", {"value": "this page now"}, "ink", {"x_offset": 13, "y_offset": -8}),
     ]
-    texts = [in_theme(plot.text("ms", "error", text=text, source=made[name], text_font_style="bold",
+    texts = [themed(plot.text("ms", "error", text=text, source=made[name], text_font_style="bold",
                                 text_alpha=0.0 if compact else 1.0, text_font_size="14px", **place), text_color=role)
              for name, text, role, place in words]
     return [ring, now, *texts[:2]]

@@ -11,7 +11,7 @@ from granchain_core import Attractor
 
 from .axes import force_scale, in_words
 from .regimes import REGIMES, regime_key
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 
 def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
@@ -28,7 +28,7 @@ def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
             "force": [one.max_output_force / scale.factor], "motion": [one.regime.sentence],
             "value": [in_words(one.max_output_force, "N")],
             "starts": [", ".join(origin.name for origin in one.origins[:4])]}, name=key)
-        in_theme(plot.segment("low", "force", "high", "force", source=source), line_color="soft", line_width=1.2)
+        themed(plot.segment("low", "force", "high", "force", source=source), line_color="soft", line_width=1.2)
         marks = plot.scatter("share", "force", source=source, marker=marker, size=size + 5, fill_color=colour,
                              line_color=colour, line_width=1.5, legend_label=key)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=[
@@ -38,4 +38,4 @@ def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
     for legend in plot.legend:
         legend.update(orientation="horizontal", padding=0, margin=2)
     plot.add_layout(plot.legend[0], "below")
-    return dress(plot, theme)
+    return apply_theme(plot, theme)

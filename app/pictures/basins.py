@@ -11,7 +11,7 @@ from granchain_core import Basins
 
 from ..format import prefixed
 from .axes import Scale, in_words
-from .theme import GREY, Theme, dress, frame
+from .theme import GREY, Theme, apply_theme, frame
 
 _HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")
 """Patterns beside the colours, so that the colours need not be told apart."""
@@ -39,7 +39,7 @@ def basins(found: Basins, theme: Theme) -> figure:
     for legend in plot.legend:
         legend.update(padding=0, margin=2)
     plot.add_layout(plot.legend[0], "below")
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _axis(coordinate: str, values: np.ndarray) -> Scale:

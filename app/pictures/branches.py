@@ -13,7 +13,7 @@ from granchain_core.regime import modulus_words
 
 from ..format import short_error
 from .axes import Scale, force_scale, in_words, knob_scale
-from .theme import AMBER, GREY, TEAL, VIOLET, Theme, dress, frame, in_theme
+from .theme import AMBER, GREY, TEAL, VIOLET, Theme, apply_theme, frame, themed
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
            "grazing": "grazing"}
@@ -146,14 +146,14 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
     items = []
     for name, (width, dash) in _LINES.items():
         line = plot.multi_line("x", "y", source=sources[name], line_dash=dash, line_join="round")
-        items.append(LegendItem(label=name, renderers=[in_theme(line, line_color="output", line_width=width)]))
+        items.append(LegendItem(label=name, renderers=[themed(line, line_color="output", line_width=width)]))
     dots = plot.scatter("x", "y", source=sources["orbits"], size=1 if compact else 4.5, line_color=None)
     targets = plot.scatter("x", "y", source=sources["orbits"], size="target", alpha=0.0, fill_color=None)
     chosen = targets.selection_glyph = Scatter(size=_TARGET, line_width=2.5, fill_color=None)
     chosen.line_color = theme.ink
     dots.nonselection_glyph = targets.nonselection_glyph = None
-    in_theme(dots, fill_color="output")
-    plot.add_layout(in_theme(Span(name="now", dimension="height", line_alpha=0.6, level="underlay", visible=False),
+    themed(dots, fill_color="output")
+    plot.add_layout(themed(Span(name="now", dimension="height", line_alpha=0.6, level="underlay", visible=False),
                              line_color="ink", line_width=1.2))
     items += [LegendItem(name=f"legend of {kind}", label=SPECIAL[kind], renderers=[one], visible=False)
               for kind, one in _marks(plot, sources, compact).items()]
@@ -164,7 +164,7 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
         plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, _TITLE
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker.desired_num_ticks = 4 if compact else 7
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) -> dict[str, Any]:
@@ -175,7 +175,7 @@ def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) ->
                            fill_color=style["colour"], size=0.75 * style["size"] if compact else style["size"],
                            visible=not (compact and kind == "grazing"))
         one.nonselection_glyph = None
-        in_theme(one, line_width=2.2) if style["filled"] else in_theme(one, line_width=2.2, fill_color="card")
+        themed(one, line_width=2.2) if style["filled"] else themed(one, line_width=2.2, fill_color="card")
         made[kind] = one
     return made
 

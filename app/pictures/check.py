@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 
 from granchain_core.hard import Picture
 
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 _LOGARITHM = ", log10"
 _DOTTED = 70
@@ -42,7 +42,7 @@ def check(picture: Picture, theme: Theme) -> figure:
     items = []
     for i, (label, style) in enumerate(zip(labels, _styles(labels), strict=True)):
         line = plot.line("x", str(i), source=source, line_dash=style["dash"], line_cap="round", name=label)
-        items.append(LegendItem(label=label, renderers=[in_theme(line, line_color=style["colour"],
+        items.append(LegendItem(label=label, renderers=[themed(line, line_color=style["colour"],
                                                                  line_width=style["width"])]))
         plot.add_tools(HoverTool(renderers=[line], tooltips=[
             ("", label), (x_label, "@x{0.[0000]}" if not x_log else "@x{0.0e}"),
@@ -51,7 +51,7 @@ def check(picture: Picture, theme: Theme) -> figure:
     plot.add_layout(Legend(items=items, click_policy="hide", padding=0, margin=4, glyph_width=44), "below")
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker.desired_num_ticks = 5
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _axis(label: str, values: np.ndarray) -> tuple[str, bool, np.ndarray]:
@@ -80,8 +80,8 @@ def _points(plot: figure, source: ColumnDataSource, number: int, style: dict[str
     """Dots where there are few points, and the cross at the last point of a trace that breaks off."""
     x, y = (np.asarray(source.data[name]) for name in ("x", str(number)))
     if len(x) <= _DOTTED:
-        in_theme(plot.scatter("x", str(number), source=source, size=5, line_color=None), fill_color=style["colour"])
+        themed(plot.scatter("x", str(number), source=source, size=5, line_color=None), fill_color=style["colour"])
     known = np.flatnonzero(np.isfinite(y))
     if len(known) and known[-1] < len(y) - 1:
-        in_theme(plot.scatter([float(x[known[-1]])], [float(y[known[-1]])], marker="x", size=12),
+        themed(plot.scatter([float(x[known[-1]])], [float(y[known[-1]])], marker="x", size=12),
                  line_color=style["colour"], line_width=style["width"])

@@ -14,7 +14,7 @@ from granchain_core import Curve, CurvePoint
 from ..format import short_error
 from .axes import force_scale, in_words, knob_scale
 from .regimes import REGIMES, regime_key
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 """Dashes of the line by the start of a sweep."""
@@ -44,14 +44,14 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure
         line = plot.line("frequency", "force", source=source, line_dash=DASHES[one.start] or "solid")
         marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
                              line_color="colour", line_width=1.5, legend_group="regime")
-        in_theme(line, line_color="output", line_width=1.8)
+        themed(line, line_color="output", line_width=1.8)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(one.start)))
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
     for legend in plot.legend:
         legend.update(orientation="horizontal", padding=0, margin=2, ncols=4)
     if plot.legend:
         plot.add_layout(plot.legend[0], "below")
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,

@@ -30,7 +30,7 @@ from granchain_core.diagram.cells import empty_cells
 from ..format import short_error
 from .axes import Scale, in_words, knob_scale
 from .regimes import REGIMES, regime_key
-from .theme import BROWN, Theme, dress, frame, in_theme
+from .theme import BROWN, Theme, apply_theme, frame, themed
 
 CATEGORIES = (*REGIMES, "failed")
 """What a cell may be, in the curve's colours, each with a hatch of its own."""
@@ -83,7 +83,7 @@ def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float
                title_text_font_size=f"{theme.small}px", title_standoff=2)
     plot.xaxis.axis_label, plot.yaxis.axis_label = across.label, up.label
     plot.grid.visible = False
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _hatched(plot: figure, source: ColumnDataSource) -> list[LegendItem]:
@@ -116,7 +116,7 @@ def _marks(plot: figure, now: dict[str, Any]) -> None:
                      line_width=width)
     cursor = ColumnDataSource({name: [] for name in ("left", "right", "bottom", "top")}, name="cursor")
     box = plot.quad("left", "right", "bottom", "top", source=cursor, fill_color=None)
-    in_theme(box, line_color="ink", line_width=3.0)
+    themed(box, line_color="ink", line_width=3.0)
 
 
 def cell_rows(grid: Grid, cells: np.ndarray) -> dict[str, list[Any]]:

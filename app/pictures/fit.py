@@ -17,7 +17,7 @@ from ..format import prefixed
 from .axes import Scale, force_scale
 from .curve import curve_columns
 from .measured import measured_over, residuals_over
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 #: Most parameters whose landscape is drawn, and the drive periods of a series that are.
 _DRAWN, _PERIODS = 4, 3
@@ -45,7 +45,7 @@ def _line(plot: figure, curve: Curve, name: str, factor: float) -> None:
     """The model's curve with its regimes."""
     points = [p for p in curve.points if math.isfinite(p.max_output_force)]
     source = ColumnDataSource(name="model", data=curve_columns(points, factor, 2, name))
-    in_theme(plot.line("frequency", "force", source=source), line_color="output", line_width=1.8)
+    themed(plot.line("frequency", "force", source=source), line_color="output", line_width=1.8)
     marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
                          line_color="colour", line_width=1.5)
     plot.add_tools(HoverTool(renderers=[marks], tooltips=[("drive frequency", "@frequency{0.0} Hz"),
@@ -65,7 +65,7 @@ def _curve(found: Fit, target: CurveTarget, theme: Theme) -> LayoutDOM:
     plot.title.text = _verdict(found)
     below = residuals_over(target.frequencies, found.evaluation.residuals, "residual / σ")
     below.x_range = plot.x_range
-    return _stacked(dress(plot, theme), dress(below, theme))
+    return _stacked(apply_theme(plot, theme), apply_theme(below, theme))
 
 
 def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
@@ -76,15 +76,15 @@ def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
     _line(plot, curve, "max_output_force_elastic", scale.factor)
     for one, model in zip(target.features, found.evaluation.model, strict=True):
         role = "drive" if one.is_resonance else "soft"
-        plot.add_layout(in_theme(Span(location=one.frequency, dimension="height", line_dash=[2, 4]), line_color=role,
+        plot.add_layout(themed(Span(location=one.frequency, dimension="height", line_dash=[2, 4]), line_color=role,
                                  line_width=1.8))
         if math.isfinite(model):
-            plot.add_layout(in_theme(Span(location=float(model), dimension="height"), line_color=role, line_width=0.8))
+            plot.add_layout(themed(Span(location=float(model), dimension="height"), line_color=role, line_width=0.8))
     plot.yaxis.axis_label, plot.xaxis.axis_label = scale.label, "drive frequency f (Hz)"
     plot.title.text = "Dotted: stated; thin: the model's nearest of its kind (peak red, valley grey)"
     below = residuals_over(target.frequencies, found.evaluation.residuals, "residual / σ")
     below.x_range = plot.x_range
-    return _stacked(dress(plot, theme), dress(below, theme))
+    return _stacked(apply_theme(plot, theme), apply_theme(below, theme))
 
 
 def _series(found: Fit, target: SeriesTarget, theme: Theme) -> LayoutDOM:
@@ -97,12 +97,12 @@ def _series(found: Fit, target: SeriesTarget, theme: Theme) -> LayoutDOM:
             continue
         model = found.evaluation.model[place : place + len(channels[name])]
         place += len(channels[name])
-        in_theme(plot.line(1e3 * time[:count], model[:count] / scale.factor), line_color=role, line_width=1.8)
-        in_theme(plot.scatter(1e3 * time[:count], channels[name][:count] / scale.factor, size=5, fill_color=None,
+        themed(plot.line(1e3 * time[:count], model[:count] / scale.factor), line_color=role, line_width=1.8)
+        themed(plot.scatter(1e3 * time[:count], channels[name][:count] / scale.factor, size=5, fill_color=None,
                               line_width=1, legend_label=name.replace("_", " ")), line_color=role)
     plot.xaxis.axis_label, plot.yaxis.axis_label = "time (ms)", scale.label
     plot.title.text = _verdict(found)
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _stacked(above: figure, below: figure) -> LayoutDOM:
@@ -119,20 +119,20 @@ def _landscape(found: Fit, i: int, theme: Theme) -> figure:
                  x_axis_type="log" if one.low > 0.0 else "linear")
     rise = np.maximum(misfits - found.misfit, _LEAST)
     dots = plot.scatter(values[:, i] / axis.factor, rise, size=4, fill_alpha=0.5, line_color=None)
-    in_theme(dots, fill_color="steel")
+    themed(dots, fill_color="steel")
     if found.profiles:
         there = found.profiles[i]
         line = plot.line(np.array(there.values) / axis.factor, np.maximum(there.rises, _LEAST))
-        in_theme(line, line_color="accent", line_width=2.0)
+        themed(line, line_color="accent", line_width=2.0)
         for end in (there.low, there.high):
             upright = Span(location=end / axis.factor, dimension="height", line_dash=[4, 4])
-            plot.add_layout(in_theme(upright, line_color="accent", line_width=1.2))
-        plot.add_layout(in_theme(Span(location=found.limit, dimension="width", line_dash=[2, 4]),
+            plot.add_layout(themed(upright, line_color="accent", line_width=1.2))
+        plot.add_layout(themed(Span(location=found.limit, dimension="width", line_dash=[2, 4]),
                                  line_color="soft", line_width=1.2))
     plot.xaxis.axis_label = axis.label
     plot.yaxis.axis_label = "Δχ²"
     plot.title.text = _best(found, i)
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _axis(one: Free) -> Scale:

@@ -8,7 +8,7 @@ from bokeh.plotting import figure
 
 from granchain_core import LyapunovSpectrum
 
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 
 def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
@@ -18,13 +18,13 @@ def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
                                "low": found.exponents - found.errors, "high": found.exponents + found.errors,
                                "fill": np.where(rank <= found.resolved, 1.0, 0.0)}, name="exponents")
     plot = frame(name="lyapunov", min_border=4)
-    plot.add_layout(in_theme(Span(location=0.0, dimension="width"), line_color="soft", line_width=1.0))
-    in_theme(plot.segment("rank", "low", "rank", "high", source=source), line_color="accent", line_width=1.4)
+    plot.add_layout(themed(Span(location=0.0, dimension="width"), line_color="soft", line_width=1.0))
+    themed(plot.segment("rank", "low", "rank", "high", source=source), line_color="accent", line_width=1.4)
     dots = plot.scatter("rank", "exponent", source=source, size=8, fill_alpha="fill")
-    in_theme(dots, fill_color="accent", line_color="accent")
+    themed(dots, fill_color="accent", line_color="accent")
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[
         ("rank", "@rank"), ("exponent per drive period", "@exponent{0.0000} ± @error{0.0000}")]))
     plot.xaxis.axis_label, plot.yaxis.axis_label = "rank", "Lyapunov exponent per drive period"
     dimension = found.dimension_words()
     plot.title.text = f"Kaplan–Yorke dimension {dimension}; hollow: upper bounds"
-    return dress(plot, theme)
+    return apply_theme(plot, theme)

@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 from granchain_core.experiment import Measured
 
 from .axes import in_words, signed_in_words
-from .theme import frame, in_theme
+from .theme import frame, themed
 
 COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual", "word")
 TOOLTIPS = [("", "@word"), ("frequency", "@frequency{0.0} Hz"), ("force", "@value"), ("repeats", "@repeats"),
@@ -40,21 +40,21 @@ def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | 
 def measured_over(plot: figure, measured: Measured, factor: float, sigma: np.ndarray | None = None) -> None:
     """Draw a measurement in front of what is there."""
     source = ColumnDataSource(name="measured", data=measured_columns(measured, factor, None, sigma))
-    in_theme(plot.segment("frequency", "low", "frequency", "high", source=source, level="overlay"), line_color="ink",
+    themed(plot.segment("frequency", "low", "frequency", "high", source=source, level="overlay"), line_color="ink",
              line_width=1.0)
     dots = plot.scatter("frequency", "force", source=source, marker="square", size=7, fill_color=None, level="overlay",
                         legend_label=measured.word)
-    in_theme(dots, line_color="ink", line_width=1.0)
+    themed(dots, line_color="ink", line_width=1.0)
     plot.add_tools(HoverTool(renderers=[dots], tooltips=TOOLTIPS[:4]))
 
 
 def residuals_over(frequencies: np.ndarray, residuals: np.ndarray, unit: str) -> figure:
     """Residuals over the frequency, with the line of zero."""
     plot = frame(name="residuals", min_border=4)
-    plot.add_layout(in_theme(Span(location=0, dimension="width"), line_color="soft", line_width=1.0))
+    plot.add_layout(themed(Span(location=0, dimension="width"), line_color="soft", line_width=1.0))
     source = ColumnDataSource(name="residuals", data={"frequency": frequencies, "residual": residuals})
-    in_theme(plot.segment("frequency", 0, "frequency", "residual", source=source), line_color="ink", line_width=1.0)
-    in_theme(plot.scatter("frequency", "residual", source=source, marker="square", size=6, fill_color=None),
+    themed(plot.segment("frequency", 0, "frequency", "residual", source=source), line_color="ink", line_width=1.0)
+    themed(plot.scatter("frequency", "residual", source=source, marker="square", size=6, fill_color=None),
              line_color="ink")
     plot.xaxis.axis_label, plot.yaxis.axis_label = "drive frequency f (Hz)", unit
     return plot

@@ -23,7 +23,7 @@ from granchain_core import Driven, Run
 from ..format import prefixed
 from ..frames import with_jumps
 from .energies import energy_bar, energy_mapper
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 #: Most rows of the picture of energies, and most points of a line.
 _ROWS = 2000
@@ -84,14 +84,14 @@ def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Ran
                                axis_label_text_font_style="normal"), "above")
     source = ColumnDataSource({"time": seconds / second, "displacement": run.drive_displacement[index] / length,
                                "force": run.input_force[index] / force}, name="drive and force")
-    in_theme(plot.line("displacement", "time", source=source), line_color="drive", line_width=1.8)
+    themed(plot.line("displacement", "time", source=source), line_color="drive", line_width=1.8)
     pushed = _jumping(run, 0, index, units, "input force") if jumps else source
-    in_theme(plot.line("force", "time", source=pushed, x_range_name="force"), line_color="input", line_width=1.8)
+    themed(plot.line("force", "time", source=pushed, x_range_name="force"), line_color="input", line_width=1.8)
     plot.xaxis[1].axis_label = f"displacement ({length_unit})"
     plot.yaxis.axis_label = f"time ({second_unit})"
     for axis in plot.xaxis:
         axis.ticker = BasicTicker(desired_num_ticks=3)
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
@@ -111,7 +111,7 @@ def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, 
         ("bead", "$x{0}"), ("time", f"$y{{0.000}} {units.time[1]}"), ("kinetic energy", f"@image{{0.0000}} {unit}")]))
     plot.add_layout(energy_bar(colours, theme), "right")
     plot.title.text = f"{_named(run)}: kinetic energy ({unit})"
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _named(run: Recorded) -> str:
@@ -134,13 +134,13 @@ def _output_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units,
     plot.yaxis.visible = False
     elastic = ColumnDataSource({"time": run.time[index] / units.time[0],
                                 "force": run.output_force_elastic[index] / force}, name="elastic output force")
-    in_theme(plot.line("force", "time", source=elastic, line_dash=[5, 4]), line_color="output", line_width=1.6)
+    themed(plot.line("force", "time", source=elastic, line_dash=[5, 4]), line_color="output", line_width=1.6)
     total = _jumping(run, run.scene.N, index, units, "output force")
-    in_theme(plot.line("force", "time", source=total), line_color="output", line_width=1.8)
+    themed(plot.line("force", "time", source=total), line_color="output", line_width=1.8)
     plot.xaxis.axis_label = f"output force ({unit})"
     plot.title.text = "dashed: elastic"
     plot.xaxis[0].ticker = BasicTicker(desired_num_ticks=3)
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _jumping(run: Recorded, contact: int, index: np.ndarray, units: Units, name: str) -> ColumnDataSource:

@@ -16,7 +16,7 @@ from granchain_core.orbits import Orbit
 from granchain_core.regime import modulus_words
 
 from ..format import duration
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 _FARTHEST = 2.4
 """Multipliers farther out are drawn at the edge, with their modulus beside them."""
@@ -48,32 +48,32 @@ def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False)
     for data_range in ranges.values():
         data_range.renderers = [corners]
     _circle(plot, compact)
-    in_theme(plot.segment("x", "y", "x1", "y1", source=made["ways"], line_alpha="alpha"), line_color="soft",
+    themed(plot.segment("x", "y", "x1", "y1", source=made["ways"], line_alpha="alpha"), line_color="soft",
              line_width=1.6)
-    in_theme(plot.scatter("x", "y", source=made["past"], size=5, line_color=None, fill_alpha="alpha"),
+    themed(plot.scatter("x", "y", source=made["past"], size=5, line_color=None, fill_alpha="alpha"),
              fill_color="soft")
-    in_theme(plot.scatter("x", "y", source=made["chosen"], size=28, fill_color=None, line_dash=[3, 3]),
+    themed(plot.scatter("x", "y", source=made["chosen"], size=28, fill_color=None, line_dash=[3, 3]),
              line_color="ink", line_width=1.8)
     items = _marks(plot, made, compact)
     for item in items:
         item.update(**state[item.name])
-    in_theme(plot.text("x", "y", "words", source=made["far"], text_font_size="13px", text_align="align",
+    themed(plot.text("x", "y", "words", source=made["far"], text_font_size="13px", text_align="align",
                        y_offset="down", text_font_style="bold", text_baseline="middle"), text_color="ink")
     if not compact:
         plot.xaxis.axis_label, plot.yaxis.axis_label = "real part of μ", "imaginary part of μ"
         plot.add_layout(Legend(items=items, orientation="horizontal", padding=0, margin=2, glyph_width=16), "above")
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _circle(plot: figure, compact: bool) -> None:
     """The unit circle, the circle |μ| = 1/2, and both axes."""
     inside = plot.circle(0, 0, radius=1.0, fill_alpha=0.07, level="underlay")
-    in_theme(inside, line_color="ink", line_width=2.0, fill_color="accent")
+    themed(inside, line_color="ink", line_width=2.0, fill_color="accent")
     plot.grid.visible = False
     if not compact:
-        in_theme(plot.circle(0, 0, radius=0.5, fill_color=None, level="underlay"), line_color="faint", line_width=1.0)
+        themed(plot.circle(0, 0, radius=0.5, fill_color=None, level="underlay"), line_color="faint", line_width=1.0)
     for dimension in ("width", "height"):
-        plot.add_layout(in_theme(Span(dimension=dimension, location=0.0, level="underlay"), line_color="faint",
+        plot.add_layout(themed(Span(dimension=dimension, location=0.0, level="underlay"), line_color="faint",
                                  line_width=1.0))
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker = FixedTicker(ticks=[-2, -1, 0, 1, 2])
@@ -89,9 +89,9 @@ def _marks(plot: figure, made: dict[str, ColumnDataSource], compact: bool) -> li
         one.nonselection_glyph = None
         role = "second" if observer else "ink" if outside else "accent"
         if outside:
-            in_theme(one, line_color=role, line_width=3.2)
+            themed(one, line_color=role, line_width=3.2)
         else:
-            in_theme(one, fill_color=role, line_color="card", line_width=1.0)
+            themed(one, fill_color=role, line_color="card", line_width=1.0)
         shown[name] = one
     own = [shown["within"], shown["outside"]]
     if not compact:

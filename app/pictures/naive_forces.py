@@ -8,7 +8,7 @@ import numpy as np
 from bokeh.layouts import column
 from bokeh.models import Column, ColumnDataSource, HoverTool
 
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 
 def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | None, time_unit: str, unit: str,
@@ -23,13 +23,13 @@ def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | Non
     below = frame(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=130,
                   sizing_mode="stretch_width")
     # without it the axis would have no range where the naive force could not be computed
-    in_theme(below.line("time", "nothing", source=sure), line_color="faint", line_width=1.0)
+    themed(below.line("time", "nothing", source=sure), line_color="faint", line_width=1.0)
     lines: list[tuple[Any, str, Any, str, float, dict[str, Any]]] = [
         (above, "force", sure, "output", 4.0, {"legend_label": "accurate"}),
         (above, "force", drawn, "naive", 2.4, {"legend_label": "naive", "line_dash": [7, 4]}),
         (below, "difference", drawn, "naive", 1.6, {})]
     for plot, what, source, role, width, options in lines:
-        line = in_theme(plot.line("time", what, source=source, **options), line_color=role, line_width=width)
+        line = themed(plot.line("time", what, source=source, **options), line_color=role, line_width=width)
         plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
             ("time", f"@time{{0.000}} {time_unit}"),
             (options.get("legend_label", "naive − accurate"), f"@{what}{{0.000e}} {unit}")]))
@@ -42,7 +42,7 @@ def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | Non
     above.add_layout(above.legend[0], "above")
     for plot in (above, below):
         plot.yaxis.ticker.desired_num_ticks = 4
-        dress(plot, theme)
+        apply_theme(plot, theme)
     return column(above, below, sizing_mode="stretch_both", spacing=0)
 
 

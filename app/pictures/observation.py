@@ -10,7 +10,7 @@ from granchain_core.observe import Observation
 
 from ..format import prefixed
 from .axes import force_scale
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 
 def observation(found: Observation, theme: Theme) -> figure:
@@ -29,7 +29,7 @@ def observation(found: Observation, theme: Theme) -> figure:
     source = ColumnDataSource(columns, name="forces")
     for name, words, role, width, dash in lines:
         line = plot.line("time", name, source=source, line_dash=dash or "solid", legend_label=words)
-        in_theme(line, line_color=role, line_width=width)
+        themed(line, line_color=role, line_width=width)
         plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
             ("time", f"@time{{0.0000}} {letter}s"), (words, f"@{name}{{0.0000}} {scale.unit}")]))
     plot.title.text = (f"relative error {found.integration_error:.0e} of integration, "
@@ -38,4 +38,4 @@ def observation(found: Observation, theme: Theme) -> figure:
     plot.xaxis.axis_label, plot.yaxis.axis_label = f"time ({letter}s)", scale.label
     plot.legend.update(orientation="horizontal", padding=1, margin=2, click_policy="hide")
     plot.add_layout(plot.legend[0], "above")
-    return dress(plot, theme)
+    return apply_theme(plot, theme)

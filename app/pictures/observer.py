@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from bokeh.models import ColumnDataSource, DataRange1d, HoverTool, Range1d
 from bokeh.plotting import figure
 
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 SHOWN_PERIODS = 60
 """How many drive periods are shown at once; panning shows the earlier ones that are kept."""
@@ -33,8 +33,8 @@ def observer(period: Sequence[float], distance: Sequence[float], prediction: Seq
     before = plot.line("period", "distance", source=expected, line_dash=[9, 5], legend_label="predicted by |μ|")
     line = plot.line("period", "distance", source=measured, legend_label="measured")
     follow.renderers = [line]
-    in_theme(before, line_color="accent", line_width=2.6)
-    in_theme(line, line_color="ink", line_width=2.4)
+    themed(before, line_color="accent", line_width=2.6)
+    themed(line, line_color="ink", line_width=2.4)
     plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
         ("drive period", "@period{0.00}"), ("distance |y − x|", "@distance{0.00e}")]))
     plot.legend.update(location="bottom_left", orientation="horizontal", padding=2, visible=not compact)
@@ -42,7 +42,7 @@ def observer(period: Sequence[float], distance: Sequence[float], prediction: Seq
         plot.xaxis.axis_label, plot.yaxis.axis_label = "drive periods", "distance |y − x|, scaled"
     plot.yaxis.ticker.desired_num_ticks = 5
     plot.yaxis.ticker.num_minor_ticks = 0
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def prediction(period: float, distance: float, factor: float | None) -> list[tuple[float, float]]:

@@ -18,7 +18,7 @@ from granchain_core import Run
 from granchain_core.analysis.spectrum import cosines
 
 from ..format import prefixed
-from .theme import Theme, dress, frame, in_theme, span_of
+from .theme import Theme, apply_theme, frame, span_of, themed
 
 _ROWS = 700
 """Most points of a line; a longer motion is thinned out evenly."""
@@ -36,7 +36,7 @@ def probe(name: str, run: Run, bead: int, theme: Theme) -> figure:
     models = {model.name: model for model in plot.references() if model.name}
     for model, properties in probe_state(run, bead)[name].items():
         models[model].update(**properties)
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def without_points(name: str, theme: Theme, compact: bool = False) -> figure:
@@ -46,7 +46,7 @@ def without_points(name: str, theme: Theme, compact: bool = False) -> figure:
         plot.toolbar_location = None
         for axis in (plot.xaxis[0], plot.yaxis[0]):
             axis.ticker.desired_num_ticks = 2
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _displacement() -> figure:
@@ -61,7 +61,7 @@ def _forces() -> figure:
     plot, sources = _frame("forces", ("before", "after"))
     for name, role, dash, words in (("before", "input", "solid", "towards the driver"),
                                     ("after", "output", [7, 4], "towards the wall")):
-        in_theme(plot.line("x", "y", source=sources[name], line_dash=dash, legend_label=words), line_color=role,
+        themed(plot.line("x", "y", source=sources[name], line_dash=dash, legend_label=words), line_color=role,
                  line_width=2.2)
     plot.legend.update(orientation="horizontal", padding=0, margin=2, click_policy="hide")
     plot.add_layout(plot.legend[0], "above")
@@ -71,7 +71,7 @@ def _forces() -> figure:
 def _contacts() -> figure:
     plot, sources = _frame("contacts", ("closed", "own"))
     for name, role in (("closed", "soft"), ("own", "accent")):
-        bars = in_theme(plot.hbar("contact", left="from", right="to", height=0.62, source=sources[name],
+        bars = themed(plot.hbar("contact", left="from", right="to", height=0.62, source=sources[name],
                                   line_color=None), fill_color=role)
         plot.add_tools(HoverTool(renderers=[bars], tooltips=[
             ("contact", "@contact"), ("closed from", "@from{0.000}"), ("to", "@to{0.000}")]))
@@ -81,8 +81,8 @@ def _contacts() -> figure:
 
 def _phase() -> figure:
     plot, sources = _frame("phase", ("way", "strobe"))
-    in_theme(plot.line("x", "y", source=sources["way"], line_alpha=0.8), line_color="accent", line_width=1.8)
-    dots = in_theme(plot.scatter("x", "y", size=12, source=sources["strobe"], line_width=2), fill_color="drive",
+    themed(plot.line("x", "y", source=sources["way"], line_alpha=0.8), line_color="accent", line_width=1.8)
+    dots = themed(plot.scatter("x", "y", size=12, source=sources["strobe"], line_width=2), fill_color="drive",
                     line_color="card")
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[("begin of drive period", "@number"), ("displacement", "@x"),
                                                          ("velocity", "@y")]))
@@ -91,8 +91,8 @@ def _phase() -> figure:
 
 def _spectrum() -> figure:
     plot, sources = _frame("spectrum", ("lines",), y_axis_type="log")
-    in_theme(plot.segment("x", "floor", "x", "y", source=sources["lines"]), line_color="accent", line_width=3.0)
-    dots = in_theme(plot.scatter("x", "y", size=7, source=sources["lines"], line_color=None), fill_color="accent")
+    themed(plot.segment("x", "floor", "x", "y", source=sources["lines"]), line_color="accent", line_width=3.0)
+    dots = themed(plot.scatter("x", "y", size=7, source=sources["lines"], line_color=None), fill_color="accent")
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[("frequency over drive frequency", "@x{0.00}"),
                                                          ("amplitude", "@y{0.000e}")]))
     return plot
@@ -177,7 +177,7 @@ def _crossing(time: np.ndarray, overlap: np.ndarray, after: int) -> float:
 
 def _over_time(name: str) -> figure:
     plot, sources = _frame(name, ("line",))
-    in_theme(plot.line("x", "y", source=sources["line"]), line_color="accent", line_width=2.2)
+    themed(plot.line("x", "y", source=sources["line"]), line_color="accent", line_width=2.2)
     return plot
 
 

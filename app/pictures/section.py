@@ -9,7 +9,7 @@ import numpy as np
 from bokeh.models import ColumnDataSource, HoverTool, Range1d
 from bokeh.plotting import figure
 
-from .theme import Theme, dress, frame, in_theme, span_of
+from .theme import Theme, apply_theme, frame, span_of, themed
 
 _FEW = 150
 """Sections with fewer points than this have their transient drawn larger."""
@@ -45,13 +45,13 @@ def section(shown: SectionPoints, theme: Theme) -> figure:
     for name, model in (*made.items(), ("displacements", plot.x_range), ("velocities", plot.y_range),
                         ("displacement", plot.xaxis[0]), ("velocity", plot.yaxis[0])):
         model.update(**state[name])
-    in_theme(plot.multi_line("u", "v", source=made["path"], line_alpha=0.45), line_color="soft", line_width=1.4)
-    way = in_theme(plot.scatter("u", "v", size="size", source=made["way"], line_color=None, fill_alpha=0.75),
+    themed(plot.multi_line("u", "v", source=made["path"], line_alpha=0.45), line_color="soft", line_width=1.4)
+    way = themed(plot.scatter("u", "v", size="size", source=made["way"], line_color=None, fill_alpha=0.75),
                    fill_color="soft")
-    dots = in_theme(plot.scatter("u", "v", size="size", source=made["dots"], line_color=None), fill_color="accent")
-    ring = in_theme(plot.scatter("u", "v", size=16, source=made["orbit"], fill_color=None),
+    dots = themed(plot.scatter("u", "v", size="size", source=made["dots"], line_color=None), fill_color="accent")
+    ring = themed(plot.scatter("u", "v", size=16, source=made["orbit"], fill_color=None),
                     line_color="accent", line_width=3.0)
-    diamond = in_theme(plot.scatter("u", "v", size=20, marker="diamond", source=made["unstable orbit"],
+    diamond = themed(plot.scatter("u", "v", size=20, marker="diamond", source=made["unstable orbit"],
                                     fill_color=None), line_color="ink", line_width=3.0)
     plot.add_tools(HoverTool(renderers=[way, dots], tooltips=[("drive period", "@number"), ("displacement", "@u"),
                                                               ("velocity", "@v")]),
@@ -59,7 +59,7 @@ def section(shown: SectionPoints, theme: Theme) -> figure:
                                                                   ("displacement", "@u"), ("velocity", "@v")]))
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker.desired_num_ticks = 4
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def section_state(shown: SectionPoints) -> dict[str, dict[str, Any]]:

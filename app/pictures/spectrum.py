@@ -10,7 +10,7 @@ from granchain_core import BadInput, Spectrum
 
 from ..format import prefixed
 from .axes import force_scale
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 #: Decades below the largest line that are drawn.
 _DECADES = 6.0
@@ -37,16 +37,16 @@ def spectrum(found: Spectrum, theme: Theme) -> figure:
                                                   "phase": found.phase[drawn], "low": np.full(int(drawn.sum()), low)})
     if found.period:
         stems = plot.segment("frequency", "low", "frequency", "amplitude", source=source)
-        in_theme(stems, line_color="output", line_width=2.4)
+        themed(stems, line_color="output", line_width=2.4)
     else:
-        in_theme(plot.line("frequency", "amplitude", source=source), line_color="output", line_width=1.6)
+        themed(plot.line("frequency", "amplitude", source=source), line_color="output", line_width=1.6)
     heads = plot.scatter("frequency", "amplitude", source=source, size=5, line_color=None)
-    in_theme(heads, fill_color="output")
+    themed(heads, fill_color="output")
     folded = plot.line([0.0, float(found.frequency[-1]) / hertz], [floor] * 2, line_dash=[4, 4], level="underlay",
                        legend_label="aliasing bound")
-    in_theme(folded, line_color="soft", line_width=1.2)
+    themed(folded, line_color="soft", line_width=1.2)
     plot.add_tools(HoverTool(renderers=[heads], tooltips=[
         ("frequency", f"@frequency{{0.0000}} {letter}Hz"), ("amplitude", f"@amplitude{{0.0000}} {scale.unit}"),
         ("phase", "@phase{0.000} rad")]))
     plot.xaxis.axis_label, plot.yaxis.axis_label = f"frequency ({letter}Hz)", scale.label
-    return dress(plot, theme)
+    return apply_theme(plot, theme)

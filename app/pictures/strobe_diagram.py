@@ -11,7 +11,7 @@ from granchain_core import StrobeDiagram
 from ..format import prefixed
 from .axes import knob_scale
 from .regimes import REGIMES, regime_key
-from .theme import Theme, dress, frame
+from .theme import Theme, apply_theme, frame
 
 
 def strobe_diagram(found: StrobeDiagram, bead: int, theme: Theme) -> figure:
@@ -36,4 +36,4 @@ def strobe_diagram(found: StrobeDiagram, bead: int, theme: Theme) -> figure:
         legend.update(orientation="horizontal", padding=0, margin=2, ncols=4)
     if plot.legend:
         plot.add_layout(plot.legend[0], "below")
-    return dress(plot, theme)
+    return apply_theme(plot, theme)

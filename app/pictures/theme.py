@@ -81,7 +81,7 @@ def style_sheet() -> str:
 
 
 def frame(tools: str = TOOLS, **options: Any) -> figure:
-    """An empty figure with the tools that every picture has; `dress` gives it its colours."""
+    """An empty figure with the tools that every picture has; `apply_theme` gives it its colours."""
     plot = figure(tools=tools, output_backend="canvas", outline_line_color=None,
                   **{"sizing_mode": "stretch_both", "toolbar_location": "right", **options})
     plot.toolbar.logo = None
@@ -96,14 +96,14 @@ def frame(tools: str = TOOLS, **options: Any) -> figure:
     return plot
 
 
-def in_theme(model: Any, **roles: str | float) -> Any:
+def themed(model: Any, **roles: str | float) -> Any:
     """Mark what follows the theme: a string is a colour's role, a number a line width in pixels. Returns `model`."""
     model.tags = [*model.tags, {"theme": roles}]
     return model
 
 
-def dress(plot: figure, theme: Theme) -> figure:
-    """Give a figure, and all in it that `in_theme` has named, the colours and widths of a theme. Returns `plot`."""
+def apply_theme(plot: figure, theme: Theme) -> figure:
+    """Give a figure, and all in it that `themed` has named, the colours and widths of a theme. Returns `plot`."""
     plot.background_fill_color = plot.border_fill_color = theme.card
     plot.grid.grid_line_color = theme.faint
     small = f"{theme.small}px"

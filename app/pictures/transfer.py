@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 from granchain_core import BadInput, Transfer
 
 from ..format import prefixed
-from .theme import Theme, dress, frame, in_theme
+from .theme import Theme, apply_theme, frame, themed
 
 
 def transfer(found: Transfer, theme: Theme) -> LayoutDOM:
@@ -27,12 +27,12 @@ def transfer(found: Transfer, theme: Theme) -> LayoutDOM:
     gain = _panel(source, "gain", f"@frequency{{0.0000}} {letter}Hz", "gain |H|", y_axis_type="log")
     phase = _panel(source, "phase", f"@frequency{{0.0000}} {letter}Hz", "phase (rad)", x_range=gain.x_range)
     phase.xaxis.axis_label = f"frequency ({letter}Hz)"
-    return column([dress(gain, theme), dress(phase, theme)], sizing_mode="stretch_both")
+    return column([apply_theme(gain, theme), apply_theme(phase, theme)], sizing_mode="stretch_both")
 
 
 def _panel(source: ColumnDataSource, name: str, where: str, label: str, **options: Any) -> figure:
     plot = frame(name=name, min_border=4, **options)
-    dots = in_theme(plot.scatter("frequency", name, source=source, size=7, line_color=None), fill_color="output")
+    dots = themed(plot.scatter("frequency", name, source=source, size=7, line_color=None), fill_color="output")
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[("frequency", where), (label, f"@{name}{{0.0000}}")]))
     plot.yaxis.axis_label = label
     return plot

@@ -7,7 +7,7 @@ import pytest
 from bokeh.models import GlyphRenderer, Legend, LogScale
 
 from app.pictures.check import check
-from app.pictures.theme import THEMES, dress
+from app.pictures.theme import THEMES, apply_theme
 from granchain_core.hard import Picture, Trace
 
 LIGHT = THEMES["light"]
@@ -50,6 +50,6 @@ def test_a_look_is_the_same_whether_drawn_in_it_or_dressed_later(look: str) -> N
 
     theme = THEMES[look]
     drawn = seen(check(picture, theme))
-    assert drawn == seen(dress(check(picture, LIGHT), theme))
+    assert drawn == seen(apply_theme(check(picture, LIGHT), theme))
     assert len(set(drawn)) == 5
     assert drawn[1][0] == theme.ink and drawn[1][1] == 2.6 * theme.line  # type: ignore[index]

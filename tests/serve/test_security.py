@@ -20,8 +20,8 @@ from bokeh.util.token import generate_jwt_token, generate_session_id
 from tornado.ioloop import IOLoop
 
 from app import server
+from app.curve.sweep import CURVES_SHARED
 from app.dashboard.main_picture import PICTURES_SHARED
-from app.pages.curve.sweep import CURVES_SHARED
 from app.serve import guard
 from app.serve.compiler import Compiler
 from app.server import Access, server_at

@@ -1,7 +1,7 @@
 // The Accuracy page, over the pictures: what accuracy costs here and now, and what naive steps would have drawn.
 
 import { button, element, meter, pageHead, table } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { BokehFigure } from "../../parts/bokeh_figure.js";
 import { fillAccuracy, showAccuracy } from "./accuracy_tab.js";
 import { NaiveForces } from "./naive_forces.js";
 
@@ -45,7 +45,7 @@ class AccuracyPage {
     this.machine = element("span", { className: "soft", title: "The processor that the kernels are compiled for" });
     this.warning = element("span", { className: "warn" });
     this.picture = element("div", { className: "picture" });
-    this.figure = new Embedded(this.picture, (one) => fillAccuracy(one, this.known));
+    this.figure = new BokehFigure(this.picture, (one) => fillAccuracy(one, this.known));
     this.naive = new NaiveForces();
     this.methods = element("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "methods" });
     this.root = element(

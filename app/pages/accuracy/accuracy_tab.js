@@ -1,7 +1,7 @@
 // The Accuracy tab: error against time in small, and the way to the page. What fills the figure serves the page as well.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
-import { Embedded, fillModels } from "../../parts/embedded.js";
+import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
 
 const STALE = "The knobs have moved; open the page to measure again.";
 
@@ -25,7 +25,7 @@ function sentence({ running, progress, done, asked }) {
 export function accuracyTab() {
   const known = () => window.granchain.pages.get("accuracy") ?? { drawn: {} };
   const host = element("div", { className: "small" });
-  const figure = new Embedded(host, (one) => fillAccuracy(one, known()));
+  const figure = new BokehFigure(host, (one) => fillAccuracy(one, known()));
   const line = paragraph();
   const show = () => {
     const { small, asked } = known();

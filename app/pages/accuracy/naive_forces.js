@@ -1,7 +1,7 @@
 // The accurate output force, and over it the one that a naive method with few steps would have drawn.
 
 import { element } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { BokehFigure } from "../../parts/bokeh_figure.js";
 
 // The naive steps in a drive period that are chosen at first.
 const USUAL_STEPS = 200;
@@ -23,7 +23,7 @@ export class NaiveForces {
     this.steps = this.choice("its steps in a drive period");
     this.line = element("p");
     this.host = element("div", { className: "picture" });
-    this.figure = new Embedded(this.host, () => this.show());
+    this.figure = new BokehFigure(this.host, () => this.show());
     this.root = element(
       "div",
       { className: "naive" },

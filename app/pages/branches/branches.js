@@ -1,7 +1,7 @@
 // The Branches page, over the pictures: a branch of periodic orbits grows, and a click loads one of them.
 
 import { button, element, pageHead, paragraph } from "../../parts/dom.js";
-import { Embedded, StreamedData } from "../../parts/embedded.js";
+import { BokehFigure, StreamedData } from "../../parts/bokeh_figure.js";
 
 const WORDS = "largest elastic output force of periodic orbits over drive frequency";
 // Below this width in pixels the legend stands in two columns.
@@ -77,7 +77,7 @@ class BranchesPage {
     const say = element("div", { className: "say" }, this.said, this.warning, this.choice.root);
     this.root = element("div", { className: "part sheet" }, head, say, this.work);
     this.data = new StreamedData();
-    this.figure = new Embedded(this.picture, (one) => this.fill(one));
+    this.figure = new BokehFigure(this.picture, (one) => this.fill(one));
     this.everywhere = [this.figure]; // its tab adds its own
   }
 

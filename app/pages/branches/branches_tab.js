@@ -1,13 +1,13 @@
 // The Branches tab: the small version of the picture and the way to the page.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { BokehFigure } from "../../parts/bokeh_figure.js";
 
 export function branchesTab(_, { placeholder }) {
   const known = () => window.granchain.pages.get("branches");
   const host = element("div", { className: "small" });
   const said = paragraph();
-  const figure = new Embedded(host, (one) => known().data.fill(one));
+  const figure = new BokehFigure(host, (one) => known().data.fill(one));
   const show = () => {
     if (!known()) return;
     const { data, words, small, figures } = known();

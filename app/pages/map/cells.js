@@ -1,6 +1,6 @@
 // What the browser knows of the map: its figure and cells, its state and the attractors.
 
-import { StreamedData } from "../../parts/embedded.js";
+import { StreamedData } from "../../parts/bokeh_figure.js";
 
 export const MAP = {
   head: null,

@@ -1,7 +1,7 @@
 // The map: regime or largest force over f and A0, coarse first, and all attractors of the present setting.
 
 import { button, element, meter, paragraph } from "../../parts/dom.js";
-import { Embedded, fillModels } from "../../parts/embedded.js";
+import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
 import { attractorList } from "./attractor_list.js";
 import { cellAt, finest, MAP, valuesOf } from "./cells.js";
 
@@ -28,7 +28,7 @@ class MapTab {
     this.host.addEventListener("keydown", (event) => this.key(event));
     this.host.addEventListener("blur", () => this.moveCursor(null));
     this.found = element("div");
-    this.figure = new Embedded(this.host, (one) => this.fill(one));
+    this.figure = new BokehFigure(this.host, (one) => this.fill(one));
     const segments = element("span", { className: "segments" }, ...this.choices);
     const find = button("all attractors at this setting", () => this.send("map-attractors"));
     this.content = [

@@ -1,7 +1,7 @@
 // The Observer page: the chain above, its observer below, between them the force that couples them, and their distance.
 
 import { button, element, pageHead } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { BokehFigure } from "../../parts/bokeh_figure.js";
 import { Chains } from "./chains.js";
 import { fillDistance, showDistance } from "./observer_tab.js";
 import { Replay } from "./replay.js";
@@ -63,7 +63,7 @@ class ObserverPage {
       (step) => this.begin(step),
     );
     const picture = element("div", { className: "fill" });
-    this.figure = new Embedded(picture, (one) => fillDistance(one, this.known));
+    this.figure = new BokehFigure(picture, (one) => fillDistance(one, this.known));
     this.root = element(
       "div",
       { className: "part sheet" },

@@ -1,7 +1,7 @@
 // The Observer tab: the distance in small, and the way to the page. What fills the figure serves the page as well.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { BokehFigure } from "../../parts/bokeh_figure.js";
 
 // The distance over time, and what the multipliers predict of it; each point is [drive period, distance].
 export function fillDistance(figure, { history, prediction }) {
@@ -23,7 +23,7 @@ export function showDistance(figure, item, known) {
 export function observerTab(_, { placeholder }) {
   const known = () => window.granchain.pages.get("observer") ?? { history: [], prediction: [] };
   const host = element("div", { className: "small" });
-  const figure = new Embedded(host, (one) => fillDistance(one, known()));
+  const figure = new BokehFigure(host, (one) => fillDistance(one, known()));
   const said = paragraph();
   const show = () => {
     said.textContent = known().sentence || placeholder;

@@ -1,7 +1,7 @@
 // The Probe page, over the pictures: one bead in six pictures. A click on a bead, in the chain or the map, chooses it.
 
 import { button, element, fillBeads, pageHead, paragraph } from "../../parts/dom.js";
-import { Embedded, fillModels } from "../../parts/embedded.js";
+import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
 
 const TITLES = {
   displacement: "displacement",
@@ -39,7 +39,7 @@ class ProbePage {
 
   place(name, words) {
     const host = element("div", { className: "picture" });
-    this.figures.set(name, new Embedded(host, (one) => fillModels(one, this.drawn?.[name])));
+    this.figures.set(name, new BokehFigure(host, (one) => fillModels(one, this.drawn?.[name])));
     return element(
       "section",
       { className: "one" },

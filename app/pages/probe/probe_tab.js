@@ -1,7 +1,7 @@
 // The Probe tab: the phase portrait of the chosen bead, small, and the way to the page.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
-import { Embedded, fillModels } from "../../parts/embedded.js";
+import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
 
 const INVITES = "Click a bead in the chain or in the map: its motion, its contacts, its spectrum.";
 
@@ -9,7 +9,7 @@ export function probeTab() {
   const known = () => window.granchain.pages.get("probe") ?? {};
   const host = element("div", { className: "circle" });
   const line = paragraph();
-  const figure = new Embedded(host, (one) => fillModels(one, known().drawn?.phase));
+  const figure = new BokehFigure(host, (one) => fillModels(one, known().drawn?.phase));
   const show = () => {
     const { sentence, small, drawn } = known();
     line.textContent = sentence || INVITES;

@@ -1,7 +1,7 @@
 // The multipliers in the complex plane; a click on one, or an arrow key, chooses the disturbance that is shown.
 
 import { element } from "../../parts/dom.js";
-import { Embedded, fillModels } from "../../parts/embedded.js";
+import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
 
 const OBSERVER = "the observer: a second chain pushed by this one's input force";
 
@@ -13,7 +13,7 @@ export class MultiplierPlane {
     this.watch.addEventListener("change", () => send({ do: "stability-observer", value: this.watch.checked }));
     this.host = element("div", { className: "picture", tabIndex: 0, title: "Arrow keys choose another multiplier" });
     this.host.addEventListener("keydown", ({ key }) => this.step({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0));
-    this.figure = new Embedded(this.host, (one) => this.fill(one));
+    this.figure = new BokehFigure(this.host, (one) => this.fill(one));
     this.note = element("span", { className: "soft readout" });
     const label = element("label", { className: "watch", title: OBSERVER }, this.watch, "observer");
     this.root = element(

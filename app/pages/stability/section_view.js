@@ -1,7 +1,7 @@
 // The Poincaré section on the page: its picture, and the choice of bead and drive phase.
 
 import { element, fillBeads } from "../../parts/dom.js";
-import { Embedded } from "../../parts/embedded.js";
+import { BokehFigure } from "../../parts/bokeh_figure.js";
 
 export class SectionView {
   constructor(send, phases) {
@@ -15,7 +15,7 @@ export class SectionView {
     this.close.addEventListener("change", () => this.showRanges());
     this.note = element("span", { className: "soft" });
     this.host = element("div", { className: "picture" });
-    this.figure = new Embedded(this.host, () => this.fill());
+    this.figure = new BokehFigure(this.host, () => this.fill());
     const tell = () => {
       this.say();
       send({ do: "stability-section", bead: Number(this.beads.value), phase: Number(this.phase.value) });

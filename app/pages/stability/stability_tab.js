@@ -1,14 +1,14 @@
 // The Stability tab: the unit circle and the sentence; it draws what the Stability page holds.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
-import { Embedded, fillModels } from "../../parts/embedded.js";
+import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
 
 export function stabilityTab() {
   const known = () => window.granchain.pages.get("stability") ?? { state: {} };
   const host = element("div", { className: "circle" });
   const line = paragraph("", "verdict");
   const more = paragraph("", "soft");
-  const figure = new Embedded(host, (one) => fillModels(one, known().state.plane));
+  const figure = new BokehFigure(host, (one) => fillModels(one, known().state.plane));
   const show = () => {
     const { state, small } = known();
     line.textContent = state.sentence || "Follows the settled picture.";

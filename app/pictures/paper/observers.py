@@ -10,7 +10,7 @@ from granchain_core.observe import Figure11
 from granchain_core.paper import Observers
 
 from ..multipliers import multipliers
-from ..theme import Theme, dress, frame, in_theme
+from ..theme import Theme, apply_theme, frame, themed
 from .panels import grid
 
 
@@ -32,11 +32,11 @@ def _row(part: Figure11, letters: str, place: Range1d, theme: Theme) -> list[fig
                                          strict=True):
         plot = frame(name=f"{words} {part.kappa:g}", y_range=place, min_border=4)
         line = plot.line(1e3 * part.twin.time, 1e6 * bead)
-        in_theme(line, line_color=role, line_width=1.6)
+        themed(line, line_color=role, line_width=1.6)
         plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[("time", "@x{0.00} ms"),
                                                                            ("displacement", "@y{0.000} µm")]))
         plot.title.text = f"({letter}) bead 1 of the {words}"
         plot.xaxis.axis_label, plot.yaxis.axis_label = "time (ms)", "displacement (µm)"
         plot.x_range.range_padding = 0.0
-        panels.append(dress(plot, theme))
+        panels.append(apply_theme(plot, theme))
     return panels

@@ -13,7 +13,7 @@ from bokeh.plotting import figure
 from granchain_core.experiment import Measured
 
 from ..measured import measured_over
-from ..theme import Theme, in_theme
+from ..theme import Theme, themed
 
 
 def grid(rows: Sequence[Sequence[figure]]) -> LayoutDOM:
@@ -54,9 +54,9 @@ def hollow_points(plot: figure, x: Any, y: Any, error: Any, words: str, hover: S
     if error is not None:
         bars = Whisker(base="x", upper="high", lower="low", source=source, level="annotation", upper_head=None,
                        lower_head=None)
-        plot.add_layout(in_theme(bars, line_color="ink", line_width=1.2))
+        plot.add_layout(themed(bars, line_color="ink", line_width=1.2))
     dots = plot.scatter("x", "y", source=source, size=8, fill_color=None, level="annotation", legend_label=words)
-    in_theme(dots, line_color="ink", line_width=1.2)
+    themed(dots, line_color="ink", line_width=1.2)
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[("", words), *hover]))
 
 

@@ -13,7 +13,7 @@ from granchain_core.paper import RigCurves, RigResponse, Trains
 
 from ..curve import FORCES, forces_in_words
 from ..regimes import REGIMES, regime_key
-from ..theme import Theme, dress, frame, in_theme
+from ..theme import Theme, apply_theme, frame, themed
 from .panels import inside_legend, measured_curve
 from .trains import trains
 
@@ -36,12 +36,12 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
         high = max(high, float(shown.measured.force.max()))
     for feature in shown.features:
         line = Span(location=feature.frequency, dimension="height", line_dash=[2, 4])
-        plot.add_layout(in_theme(line, line_color="drive" if feature.is_resonance else "soft", line_width=1.8))
+        plot.add_layout(themed(line, line_color="drive" if feature.is_resonance else "soft", line_width=1.8))
     stated = ColumnDataSource({
         "x": [f.frequency for f in shown.features], "y": [1.36 * high] * len(shown.features),
         "words": [f"{f.frequency:g} Hz, {f.kind}" for f in shown.features],
         "source": [f.source for f in shown.features]}, name="stated")
-    in_theme(plot.text("x", "y", text="words", source=stated, angle=-math.pi / 2, text_font_size="12px",
+    themed(plot.text("x", "y", text="words", source=stated, angle=-math.pi / 2, text_font_size="12px",
                        text_baseline="bottom", text_align="left", x_offset=3), text_color="soft")
     if shown.states:
         _states(plot, shown)
@@ -49,7 +49,7 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
     plot.y_range.update(start=0, end=1.38 * high)
     plot.xaxis.axis_label, plot.yaxis.axis_label = "drive frequency f (Hz)", "largest elastic output force (N)"
     plot.title.text = "(a) lines: model (5) from rest; upright: what the text states"
-    dress(plot, theme)
+    apply_theme(plot, theme)
     inside_legend(plot, theme, "top_left")
     return plot
 
@@ -66,7 +66,7 @@ def _curve(plot: figure, one: Curve, dash: str | list[int], role: str, marked: b
                  for key, p in zip(keys, points, strict=True)], **forces_in_words(points)})
     words = f"A0 = {1e6 * one.scene.A0:g} µm"
     line = plot.line("x", "y", source=source, line_dash=dash, legend_label=words)
-    in_theme(line, line_color=role, line_width=1.8)
+    themed(line, line_color=role, line_width=1.8)
     marks = plot.scatter("x", "y", source=source, marker="marker", size="size", fill_color="colour",
                          line_color="colour", line_width=1.5, **({"legend_group": "regime"} if marked else {}))
     plot.add_tools(HoverTool(renderers=[marks if marked else line], tooltips=[
@@ -80,6 +80,6 @@ def _states(plot: figure, shown: RigCurves) -> None:
         "words": [f"{1e6 * s.run.scene.A0:g} µm" + ("" if s.run.scene.f == named else f" at {s.run.scene.f:g} Hz")
                   for named, s in shown.states]}, name="states")
     rings = plot.scatter("x", "y", source=source, size=15, fill_color=None, legend_label="figure 12's states")
-    in_theme(rings, line_color="ink", line_width=2.4)
-    in_theme(plot.text("x", "y", text="words", source=source, x_offset=11, text_baseline="middle",
+    themed(rings, line_color="ink", line_width=2.4)
+    themed(plot.text("x", "y", text="words", source=source, x_offset=11, text_baseline="middle",
                        text_font_size="12px", text_font_style="bold"), text_color="ink")

@@ -8,7 +8,7 @@ from bokeh.plotting import figure
 
 from granchain_core.paper import Rig
 
-from ..theme import Theme, dress, frame, in_theme
+from ..theme import Theme, apply_theme, frame, themed
 
 _MM = 1e3
 
@@ -27,7 +27,7 @@ def rig(shown: Rig, theme: Theme) -> figure:
     plot.grid.visible = False
     first = 1 if shown.fixture else 0
     circles = plot.circle(centres[first:], np.zeros(len(centres) - first), radius=radii[first:])
-    in_theme(circles, fill_color="faint", line_color="ink", line_width=1.6)
+    themed(circles, fill_color="faint", line_color="ink", line_width=1.6)
     _words(plot, centres[first:], 0.0, [str(row["bead"]) for row in rows[first:]], "ink", align="center")
     _wall(plot, end, radius, 4 * radius if shown.fixture else 2 * radius)
     if shown.fixture:
@@ -45,18 +45,18 @@ def rig(shown: Rig, theme: Theme) -> figure:
                        f"ν = {bead.poisson:g}, K = {scene.K:.4g} N/m^1.5, wall {scene.wall_factor:.3g} K, "
                        f"D = {scene.D:g} N s/m"
                        + (f", k = {scene.k / 1e3:.3g} kN/m (κ = {scene.kappa:.3g})" if scene.k else ""))
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 
 
 def _driver(plot: figure, radius: float, amplitude: float, f: float) -> None:
     """Bead 0 in the drive's colour, and which way it moves."""
     bead = plot.circle(radius, 0.0, radius=radius, fill_alpha=0.25)
-    in_theme(bead, fill_color="drive", line_color="drive", line_width=2.0)
+    themed(bead, fill_color="drive", line_color="drive", line_width=2.0)
     arrow = plot.segment([-0.2 * radius], [1.5 * radius], [2.2 * radius], [1.5 * radius])
     heads = plot.scatter([-0.2 * radius, 2.2 * radius], [1.5 * radius] * 2, marker="triangle", size=10,
                          angle=[np.pi / 2, -np.pi / 2])
-    in_theme(arrow, line_color="drive", line_width=2.0)
-    in_theme(heads, line_color="drive", fill_color="drive")
+    themed(arrow, line_color="drive", line_width=2.0)
+    themed(heads, line_color="drive", fill_color="drive")
     _words(plot, [-0.4 * radius], 2.2 * radius,
            [f"driver: u0 = A0 sin(2πft), A0 = {1e6 * amplitude:g} µm, f = {f:g} Hz"], "drive")
 
@@ -64,7 +64,7 @@ def _driver(plot: figure, radius: float, amplitude: float, f: float) -> None:
 def _wall(plot: figure, place: float, radius: float, height: float) -> None:
     wall = plot.quad(left=[place], right=[place + radius], bottom=[-0.5 * height - radius], top=[0.5 * height + radius],
                      hatch_pattern="/", hatch_alpha=0.6, fill_alpha=0.2)
-    in_theme(wall, fill_color="steel", line_color="ink", line_width=1.6, hatch_color="ink")
+    themed(wall, fill_color="steel", line_color="ink", line_width=1.6, hatch_color="ink")
     _words(plot, [place + 0.5 * radius], 0.5 * height + 1.1 * radius, ["wall"], "ink", align="center", up=True)
 
 
@@ -73,9 +73,9 @@ def _springs(plot: figure, centres: np.ndarray, radius: float) -> None:
     top, bottom = -radius, -3.2 * radius
     y = np.linspace(top, bottom, 11)
     across = np.concatenate([[0.0, 0.0], np.tile([0.3, -0.3], 4)[:7], [0.0, 0.0]]) * radius
-    in_theme(plot.multi_line([c + across for c in centres], [y] * len(centres)), line_color="second", line_width=1.6)
+    themed(plot.multi_line([c + across for c in centres], [y] * len(centres)), line_color="second", line_width=1.6)
     ground = plot.segment([centres[0] - radius], [bottom], [centres[-1] + radius], [bottom])
-    in_theme(ground, line_color="ink", line_width=2.0)
+    themed(ground, line_color="ink", line_width=2.0)
 
 
 def _fixture(plot: figure, centres: np.ndarray, radius: float, end: float) -> None:
@@ -84,22 +84,22 @@ def _fixture(plot: figure, centres: np.ndarray, radius: float, end: float) -> No
     pillars = plot.quad(left=[centres[1] - 2.6 * radius, end + radius],
                         right=[centres[1] - 2.1 * radius, end + 1.5 * radius],
                         bottom=[foot - 0.4 * radius] * 2, top=[shaft + radius] * 2, fill_alpha=0.3, line_dash=[5, 3])
-    in_theme(pillars, fill_color="soft", line_color="soft", line_width=1.2)
+    themed(pillars, fill_color="soft", line_color="soft", line_width=1.2)
     rod = plot.segment([centres[1] - 2.1 * radius], [shaft], [end + radius], [shaft], line_dash=[5, 3])
-    in_theme(rod, line_color="soft", line_width=3.0)
+    themed(rod, line_color="soft", line_width=3.0)
     ones = np.ones(len(centres) - 1)
     flexures = plot.segment(centres[1:], radius * ones, centres[1:], shaft * ones)
-    in_theme(flexures, line_color="second", line_width=1.6)
+    themed(flexures, line_color="second", line_width=1.6)
     left = float(centres[1] - radius)
     boxes = plot.quad(left=[left - 7.6 * radius, left - 0.45 * radius, end - 0.02 * radius],
                       right=[left - 4.8 * radius, left, end + 0.4 * radius],
                       bottom=[-1.2 * radius, -0.3 * radius, -0.3 * radius],
                       top=[1.2 * radius, 0.3 * radius, 0.3 * radius], fill_alpha=0.5, line_dash=[5, 3])
-    in_theme(boxes, fill_color="steel", line_color="soft", line_width=1.2)
+    themed(boxes, fill_color="steel", line_color="soft", line_width=1.2)
     stinger = plot.segment([left - 4.8 * radius], [0.0], [left - 0.45 * radius], [0.0])
-    in_theme(stinger, line_color="drive", line_width=4.0)
+    themed(stinger, line_color="drive", line_width=4.0)
     laser = plot.segment([left - 4.0 * radius], [3.6 * radius], [left - 4.0 * radius], [0.0], line_dash=[2, 3])
-    in_theme(laser, line_color="drive", line_width=1.6)
+    themed(laser, line_color="drive", line_width=1.6)
     for x, y, words in ((left - 7.6 * radius, 1.8 * radius, "shaker"),
                         (left - 6.5 * radius, 4.1 * radius, "laser vibrometer"),
                         (left - 7.6 * radius, -1.8 * radius, "stinger, force transducer"),
@@ -113,7 +113,7 @@ def _dimension(plot: figure, left: float, right: float, y: float, words: str) ->
     ends = plot.scatter([left, right], [y, y], marker="dash", angle=np.pi / 2, size=10)
     line = plot.segment([left], [y], [right], [y])
     for one in (ends, line):
-        in_theme(one, line_color="soft", line_width=1.2)
+        themed(one, line_color="soft", line_width=1.2)
     _words(plot, [right if right - left < 60.0 else 0.5 * (left + right)], y, [words], "soft",
            align="left" if right - left < 60.0 else "center", up=right - left >= 60.0)
 
@@ -122,4 +122,4 @@ def _words(plot: figure, x: object, y: float, words: list[str], role: str, align
            up: bool = False) -> None:
     text = plot.text(x, [y] * len(words), text=words, text_align=align, text_baseline="bottom" if up else "middle",
                      text_font_size="13px", x_offset=6 if align == "left" else 0)
-    in_theme(text, text_color=role)
+    themed(text, text_color=role)

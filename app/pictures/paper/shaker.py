@@ -6,7 +6,7 @@ from bokeh.models import HoverTool, LayoutDOM
 
 from granchain_core.paper import ShakerAmplitude
 
-from ..theme import Theme, dress, frame, in_theme
+from ..theme import Theme, apply_theme, frame, themed
 from .panels import grid, hollow_points, inside_legend
 
 _DASHES = ("dashed", "solid", "dotted")
@@ -21,10 +21,10 @@ def shaker(shown: ShakerAmplitude, theme: Theme) -> LayoutDOM:
         lines = [(a, (shown.velocity(a) if name == "velocity" else 0.0 * shown.frequency + a) * unit)
                  for a in shown.amplitudes]
         band = plot.varea(shown.frequency, lines[0][1], lines[-1][1], fill_alpha=0.15)
-        in_theme(band, fill_color="drive")
+        themed(band, fill_color="drive")
         for (a, values), dash in zip(lines, _DASHES, strict=True):
             line = plot.line(shown.frequency, values, line_dash=dash, legend_label=f"A0 = {1e6 * a:g} µm")
-            in_theme(line, line_color="drive", line_width=2.0)
+            themed(line, line_color="drive", line_width=2.0)
             plot.add_tools(HoverTool(renderers=[line], tooltips=[
                 ("A0", f"{1e6 * a:g} µm"), ("frequency", "@x{0} Hz"), (label, "@y{0.00}")]))
         if shown.measured is not None:
@@ -34,6 +34,6 @@ def shaker(shown: ShakerAmplitude, theme: Theme) -> LayoutDOM:
         plot.y_range.start = 0
         plot.title.text = "(a) V0 = 2πf A0" if name == "velocity" else "(b) A0 = V0/(2πf)"
         inside_legend(plot, theme, "top_left" if name == "velocity" else "bottom_left")
-        panels.append(dress(plot, theme))
+        panels.append(apply_theme(plot, theme))
         inside_legend(plot, theme, "top_left" if name == "velocity" else "bottom_left")
     return grid([panels])

@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 from granchain_core.paper import Column, Trains
 from granchain_core.paper.results import SHOWN
 
-from ..theme import Theme, dress, frame, in_theme
+from ..theme import Theme, apply_theme, frame, themed
 from .panels import fewer, grid, inside_legend
 
 _MS = 1e3
@@ -43,7 +43,7 @@ def trains(shown: Trains, theme: Theme) -> LayoutDOM:
                 plot.yaxis[0].axis_label = label
             if name == "output_force":
                 plot.xaxis.axis_label = "time (ms)"
-            dress(plot, theme)
+            apply_theme(plot, theme)
             inside_legend(plot, theme)
             for legend in plot.legend:
                 legend.visible = len(legend.items) > 1
@@ -80,7 +80,7 @@ def _line(plot: figure, time: Any, values: Any, role: str, words: str, label: st
     source = ColumnDataSource({"time": np.asarray(_MS * time[kept], dtype=np.float32),
                                "value": np.asarray(values[kept], dtype=np.float32)}, name=words.split(",")[0])
     line = plot.line("time", "value", source=source, line_dash=dash or "solid", legend_label=words)
-    in_theme(line, line_color=role, line_width=width)
+    themed(line, line_color=role, line_width=width)
     plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
         ("", words), ("time", "@time{0.000} ms"), (label, "@value{0.000}")]))
 
@@ -97,7 +97,7 @@ def _velocity(plot: figure, column: Column, last: bool) -> None:
     kept = np.concatenate([[0], changes, [len(column.time) - 1]])
     step = plot.step(_MS * column.time[kept], column.contact[kept], mode="after", y_range_name="contact",
                      legend_label="driver touches bead 1")
-    in_theme(step, line_color="output", line_width=1.6)
+    themed(step, line_color="output", line_width=1.6)
     if scene.f != column.named:
         amplitude = scene.A0 * scene.f / column.named
         velocity = 2.0 * math.pi * column.named * amplitude * np.cos(2.0 * math.pi * column.named * column.time)

@@ -10,7 +10,7 @@ from granchain_core.paper.features import dips, peaks
 
 from ..axes import force_scale
 from ..curve import curve
-from ..theme import Theme, dress, in_theme
+from ..theme import Theme, apply_theme, themed
 from .panels import measured_curve
 
 
@@ -26,9 +26,9 @@ def transmission(shown: Transmission, theme: Theme) -> figure:
                                    "y": [p.max_output_force_elastic / scale for p in found]}, name=name)
         text = plot.text("x", "y", text="words", source=source, text_align="center", text_font_size="13px",
                          text_baseline="top" if below else "bottom", y_offset=10 if below else -8)
-        in_theme(text, text_color="soft" if below else "ink")
+        themed(text, text_color="soft" if below else "ink")
     measured_curve(plot, shown.measured, scale)
     highest = largest if shown.measured is None else max(largest, float(shown.measured.force.max()))
     plot.y_range.update(end=1.12 * highest / scale)
-    return dress(plot, theme)
+    return apply_theme(plot, theme)
 

@@ -12,11 +12,11 @@ import numpy as np
 from granchain_core import CurvePoint, Scene, iter_curve
 from granchain_core.stop import Stop
 
-from ...serve.queues import SWEEPS
-from ...serve.shared import Shared
-from ...serve.turns import Account
-from ...session.session import slider_range, without_frequency
-from ...session.task import Job
+from ..serve.queues import SWEEPS
+from ..serve.shared import Shared
+from ..serve.turns import Account
+from ..session.session import slider_range, without_frequency
+from ..session.task import Job
 
 DIRECTIONS = ("rest", "up", "down")
 COARSE, _SWEEP = 75, 150

@@ -14,26 +14,26 @@ from granchain_core.experiment import Difference, Measured, stated_features
 from granchain_core.steady.curve.resonance_curve import draft_curve
 from granchain_core.warm import CURVE
 
-from ...pictures.curve import WORDS
-from ...serve.compiler import COMPILER, PICTURE_PIECES
-from ...serve.delays import CURVE_QUIET
-from ...serve.queues import CURVES, LatestWins
-from ...serve.turns import Turn
-from ...session.activities import Activity
-from ...session.budget import curve_affordable
-from ...session.debounce import Debounce
-from ...session.host import Host
-from ...session.progress import COMPUTING, OFF, READY
-from ...session.session import rig_beads, slider_range, without_frequency
-from ...session.share import joined
-from ...session.task import Task
+from ..pictures.curve import WORDS
+from ..serve.compiler import COMPILER, PICTURE_PIECES
+from ..serve.delays import CURVE_QUIET
+from ..serve.queues import CURVES, LatestWins
+from ..serve.turns import Turn
+from ..session.activities import Activity
+from ..session.budget import curve_affordable
+from ..session.debounce import Debounce
+from ..session.host import Host
+from ..session.progress import COMPUTING, OFF, READY
+from ..session.session import rig_beads, slider_range, without_frequency
+from ..session.share import joined
+from ..session.task import Task
 from .bar import CHOICES, CurveBar
 from .chapters import Chapters
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
 from .view import Curve
 
 
-class Curves:
+class CurveController:
     """Computes the selected curves while they are on the screen, each once for the same knobs.
 
     `placed` is called when a curve from rest is complete; it shows where on the curve the present motion lies. So is

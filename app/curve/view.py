@@ -12,13 +12,13 @@ from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Difference, Feature, Measured, compared
 from granchain_core.steady.curve.resonance import Place, place_of
 
-from ...format import prefixed
-from ...frames import round_up
-from ...parts.figure_style import OUTPUT, quiet_axis, quiet_plot, together
-from ...pictures.curve import DASHES, curve_columns, curve_tooltips
-from ...pictures.measured import COLUMNS, TOOLTIPS, measured_columns
-from ...pictures.regimes import REGIMES, SYMBOLS, regime_key
-from ...pictures.theme import GREY
+from ..format import prefixed
+from ..frames import round_up
+from ..parts.figure_style import OUTPUT, quiet_axis, quiet_plot, together
+from ..pictures.curve import DASHES, curve_columns, curve_tooltips
+from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
+from ..pictures.regimes import REGIMES, SYMBOLS, regime_key
+from ..pictures.theme import GREY
 from .pinned_curves import PinnedCurves
 
 
@@ -108,7 +108,7 @@ class Curve:
         self.figure.add_tools(HoverTool(renderers=[dots], tooltips=TOOLTIPS))
         return [bars, dots]
 
-    def fit(self, narrow: bool) -> None:
+    def set_compact(self, narrow: bool) -> None:
         """Fewer numbers on the axis where there is little room."""
         self.figure.xaxis[0].ticker.desired_num_ticks = 3 if narrow else 5
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from host import FakeHost
 
-from app.pages.curve import chapters as chapters_module
-from app.pages.curve.chapters import Chapters, extreme_chapter, extreme_points, stop_band
+from app.curve import chapters as chapters_module
+from app.curve.chapters import Chapters, extreme_chapter, extreme_points, stop_band
 from granchain_core import CurvePoint, resonance_curve, scene, settle
 from granchain_core.steady.curve.resonance import STOPS, pushes
 

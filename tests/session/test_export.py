@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from app.frames import samples_for
-from app.session.take_along import EXPORTS, TEXTS, Screen, curve_csv, notebook, script, trains_csv
+from app.session.export import EXPORTS, TEXTS, Screen, curve_csv, notebook, script, trains_csv
 from granchain_core import resonance_curve, scene, settle
 from granchain_core.experiment import Answers, Measured, read_data
 

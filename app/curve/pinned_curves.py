@@ -9,8 +9,8 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot, Scatter, T
 
 from granchain_core import CurvePoint
 
-from ...parts.pinned_trains import DASHES
-from ...pictures.theme import GREY
+from ..parts.pinned_trains import DASHES
+from ..pictures.theme import GREY
 
 
 class PinnedCurves:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ...parts.component import Component, text
-from ...pictures.curve import LABELS
-from ...scripts import module
+from ..parts.component import Component, text
+from ..pictures.curve import LABELS
+from ..scripts import module
 
 _MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency rising, the state carried along.",
              "down": "Frequency falling, the state carried along."}

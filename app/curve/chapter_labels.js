@@ -1,8 +1,8 @@
 // The names of the curve's peaks, valleys and stop band as buttons over its figure. A name that would lie on another
 // one moves up, and is left out where there is no room: strong peaks come first.
 
-import { frameOf, modelsNamed, onLayout, viewOf } from "../../parts/bokeh.js";
-import { button, element } from "../../parts/dom.js";
+import { frameOf, modelsNamed, onLayout, viewOf } from "../parts/bokeh.js";
+import { button, element } from "../parts/dom.js";
 
 const FIGURE = "resonance curve"; // the name of its model
 const ABOVE = 9; // px between a point and its name

@@ -2,7 +2,7 @@
 
 import { documentOf, drawDocument, forgetDocument, frameOf } from "./bokeh.js";
 
-export class Embedded {
+export class BokehFigure {
   constructor(host, filled = () => {}) {
     this.host = host;
     this.filled = filled;

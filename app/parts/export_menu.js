@@ -180,7 +180,7 @@ async function savePicture(what, kind) {
 }
 
 // The list of what can be exported. `send` asks the server for one of its files.
-export function takeAlong(send, files) {
+export function exportMenu(send, files) {
   const picture = element("select", { ariaLabel: "which picture" });
   const options = [
     ["stage", "chain and pictures over time"],

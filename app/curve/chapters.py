@@ -19,13 +19,13 @@ from granchain_core import CurvePoint, Scene, settle
 from granchain_core.steady.curve.resonance import STOPS, Place, peaks_and_valleys, place_words, push_words, pushes
 from granchain_core.stop import Stop
 
-from ...frames import samples_for
-from ...serve.queues import ANALYSES, SWEEPS
-from ...serve.shared import Shared
-from ...serve.turns import Account, Turn
-from ...session.host import Host
-from ...session.session import without_frequency
-from ...session.task import Job, Task
+from ..frames import samples_for
+from ..serve.queues import ANALYSES, SWEEPS
+from ..serve.shared import Shared
+from ..serve.turns import Account, Turn
+from ..session.host import Host
+from ..session.session import without_frequency
+from ..session.task import Job, Task
 
 #: Fewer points are no band.
 _BAND = 3
