@@ -117,7 +117,7 @@ DRIVES = ("harmonic", "rest")
 ENDS = ("first", "last")
 
 _TABLE = (
-    Quantity("f", "f", "Hz", "f", "drive frequency", "How often a second the driver moves to and fro.",
+    Quantity("f", "f", "Hz", "f", "drive frequency", "Oscillations of the driver per second.",
              0.1, 1e6, "log", 0.1, main=True),
     Quantity("A0", "A₀", "m", "A_0", "drive amplitude", "How far the driver moves from its middle position.",
              1e-12, 1e-4, "log", 1e-9, main=True, shown_in=(1e-6, "µm")),
@@ -141,12 +141,14 @@ _TABLE = (
     Quantity("taper", "R_N/R₁", "1", "R_N/R_1", "taper",
              "Radius of the last bead over that of the first; each is the same part of the one before it.",
              0.01, 100.0, "log"),
-    Quantity("striker", "mₛ/m", "1", "m_s/m", "mass of bead 1", "Mass of bead 1 over what it would be: the striker.",
+    Quantity("striker", "mₛ/m", "1", "m_s/m", "mass of bead 1",
+             "Mass of bead 1 (the striker) relative to a regular bead at its place.",
              1e-3, 1e3, "log", short="striker"),
-    Quantity("site", "j", "1", "j", "place of the impurity", "Number of the bead that is another one.",
+    Quantity("site", "j", "1", "j", "place of the impurity", "Index j of the impurity bead.",
              1, 10_000, "linear", 1, whole=True, short="impurity’s place"),
     Quantity("impurity", "mⱼ/m", "1", "m_j/m", "mass of the impurity",
-             "Mass of bead j over what it would be; 1 is no impurity.", 1e-3, 1e3, "log", short="impurity"),
+             "Mass of bead j relative to a regular bead at its place; 1 means no impurity.", 1e-3, 1e3, "log",
+             short="impurity"),
     Quantity("drive", "", "", "", "drive", "Whether the driver moves: harmonic, or at rest as a fixed bead. Without a "
              "drive 1/f is only the time that is shown.", choices=DRIVES, numeric=False),
     Quantity("strike", "v₁", "m/s", "v_1", "initial velocity of bead 1",

@@ -22,7 +22,7 @@ from ..scene import Scene
 from ..scene.driven import refuse_undriven
 from ..stop import Stop
 
-#: Tolerance of one step: the map is then smooth to about 1e-13, and Newton's method ends there.
+#: Tolerance of one step. The map is then accurate enough for Newton's method to converge to `CONVERGED` (orbit.py).
 TOLERANCE = 1e-13
 #: Relative change after a part of its period at which an orbit is one of that shorter period: far above the map's own
 #: error, far below the distance of two orbits.

@@ -72,7 +72,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     samples : int
         Samples a period; both ends are recorded, record · samples + 1 rows.
     method : str, optional
-        "rk4-split", "dop853", "rk4", "rk4-naive" or "verlet-naive" in place of the one chosen from the accuracy.
+        Name of a method in `integrate.METHODS`, in place of the one chosen from the accuracy.
     start : State, optional
         Where the motion begins; if not given, at rest, or with the initial velocities of the scene.
     stop : Stop, optional

@@ -1,4 +1,7 @@
-"""The largest Lyapunov exponent of the stroboscopic map from a shadow trajectory (Benettin et al. 1980)."""
+"""The largest Lyapunov exponent of the stroboscopic map from a neighbouring trajectory.
+
+Source     Benettin, Galgani & Strelcyn 1976, Phys. Rev. A 14, 2338
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scaling import ScaledChain
 from ..stop import Stop
 
-#: Distance of the shadow in drive amplitudes: far above rounding, far below the kinks of the contacts.
+#: Distance of the neighbouring trajectory in drive amplitudes: far above rounding, far below the kinks of the contacts.
 _DISTANCE = 1e-8
 #: Largest ratio of steps per period of two scenes that run side by side: the faster one runs on until the slower one
 #: has finished, and these extra strobes must not overwrite those that count.
@@ -42,7 +45,10 @@ def exponents_in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], blocks: int
 
 
 def _offset(bodies: int) -> np.ndarray:
-    """From a chain to its shadow, (2(N+2),): random, `_DISTANCE` long, the same for every chain of this length."""
+    """From a chain to its neighbouring trajectory, (2(N+2),): random, `_DISTANCE` long.
+
+    It is the same for every chain of this length.
+    """
     offset = np.random.default_rng(0).standard_normal(2 * bodies)
     offset[[0, bodies - 1, bodies, 2 * bodies - 1]] = 0.0
     return np.asarray(offset * (_DISTANCE / np.linalg.norm(offset)))

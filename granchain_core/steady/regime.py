@@ -112,7 +112,7 @@ def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) 
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
 
     Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
-    errors or 5e-4 (`is_neutral` limits the error), the section comes back near itself as on a closed curve, and the
+    errors or 5e-4 (`is_neutral` limits the error), the section comes back near itself (`returns_near`), and the
     record is long enough to show that changes neither shrink nor grow. Anything else is unsettled. Where the exponent
     is zero the regime has the numbers on which the other two conditions rest, met or not.
     """
@@ -211,10 +211,11 @@ def window_ratios(strobes: np.ndarray) -> tuple[float, float] | None:
 
 
 def returns_near(strobes: np.ndarray) -> bool:
-    """Whether late states of the section have close neighbours among early ones, as on a closed curve.
+    """Whether late states of the section have close neighbours among early ones.
 
-    On a curve filled evenly by P points neighbours lie about 2π/P apart; a section that drifts or spreads does not
-    come back so near. The limit is five times that, with P the number of early states.
+    A coarse test: it excludes drift and spreading, but does not prove a closed curve, and a torus of three frequencies
+    may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is five times that, with P
+    the number of early states.
     """
     return return_distance(strobes) < return_limit(strobes)
 

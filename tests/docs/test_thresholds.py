@@ -1,7 +1,8 @@
-"""What docs/model.md says of regimes are the constants of the code; the multipliers of two pages are computed."""
+"""What docs/regimes.md says of regimes are the constants of the code; the multipliers of two pages are computed."""
 
 from __future__ import annotations
 
+import importlib
 import math
 import re
 
@@ -10,14 +11,14 @@ import pytest
 from documents import ROOT
 
 from granchain_core import orbit, scene
-from granchain_core.kernels.strobes import periodicity
+from granchain_core.regime import Regime
 from granchain_core.steady import regime
-from granchain_core.steady.batch import settle as batch
 from granchain_core.steady.settling import nearby_orbit, regime_decisions
 
-MODEL, OBSERVERS, DESIGN = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
-                            for name in ("model", "observers", "design"))
-SETTLED = MODEL.partition("what \"settled\" means here")[2].partition("## What the paper states")[0]
+MODEL, OBSERVERS, DESIGN, REGIMES = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
+                                     for name in ("model", "observers", "design", "regimes"))
+#: Rows of the table of thresholds: the number, the constant's name and its file.
+ROWS = re.findall(r"\| ([\d.e-]+) \| `(\w+)` in `([\w/]+)\.py` \|", REGIMES)
 
 
 def number(value: float) -> str:
@@ -26,30 +27,43 @@ def number(value: float) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
-@pytest.mark.parametrize("said", [
-    f"n up to {periodicity.LONGEST_PERIOD} is tested",
-    f"below {number(periodicity.SETTLED_DISTANCE)} of the largest displacement and velocity",
-    f"up to {regime_decisions._ALWAYS} beads always, up to {nearby_orbit.MOST_BEADS} where",
-    f"(above {regime_decisions.CLEAR_DECAY:g} a period)",
-    f"gives more than {regime_decisions._CLEAR:g}",
-    f"decay per orbit is above {batch._SLOW:g}",
-    f"still on its way after {regime_decisions.EXAMINED_AFTER} periods",
-    f"three standard errors and above {regime._CHAOTIC:g}",
-    f"three standard errors or {number(regime._NEUTRAL)} per period",
-    f"standard errors are below {regime.CLEAR_GROWTH:g} and the mean is not above {regime._CHAOTIC:g}",
-    f"below 20π/P of the largest motion ({20 * math.pi / regime_decisions.REMEMBERED:.2f} for {regime_decisions.REMEMBERED})",
-    f"over three windows of {regime._SLOW_WINDOW} periods",
-    f"changes shrink by {100 * (1 - regime._SHRINKS):.0f} % from window to window", f"{regime._SMALL:g} of the motion, and",
-    f"none of these within {regime_decisions.MOST_PERIODS} periods, "
-    f"{regime_decisions.MOST_PERIODS * regime_decisions._PATIENCE} for a motion that leaves",
-    f"enlarged to {100 * nearby_orbit._ENLARGED_TO:.1f} % of the motion",
-])
-def test_the_thresholds_of_the_model_page_are_the_codes(said: str) -> None:
-    assert said in SETTLED
+@pytest.mark.parametrize(("printed", "name", "file"), ROWS)
+def test_a_threshold_of_the_page_is_that_of_the_code(printed: str, name: str, file: str) -> None:
+    module = importlib.import_module("granchain_core." + file.replace("/", "."))
+    assert float(printed) == getattr(module, name)
+
+
+def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
+    assert len(ROWS) == REGIMES.count(".py` |") > 20
+    assert {file for _, _, file in ROWS} == {
+        "kernels/strobes/periodicity", "steady/regime", "steady/settling/regime_decisions",
+        "steady/settling/nearby_orbit", "steady/batch/settle"}
+
+
+def test_the_caps_of_the_contraction_are_the_pages() -> None:
+    def contraction(decay: float | None, multiplier: float | None) -> float:
+        return Regime("periodic", 1, decay, None, 1, multiplier=multiplier).contraction
+
+    assert contraction(None, 1.0) == 1.0 - 1e-6 and "at most 1 − 1e-6;" in REGIMES
+    assert contraction(1.0, None) == 0.999 and "at most 0.999," in REGIMES
+    assert contraction(None, None) == 0.5 and "0.5 where no decay was seen" in REGIMES
+
+
+def test_two_measurements_agree_as_the_page_says() -> None:
+    def measured(mean: float, error: float) -> Regime:
+        return Regime("chaotic", None, None, None, 1, (mean, error))
+
+    assert "three combined standard errors or 1e-3, whichever is larger" in REGIMES
+    assert regime.agree(measured(0.1, 0.0), measured(0.1009, 0.0))
+    assert not regime.agree(measured(0.1, 0.0), measured(0.1011, 0.0))
+    assert regime.agree(measured(0.1, 0.03), measured(0.1 + 2.9 * 0.05, 0.04))
+    assert not regime.agree(measured(0.1, 0.03), measured(0.1 + 3.1 * 0.05, 0.04))
 
 
 def test_the_limit_of_the_return_distance_is_the_pages() -> None:
     """20π/P for P states: five times 2π over half of them."""
+    limit = 20 * math.pi / regime_decisions.REMEMBERED
+    assert f"below 20π/P ({limit:.2f} for {regime_decisions.REMEMBERED})" in REGIMES
     assert regime.return_limit(np.zeros((420, 2, 1))) == pytest.approx(20 * math.pi / 420)
 
 

@@ -18,7 +18,8 @@ _MOST_ROUNDS = 12
 def orbit_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
     """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − rate).
 
-    It is rk4-split with finer steps; dop853 below 1e-10, or where tension is cut.
+    It is rk4-split with finer steps; dop853 where 0.1 · min(accuracy, 1e-4) · (1 − rate) is below 1e-10, or
+    tension is cut.
     """
     return method_for(max(1e-13, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)), scene.cuts_tension)
 
