@@ -26,3 +26,14 @@ def duration(seconds: float) -> str:
         return f"{seconds:.0f} s"
     factor, letter = prefixed(min(seconds, 1.0))
     return f"{seconds / factor:.3g} {letter}s"
+
+
+def in_words(value: float, unit: str, figures: int = 4) -> str:
+    """A value in SI with its prefix, "597.2 mN"."""
+    factor, letter = prefixed(abs(value))
+    return f"{value / factor:.{figures}g} {letter}{unit}"
+
+
+def signed_in_words(value: float, unit: str, figures: int = 3) -> str:
+    """A difference in SI with its sign and prefix, "+500 mN"."""
+    return f"{'−' if value < 0.0 else '+'}{in_words(abs(value), unit, figures)}"

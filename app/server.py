@@ -22,13 +22,13 @@ from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
 from .serve import logs
+from .serve.bokeh_defaults import remember_defaults
 from .serve.compiler import COMPILER
-from .serve.guard import Rules, guarded
+from .serve.guard import Rules, guard_handlers, guarded
 from .serve.meters import METERS, Liveness, Metrics
 from .serve.queues import PICTURES, SWEEPS
 from .serve.shared import Shared
 from .serve.turns import TURNS
-from .serve.websocket import guard, remember_defaults
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
@@ -73,7 +73,7 @@ def is_loopback(address: str) -> bool:
 def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] | None = None,
           access: Access | None = None, log_level: str = "warning") -> None:
     """Serve the page until interrupted; `/liveness` answers health checks. Raises `OSError` for a taken port."""
-    logs.begin(log_level)
+    logs.configure(log_level)
     server = server_at(port, address, origins, access)
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else address
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
@@ -107,7 +107,7 @@ def server_at(port: int, address: str, origins: Sequence[str] | None = None, acc
         unused_session_lifetime_milliseconds=UNCONNECTED, check_unused_sessions_milliseconds=LOOK,
         default_handler_class=guarded(ErrorHandler, rules), default_handler_args={"status_code": 404},
         **signed, **dict(access.sign_in))
-    guard(server, rules)
+    guard_handlers(server, rules)
     _count_what_is_shared()
     return server
 

@@ -21,7 +21,7 @@ QUICK = (
     "kernels/simd/test_vector_nan.py", "kernels/batch/test_period_end.py", "physics/test_impact.py",
     "physics/test_work_on_the_way.py", "steady/test_claims.py", "steady/test_places.py", "orbits/test_orbits.py",
     "orbits/test_orbit_claims.py", "diagram/test_boundary.py", "observe/test_force_files.py",
-    "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py",
+    "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py", "test_format.py",
 )
 
 

@@ -34,7 +34,7 @@ class FakeHost:
         for callback in waiting:
             callback()
 
-    def work_off(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
+    def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
         """Call what waits until something holds."""
         end = time.monotonic() + seconds
         while not until():

@@ -18,7 +18,7 @@ from playwright.sync_api import Browser, sync_playwright
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "browser"))
 
-from started import dashboard, launch  # noqa: E402  (the browser tests start them in the same way)
+from server import dashboard, launch  # noqa: E402  (the browser tests start them in the same way)
 
 SIZES = {"laptop": (1280, 800), "screen": (1920, 1080), "phone": (390, 844)}
 LOOKS = ("light", "dark", "projector")

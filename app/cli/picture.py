@@ -29,7 +29,7 @@ def write_picture(name: str | None, title: str, result: Any, **options: Any) -> 
     """Write the picture that `granchain.figure` draws of a result, if one was asked for; `options` are its own."""
     if name is None:
         return
-    from ..pictures.door import stretched
+    from ..pictures.any_result import stretched
 
     write_figure(name, title, stretched(result, **options))
 

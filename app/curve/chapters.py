@@ -22,7 +22,7 @@ from granchain_core.stop import Stop
 from ..frames import samples_for
 from ..serve.queues import ANALYSES, SWEEPS
 from ..serve.shared import Shared
-from ..serve.turns import Account, Turn
+from ..serve.turns import CpuTime, SchedulerSlot
 from ..session.host import Host
 from ..session.session import without_frequency
 from ..session.task import Job, Task
@@ -68,7 +68,7 @@ def band_chapter(band: tuple[CurvePoint, CurvePoint]) -> dict[str, Any]:
 
 
 def _extreme_chapters(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
-                      stop: Turn) -> Iterator[dict[str, Any] | None]:
+                      stop: SchedulerSlot) -> Iterator[dict[str, Any] | None]:
     """The chapter of one extremum after the other. Raises `Cancelled`."""
     for kind, point in extremes:
         yield extreme_chapter(kind, point, scene, stop)
@@ -100,7 +100,7 @@ class Chapters:
             extremes = extreme_points(points)
             key = without_frequency(scene), tuple((kind, point.frequency) for kind, point in extremes)
             with closing(CHAPTERS_SHARED.follow(key, partial(_extreme_chapters, extremes, scene), job.stop,
-                                                Account())) as chapters:
+                                                CpuTime())) as chapters:
                 for chapter in chapters:
                     job.give_way(lambda: self._host.busy)
                     job.stop.check()

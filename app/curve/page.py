@@ -18,7 +18,7 @@ from ..pictures.curve import WORDS
 from ..serve.compiler import COMPILER, PICTURE_PIECES
 from ..serve.delays import CURVE_QUIET
 from ..serve.queues import CURVES, LatestWins
-from ..serve.turns import Turn
+from ..serve.turns import SchedulerSlot
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
@@ -48,7 +48,7 @@ class CurveController:
         self.compared: Callable[[Difference | None], None] = lambda _: None
         self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
         self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed),
-                                  host.session.used)
+                                  host.session.cpu_time)
         self._asked: Scene | None = None
         self._begun = 0
         self._wanted = {name: name == "rest" for name, *_ in CHOICES}
@@ -94,7 +94,7 @@ class CurveController:
             self._drafts.submit(partial(self._draft, scene, self._begun))
 
     @staticmethod
-    def _draft(scene: Scene, begun: int, stop: Turn) -> Iterator[tuple[int, list[CurvePoint]]]:
+    def _draft(scene: Scene, begun: int, stop: SchedulerSlot) -> Iterator[tuple[int, list[CurvePoint]]]:
         with stop.held():
             points = draft_curve(scene, grid(scene, COARSE), stop)
         yield begun, points
@@ -231,7 +231,7 @@ class CurveController:
             self.compared(None)
         self._remaining, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
-            self._task.start(Sweep(scene, missing, self._report, lambda: self._host.busy, self._host.session.used))
+            self._task.start(Sweep(scene, missing, self._report, lambda: self._host.busy, self._host.session.cpu_time))
         else:
             self._task.cancel()
 

@@ -14,7 +14,7 @@ from granchain_core.stop import Stop
 
 from ..serve.queues import SWEEPS
 from ..serve.shared import Shared
-from ..serve.turns import Account
+from ..serve.turns import CpuTime
 from ..session.session import slider_range, without_frequency
 from ..session.task import Job
 
@@ -66,14 +66,14 @@ class Sweep:
     directions: list[str]
     report: Callable[[Progress], None]
     busy: Callable[[], bool]
-    used: Account
+    cpu_time: CpuTime
 
     def __call__(self, job: Job) -> None:
         """Report everything as it comes; what was reported stays when the job is cancelled."""
         for direction in self.directions:
             key = without_frequency(self.scene), direction
             with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, direction), job.stop,
-                                              self.used)) as found:
+                                              self.cpu_time)) as found:
                 for progress in found:
                     job.stop.check()
                     self.report(progress)

@@ -29,8 +29,8 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
     view = {name: fields.get(name, values[0]) for name, values in EXTRAS.items()}
     session.scene = scene
     session.mode, session.start, session.scale = view["mode"], view["start"], view["scale"]
-    session.curves, session.theme = view["curves"], view["look"]
-    session.speed, session.account = float(view["speed"]), view["account"] == "on"
+    session.curves, session.look = view["curves"], view["look"]
+    session.speed, session.energy_account = float(view["speed"]), view["account"] == "on"
     session.place = {name: fields[name] for name in places if name in fields}
     session.story = fields.get("story", "")
     session.pins = tuple(_pins([fields[name] for name in PINS if name in fields], sentences))

@@ -16,8 +16,9 @@ from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..pictures.theme import Theme
 from ..serve.compiler import COMPILER
+from ..serve.document_lock import with_document_lock
 from ..serve.meters import METERS
-from ..serve.websocket import disable_nagle, gather_writes, with_document_lock
+from ..serve.socket_tuning import disable_nagle, gather_writes
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.hooks import Actions, Page, all_actions
 from ..session.live import LiveRun
@@ -157,7 +158,7 @@ class Controller:
         if mode == "settled":
             self.pictures.live = None
         elif state is not None or self.pictures.live is None:
-            self.pictures.live = LiveRun(scene, self.session.used, state)
+            self.pictures.live = LiveRun(scene, self.session.cpu_time, state)
         self._update_header()
         self._send_knob_values()
         self._scene_changed(state)
@@ -227,7 +228,7 @@ class Controller:
         self.session.curves = self.curves.open(scene, self.session.curves)
         self._update_header()
         if self.session.mode == "live":
-            self.pictures.live = LiveRun(scene, self.session.used)
+            self.pictures.live = LiveRun(scene, self.session.cpu_time)
         self._compute(start)
 
     def _compute(self, start: State | None = None) -> None:
@@ -238,7 +239,7 @@ class Controller:
     def _update_header(self) -> None:
         session = self.session
         self.views.header.update_state(
-            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
+            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.look,
             speeds=sorted(SPEEDS), speed=session.speed, playing=session.playing,
             query=session.link, view_fields=list(EXTRAS))
 
@@ -297,7 +298,7 @@ class Controller:
         if session.mode == "settled":
             self.pictures.live = None
         elif self.pictures.live is None:
-            self.pictures.live = LiveRun(session.scene, session.used)
+            self.pictures.live = LiveRun(session.scene, session.cpu_time)
         for page in self.pages:
             page.address_taken()
         self.pinned.show()

@@ -20,7 +20,7 @@ from ..serve.meters import METERS
 from ..serve.pacing import FramePacer
 from ..serve.queues import PICTURES, LatestWins
 from ..serve.shared import Shared
-from ..serve.turns import Turn
+from ..serve.turns import SchedulerSlot
 from ..session.budget import WHOLE_PICTURE, Refused, TooLong, check_first_picture
 from ..session.energy_residual import with_account
 from ..session.host import Host
@@ -40,12 +40,12 @@ PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of,
                                           lambda pictures: pictures[-1:])
 
 
-def _computed(scene: Scene, start: State | None, most: float, stop: Turn) -> Iterator[Settled]:
+def _computed(scene: Scene, start: State | None, most: float, stop: SchedulerSlot) -> Iterator[Settled]:
     """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
     began = time.thread_time()
     pictures = settling(scene, start=start, samples=samples_for(scene), stop=stop)
     yield next(pictures)
-    with stop.lent():
+    with stop.released():
         compiled = all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES)
     if not compiled:
         raise Cancelled
@@ -77,7 +77,7 @@ class Pictures:
         self._views = views
         self._note = note
         self._settled_arrived = arrived
-        self._jobs = LatestWins(self._found, partial(host.next_tick, self._failed), self._session.used)
+        self._jobs = LatestWins(self._found, partial(host.next_tick, self._failed), self._session.cpu_time)
         self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
         self.live: LiveRun | None = None
         self._lock = threading.Lock()
@@ -128,12 +128,12 @@ class Pictures:
 
     # In a worker thread
 
-    def _settled(self, scene: Scene, start: State | None, stop: Turn) -> Iterator[Settled]:
+    def _settled(self, scene: Scene, start: State | None, stop: SchedulerSlot) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
         with _refusing(scene):
             yield from self._pictures_of(scene, start, stop)
 
-    def _pictures_of(self, scene: Scene, start: State | None, stop: Turn) -> Iterator[Settled]:
+    def _pictures_of(self, scene: Scene, start: State | None, stop: SchedulerSlot) -> Iterator[Settled]:
         if scene != self._session.insisted:
             check_first_picture(scene)
         self._await_live_kernels(scene, stop)
@@ -142,10 +142,10 @@ class Pictures:
         key = None if origin is not None or scene == self._session.insisted else scene
         most = math.inf if scene == self._session.insisted else WHOLE_PICTURE
         with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, origin, most), stop,
-                                            self._session.used)) as pictures:
+                                            self._session.cpu_time)) as pictures:
             for picture in pictures:
                 yield picture
-        if self._session.account:
+        if self._session.energy_account:
             with stop.held():
                 picture = with_account(picture, stop)
             yield picture
@@ -156,7 +156,7 @@ class Pictures:
             self._session.started_from = origin
             self._host.address_changed()
 
-    def _await_live_kernels(self, scene: Scene, stop: Turn) -> None:
+    def _await_live_kernels(self, scene: Scene, stop: SchedulerSlot) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
         if not COMPILER.has(scene, FIXED_STEP):
             words = compiling_words("the kernels for this set of effects", 10).capitalize()
@@ -166,14 +166,14 @@ class Pictures:
             if not COMPILER.await_piece(scene, FIXED_STEP, stop):
                 raise Cancelled
 
-    def _live_step(self, samples: int | None, stop: Turn) -> Iterator[LivePicture]:
+    def _live_step(self, samples: int | None, stop: SchedulerSlot) -> Iterator[LivePicture]:
         live, scene = self.live, self._session.scene
         if live is not None:
             with _refusing(scene):
                 if scene != self._session.insisted:
                     check_first_picture(scene)
             self._await_live_kernels(scene, stop)
-            with live.turn.held():
+            with live.slot.held():
                 picture = live.advance(samples) if samples else live.step(self._session.speed)
             yield picture
 

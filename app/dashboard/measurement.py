@@ -31,7 +31,7 @@ from granchain_core.scene import ASSETS
 from granchain_core.scene.driven import refuse_undriven
 
 from ..curve.page import CurveController
-from ..pictures.axes import in_words, signed_in_words
+from ..format import in_words, signed_in_words
 from ..serve.compiler import PICTURE_PIECES
 from ..serve.queues import FILES
 from ..session.budget import check_first_picture

@@ -122,7 +122,7 @@ class Pinned:
             job.compile(key, *PICTURE_PIECES)
             job.give_way(lambda: self._host.busy or self._host.curve_computing)
             found: list[Progress] = []
-            Sweep(key, ["rest"], found.append, lambda: self._host.busy, self._session.used)(job)
+            Sweep(key, ["rest"], found.append, lambda: self._host.busy, self._session.cpu_time)(job)
             job.next_tick(self._swept, key, [point for progress in found for point in progress.points])
 
     # To the browser

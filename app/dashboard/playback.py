@@ -28,7 +28,8 @@ class Playback:
 
     def _mode(self, message: dict[str, Any]) -> None:
         self._session.set_mode(message.get("value"))
-        self._pictures.live = LiveRun(self._session.scene, self._session.used) if self._session.mode == "live" else None
+        live = self._session.mode == "live"
+        self._pictures.live = LiveRun(self._session.scene, self._session.cpu_time) if live else None
         self._update_header()
         self._compute()
 

@@ -10,7 +10,7 @@ import param
 from panel.custom import JSComponent
 
 from ..pictures.theme import Theme
-from ..serve.websocket import WithCommonProperties, WithoutBusyIndicator, WithoutDesign
+from .panel_shortcuts import WithCommonProperties, WithoutBusyIndicator, WithoutDesign
 
 _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
 

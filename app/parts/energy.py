@@ -7,7 +7,7 @@ from bokeh.models import ColumnDataSource, HoverTool, Image, Plot, Range1d, Sing
 
 from ..format import prefixed
 from ..frames import Frames
-from ..pictures.energies import energy_mapper
+from ..pictures.energies import bead_interval, energy_hover, energy_mapper
 from .figure_style import GAP, quiet_plot
 
 
@@ -26,7 +26,7 @@ class EnergyMap:
         plot.xaxis[0].ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)
         image = plot.add_glyph(self._source, Image(image="image", x="x", y="y", dw="dw", dh="dh",
                                                    color_mapper=self._mapper))
-        self._hover = HoverTool(renderers=[image], tooltips=[("bead", "$x{0}"), ("energy", "@image")])
+        self._hover = HoverTool(renderers=[image], tooltips=energy_hover("", ""))
         plot.add_tools(self._hover)
         return plot
 
@@ -34,7 +34,7 @@ class EnergyMap:
         """Number fewer beads where there is little room."""
         self._narrow = narrow
         self.figure.xaxis[0].axis_label = "bead" if narrow else "bead, numbered as above"
-        self.figure.xaxis[0].ticker.interval = max(1, round(self._beads / (6 if narrow else 12)))
+        self.figure.xaxis[0].ticker.interval = bead_interval(self._beads, 6 if narrow else 12)
 
     def update(self, frames: Frames, time: np.ndarray, unit: str, high: float) -> None:
         """Show `frames`, whose rows are at `time` (in `unit`), in colours that end at `high` [J]."""
@@ -51,7 +51,4 @@ class EnergyMap:
         self.figure.x_range.end = frames.beads + 0.5
         self._beads = frames.beads
         self.set_compact(self._narrow)
-        self._hover.tooltips = [
-            ("bead", "$x{0}"), ("time", f"$y{{0.000}} {unit}"),
-            ("kinetic energy", f"@image{{0.000}} {letter}J"),
-        ]
+        self._hover.tooltips = energy_hover(unit, f"{letter}J")

@@ -12,8 +12,8 @@ from ..pictures.theme import THEMES
 TOP, BOTTOM, LEFT, GAP = 78, 82, 60, 6
 """Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly."""
 
-DRIVE, INPUT, OUTPUT = THEMES["light"].drive, THEMES["light"].input, THEMES["light"].output
-"""The colours that mean one thing everywhere, in every theme."""
+OUTPUT = THEMES["light"].output
+"""The colour of the output force, the same in every theme."""
 
 
 def quiet_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str, str | None],

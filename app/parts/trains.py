@@ -1,4 +1,7 @@
-"""The force trains beside the map: drive and input force on the left, output force on the right."""
+"""The force trains beside the map: drive and input force on the left, output force on the right.
+
+Figures that are made once and follow every knob; app/pictures/motion.py draws the same for files and notebooks.
+"""
 
 from __future__ import annotations
 
@@ -10,24 +13,25 @@ from bokeh.models import BasicTicker, ColumnDataSource, GlyphRenderer, Line, Lin
 
 from granchain_core import Run
 
-from ..format import prefixed
-from ..frames import Extremes, Frames, round_up, with_jumps
-from ..pictures.axes import in_words
+from ..format import in_words, prefixed
+from ..frames import Extremes, Frames, round_up
+from ..pictures.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, Look, columns, force_columns
 from ..pictures.theme import GREY
-from .figure_style import DRIVE, GAP, INPUT, LEFT, OUTPUT, quiet_axis, quiet_plot
+from .figure_style import GAP, LEFT, quiet_axis, quiet_plot
 from .measured_trains import MeasuredTrains
 from .pinned_trains import PinnedTrains
 
 if TYPE_CHECKING:
     from granchain_core.fit.overlay import Overlay
 
-_TITLES = ("drive u₀", "input force", "output force")
-_SHORT = ("drive", "in", "out")
+#: The lines in the order in which they are drawn, and whose axes there are.
+_LINES = (DRIVE, INPUT, ELASTIC, OUTPUT)
+_AXES = (DRIVE, INPUT, OUTPUT)
 #: About how many ticks a force and the time have.
 _TICKS = (3, 6)
 #: The smallest number that is written in the unit of an axis.
 _READABLE = 0.01
-WIDEST_TITLES = {"left": f"{_TITLES[1]} (mN)", "right": f"{_TITLES[2]} (mN)"}
+WIDEST_TITLES = {"left": INPUT.label("mN"), "right": OUTPUT.label("mN")}
 """By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`)."""
 
 
@@ -52,25 +56,23 @@ class Trains:
         plot = quiet_plot((LEFT, GAP), _TICKS, ("below", "left"), (1,), name="input force", y_range=time,
                           x_range=Range1d(-1, 1), extra_x_ranges={"drive": Range1d(-1, 1)})
         axis = LinearAxis(x_range_name="drive", ticker=BasicTicker(desired_num_ticks=_TICKS[0], num_minor_ticks=0))
-        quiet_axis(axis, DRIVE)
+        quiet_axis(axis, DRIVE.colour)
         plot.add_layout(axis, "above")
-        quiet_axis(plot.xaxis[1], INPUT)
+        quiet_axis(plot.xaxis[1], INPUT.colour)
         plot.yaxis.axis_label = "time"
         self._lines += [
-            plot.add_glyph(self._source, Line(x="drive", y="time", line_color=DRIVE, line_width=2.0),
-                           x_range_name="drive"),
-            plot.add_glyph(self._input, Line(x="force", y="time", line_color=INPUT, line_width=2.5)),
+            plot.add_glyph(self._source, _glyph(DRIVE, "drive"), x_range_name="drive"),
+            plot.add_glyph(self._input, _glyph(INPUT)),
         ]
         return plot
 
     def _right_figure(self, time: Range1d) -> Plot:
         plot = quiet_plot((GAP, 14), _TICKS, ("below", None), (1,), name="output force", y_range=time,
                           x_range=Range1d(0, 1))
-        quiet_axis(plot.xaxis[0], OUTPUT)
+        quiet_axis(plot.xaxis[0], OUTPUT.colour)
         self._lines += [
-            plot.add_glyph(self._source, Line(x="elastic", y="time", line_color=OUTPUT, line_width=2.0,
-                                              line_dash=[5, 4])),
-            plot.add_glyph(self._output, Line(x="force", y="time", line_color=OUTPUT, line_width=2.5)),
+            plot.add_glyph(self._source, _glyph(ELASTIC, "elastic")),
+            plot.add_glyph(self._output, _glyph(OUTPUT)),
         ]
         return plot
 
@@ -79,24 +81,18 @@ class Trains:
         scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
         drive_high = round_up(moved)
-        (input_time, input_force), (output_time, output_force) = (
-            with_jumps(time, force, jumps * np.array([scale, 1.0])) for force, jumps in
-            ((frames.input_force, frames.input_jumps), (frames.output_force, frames.output_jumps)))
         pinned, measured = self._pinned.largest, self._measured.largest
-        input_range = _span(max(high.input_force, pinned[0], measured[0]), input_force)
-        output_range = _span(max(high.output_force, pinned[1], measured[1]), output_force, frames.output_force_elastic)
+        input_range = _span(max(high.input_force, pinned[0], measured[0]), frames.input_force,
+                            frames.input_jumps[:, 1])
+        output_range = _span(max(high.output_force, pinned[1], measured[1]), frames.output_force,
+                             frames.output_jumps[:, 1], frames.output_force_elastic)
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
         out, out_letter = prefixed(max(map(abs, output_range)))
-        columns = {
-            "time": time,
-            "drive": frames.drive_displacement / drive,
-            "elastic": frames.output_force_elastic / out,
-        }
-        pushed = {"time": input_time, "force": input_force / push}
-        passed = {"time": output_time, "force": output_force / out}
-        for source, values in ((self._source, columns), (self._input, pushed), (self._output, passed)):
-            source.data = {name: np.asarray(column, dtype=np.float32) for name, column in values.items()}
+        self._source.data = columns(time, drive=(frames.drive_displacement, drive),
+                                    elastic=(frames.output_force_elastic, out))
+        self._input.data = force_columns(time, frames.input_force, push, frames.input_jumps, scale)
+        self._output.data = force_columns(time, frames.output_force, out, frames.output_jumps, scale)
         shown = 0.0 if frames.time[-1] == 0.0 else float(frames.time[-1])
         self._pinned.update(shown, scale, push, out)
         self._measured.update(shown, scale, push, out, drive)
@@ -138,17 +134,22 @@ class Trains:
 
     def _write_titles(self) -> None:
         axes = (*self.left.xaxis, *self.right.xaxis)
-        for axis, title, unit in zip(axes, _SHORT if self._narrow else _TITLES, self._units, strict=True):
-            axis.axis_label = f"{title} ({unit})"
+        for axis, look, unit in zip(axes, _AXES, self._units, strict=True):
+            axis.axis_label = look.label(unit, self._narrow)
 
     def thicken(self, factor: float) -> None:
         """Wider lines for the projector."""
-        for line, width in zip(self._lines, (2.0, 2.5, 2.0, 2.5), strict=True):
-            line.glyph.line_width = width * factor
+        for line, look in zip(self._lines, _LINES, strict=True):
+            line.glyph.line_width = look.width * factor
+
+
+def _glyph(look: Look, column: str = "force") -> Line:
+    """A line over time; `column` of its source is drawn."""
+    return Line(x=column, y="time", line_color=look.colour, line_width=look.width, line_dash=list(look.dash))
 
 
 def _span(largest: float, *series: np.ndarray) -> tuple[float, float]:
     """A range up to `largest` that holds all values, zero included, and keeps still while they change a little."""
-    high = round_up(max(largest, *(float(s.max()) for s in series)))
-    low = min(float(s.min()) for s in series)
+    high = round_up(max(largest, *(float(s.max(initial=0.0)) for s in series)))
+    low = min(float(s.min(initial=0.0)) for s in series)
     return (-0.06 * high if low > -0.02 * high else -round_up(-low)), 1.04 * high

@@ -2,6 +2,7 @@
 
 One module for each picture, with a function of its name; the figures of the paper are in paper/. `theme.THEMES` has
 the themes; `file.page_of` makes a page that needs no server and no network. What a page adds to a figure as a
-computation goes on comes from functions beside it: `branches.BranchRows`, `diagram.cell_rows`. The dashboard's own
-resonance curve is redrawn while a knob moves; it is in app/curve/view.py.
+computation goes on comes from functions beside it: `branches.BranchRows`, `diagram.cell_rows`. The dashboard draws two
+pictures itself, because they follow every knob and are updated in place: the main one (app/parts/trains.py, energy.py;
+`motion` for files) and the resonance curve (app/curve/view.py; `curve` for files).
 """

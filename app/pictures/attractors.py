@@ -9,7 +9,8 @@ from bokeh.plotting import figure
 
 from granchain_core import Attractor
 
-from .axes import force_scale, in_words
+from ..format import in_words
+from .axes import force_scale
 from .regimes import REGIMES, regime_key
 from .theme import Theme, apply_theme, frame, themed
 

@@ -1,4 +1,4 @@
-"""Values with a unit that reads well: on an axis, and in a hover."""
+"""Axes whose unit reads well."""
 
 from __future__ import annotations
 
@@ -38,14 +38,3 @@ def force_scale(title: str, largest: float) -> Scale:
     """The axis of a force whose largest value [N] is known."""
     factor, letter = prefixed(largest)
     return Scale(title, factor, f"{letter}N")
-
-
-def signed_in_words(value: float, unit: str, figures: int = 3) -> str:
-    """A difference in SI with its sign and prefix, "+500 mN"."""
-    return f"{'−' if value < 0.0 else '+'}{in_words(abs(value), unit, figures)}"
-
-
-def in_words(value: float, unit: str, figures: int = 4) -> str:
-    """A value in SI with its prefix, "597.2 mN"."""
-    factor, letter = prefixed(abs(value))
-    return f"{value / factor:.{figures}g} {letter}{unit}"

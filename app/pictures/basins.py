@@ -9,8 +9,8 @@ from bokeh.plotting import figure
 
 from granchain_core import Basins
 
-from ..format import prefixed
-from .axes import Scale, in_words
+from ..format import in_words, prefixed
+from .axes import Scale
 from .theme import GREY, Theme, apply_theme, frame
 
 _HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")

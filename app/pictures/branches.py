@@ -11,8 +11,8 @@ from bokeh.plotting import figure
 from granchain_core.orbits import Branch, BranchPoint, SpecialPoint
 from granchain_core.regime import modulus_words
 
-from ..format import short_error
-from .axes import Scale, force_scale, in_words, knob_scale
+from ..format import in_words, short_error
+from .axes import Scale, force_scale, knob_scale
 from .theme import AMBER, GREY, TEAL, VIOLET, Theme, apply_theme, frame, themed
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",

@@ -11,8 +11,8 @@ from bokeh.plotting import figure
 
 from granchain_core import Curve, CurvePoint
 
-from ..format import short_error
-from .axes import force_scale, in_words, knob_scale
+from ..format import in_words, short_error
+from .axes import force_scale, knob_scale
 from .regimes import REGIMES, regime_key
 from .theme import Theme, apply_theme, frame, themed
 

@@ -27,8 +27,8 @@ from granchain_core.diagram import Axis, Diagram, Grid
 from granchain_core.diagram.cells import REGIMES as NAMES
 from granchain_core.diagram.cells import empty_cells
 
-from ..format import short_error
-from .axes import Scale, in_words, knob_scale
+from ..format import in_words, short_error
+from .axes import Scale, knob_scale
 from .regimes import REGIMES, regime_key
 from .theme import BROWN, Theme, apply_theme, frame, themed
 

@@ -20,6 +20,17 @@ def energy_mapper(high: float) -> LinearColorMapper:
     return LinearColorMapper(palette=ENERGY_COLOURS, low=0.0, high=high)
 
 
+def energy_hover(time_unit: str, energy_unit: str) -> list[tuple[str, str]]:
+    """What is told of the place under the pointer."""
+    return [("bead", "$x{0}"), ("time", f"$y{{0.000}} {time_unit}"),
+            ("kinetic energy", f"@image{{0.000}} {energy_unit}")]
+
+
+def bead_interval(beads: int, most: int) -> int:
+    """From one bead that has its number on the axis to the next, for about `most` numbers."""
+    return max(1, round(beads / most))
+
+
 def energy_bar(mapper: LinearColorMapper, theme: Theme) -> ColorBar:
     """The colour bar, with the energies on its axis."""
     return ColorBar(color_mapper=mapper, width=12, padding=6, ticker=BasicTicker(desired_num_ticks=5),

@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 
 from granchain_core.experiment import Measured
 
-from .axes import in_words, signed_in_words
+from ..format import in_words, signed_in_words
 from .theme import frame, themed
 
 COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual", "word")

@@ -1,4 +1,10 @@
-"""A motion over time, which runs downwards: drive and input force, kinetic energy over the beads, output force."""
+"""A motion over time, which runs downwards: drive and input force, kinetic energy over the beads, output force.
+
+The arrangement, titles, colours and lines are those of the page's main picture (`force_lines`, `energies`). The page
+draws its own in app/parts/trains.py and energy.py, because it follows every knob: its figures are made once and get new
+data only, all its axes can change their range, and the chain stands above the energies, which here have numbers below.
+Here axes are as long as the motion needs, and the energies have a bar and a title.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +27,8 @@ from bokeh.plotting import figure
 from granchain_core import Driven, Run
 
 from ..format import prefixed
-from ..frames import with_jumps
-from .energies import energy_bar, energy_mapper
+from .energies import bead_interval, energy_bar, energy_hover, energy_mapper
+from .force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, Look, columns, force_columns
 from .theme import Theme, apply_theme, frame, themed
 
 #: Most rows of the picture of energies, and most points of a line.
@@ -57,7 +63,7 @@ class Units:
 
 
 def motion(run: Recorded, theme: Theme) -> LayoutDOM:
-    """A recorded motion as the dashboard shows it; a long one is thinned out evenly."""
+    """A recorded motion, arranged as on the page; a long one is thinned out evenly."""
     units, index = Units.of(run), np.arange(0, len(run.time), max(1, -(-len(run.time) // _ROWS)))
     seconds = run.time[index]
     time = Range1d(float(seconds[-1]) / units.time[0], float(seconds[0]) / units.time[0])
@@ -68,7 +74,7 @@ def motion(run: Recorded, theme: Theme) -> LayoutDOM:
 
 def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Range1d, units: Units, theme: Theme,
                 jumps: bool = False) -> figure:
-    """The driver's displacement over the lower axis, its force on bead 1 over the upper one.
+    """The force on bead 1 over the lower axis, the driver's displacement over the upper one.
 
     `index` are the rows that are drawn, at `seconds`. `jumps` adds the points at which the force jumps.
     """
@@ -77,21 +83,21 @@ def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Ran
     amplitude, largest = farthest / length or 1.0, run.max_input_force / force or 1.0
     lowest = min(0.0, float(run.input_force.min()) / force)
     plot = frame(name="drive", y_range=time, min_border=4, sizing_mode="stretch_height", width=_BESIDE,
-                 x_range=Range1d(-1.1 * amplitude, 1.1 * amplitude), toolbar_location=None)
-    plot.extra_x_ranges = {"force": Range1d(1.05 * lowest - 0.05 * largest, 1.05 * largest)}
-    plot.add_layout(LinearAxis(x_range_name="force", axis_label=f"input force ({force_unit})", axis_line_color=None,
-                               major_tick_line_color=None, minor_tick_line_color=None,
-                               axis_label_text_font_style="normal"), "above")
-    source = ColumnDataSource({"time": seconds / second, "displacement": run.drive_displacement[index] / length,
-                               "force": run.input_force[index] / force}, name="drive and force")
-    themed(plot.line("displacement", "time", source=source), line_color="drive", line_width=1.8)
-    pushed = _jumping(run, 0, index, units, "input force") if jumps else source
-    themed(plot.line("force", "time", source=pushed, x_range_name="force"), line_color="input", line_width=1.8)
-    plot.xaxis[1].axis_label = f"displacement ({length_unit})"
+                 x_range=Range1d(1.05 * lowest - 0.05 * largest, 1.05 * largest), toolbar_location=None)
+    plot.extra_x_ranges = {"drive": Range1d(-1.15 * amplitude, 1.15 * amplitude)}
+    plot.add_layout(LinearAxis(x_range_name="drive", axis_line_color=None, major_tick_line_color=None,
+                               minor_tick_line_color=None, axis_label_text_font_style="normal"), "above")
+    drive = ColumnDataSource(columns(seconds / second, drive=(run.drive_displacement[index], length)),
+                             name="displacement")
+    _line(plot, DRIVE, drive, "drive", x_range_name="drive")
+    pushed = _forces(run, 0, index, seconds, units) if jumps else columns(seconds / second,
+                                                                         force=(run.input_force[index], force))
+    _line(plot, INPUT, ColumnDataSource(pushed, name=INPUT.title))
     plot.yaxis.axis_label = f"time ({second_unit})"
-    for axis in plot.xaxis:
-        axis.ticker = BasicTicker(desired_num_ticks=3)
-    return apply_theme(plot, theme)
+    apply_theme(plot, theme)
+    for axis, look, unit in zip(plot.xaxis, (DRIVE, INPUT), (length_unit, force_unit), strict=True):
+        _axis(axis, look, unit, theme)
+    return plot
 
 
 def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, theme: Theme) -> figure:
@@ -103,12 +109,10 @@ def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, 
     plot.grid.visible = False
     plot.yaxis.visible = False
     plot.xaxis.axis_label = "bead"
-    plot.xaxis[0].ticker = SingleIntervalTicker(interval=max(1, round(beads / 6)) if beads > 8 else 1,
-                                                num_minor_ticks=0)
+    plot.xaxis[0].ticker = SingleIntervalTicker(interval=bead_interval(beads, 6), num_minor_ticks=0)
     colours = energy_mapper(float(values.max()) or 1.0)
     image = plot.image([values], x=0.5, y=time.end, dw=beads, dh=time.start - time.end, color_mapper=colours)
-    plot.add_tools(HoverTool(renderers=[image], tooltips=[
-        ("bead", "$x{0}"), ("time", f"$y{{0.000}} {units.time[1]}"), ("kinetic energy", f"@image{{0.0000}} {unit}")]))
+    plot.add_tools(HoverTool(renderers=[image], tooltips=energy_hover(units.time[1], unit)))
     plot.add_layout(energy_bar(colours, theme), "right")
     plot.title.text = f"{_named(run)}: kinetic energy ({unit})"
     return apply_theme(plot, theme)
@@ -132,21 +136,30 @@ def _output_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units,
     plot = frame(name="output", y_range=time, min_border=4, sizing_mode="stretch_height", width=_BESIDE,
                  x_range=Range1d(1.05 * low - 0.05 * high, 1.05 * high), toolbar_location=None)
     plot.yaxis.visible = False
-    elastic = ColumnDataSource({"time": run.time[index] / units.time[0],
-                                "force": run.output_force_elastic[index] / force}, name="elastic output force")
-    themed(plot.line("force", "time", source=elastic, line_dash=[5, 4]), line_color="output", line_width=1.6)
-    total = _jumping(run, run.scene.N, index, units, "output force")
-    themed(plot.line("force", "time", source=total), line_color="output", line_width=1.8)
-    plot.xaxis.axis_label = f"output force ({unit})"
+    elastic = columns(run.time[index] / units.time[0], force=(run.output_force_elastic[index], force))
+    _line(plot, ELASTIC, ColumnDataSource(elastic, name=ELASTIC.title))
+    _line(plot, OUTPUT, ColumnDataSource(_forces(run, run.scene.N, index, run.time[index], units), name=OUTPUT.title))
     plot.title.text = "dashed: elastic"
-    plot.xaxis[0].ticker = BasicTicker(desired_num_ticks=3)
-    return apply_theme(plot, theme)
+    apply_theme(plot, theme)
+    _axis(plot.xaxis[0], OUTPUT, unit, theme)
+    return plot
 
 
-def _jumping(run: Recorded, contact: int, index: np.ndarray, units: Units, name: str) -> ColumnDataSource:
+def _line(plot: figure, look: Look, source: ColumnDataSource, column: str = "force", **options: Any) -> None:
+    """A line of the motion; `column` of the source is drawn over its time."""
+    line = plot.line(column, "time", source=source, line_dash=list(look.dash), **options)
+    themed(line, line_color=look.role, line_width=look.width)
+
+
+def _axis(axis: Any, look: Look, unit: str, theme: Theme) -> None:
+    """The axis of a line: its label has the line's colour, which says whose axis it is where there are two."""
+    axis.update(axis_label=look.label(unit), axis_label_text_color=getattr(theme, look.role),
+                ticker=BasicTicker(desired_num_ticks=3))
+
+
+def _forces(run: Recorded, contact: int, index: np.ndarray, seconds: np.ndarray, units: Units) -> dict[str, np.ndarray]:
     """A contact's force with the points at which it jumps, between the rows; the knots of a signal have none."""
     jumps = np.stack(run.jumps.of(contact), axis=1) if isinstance(run, Run) else np.zeros((0, 2))
     jumps = jumps[(jumps[:, 0] >= run.time[0]) & (jumps[:, 0] <= run.time[-1])]
-    time, force = with_jumps(run.time[index], run.force[index, contact], jumps)
-    data: dict[str, Any] = {"time": time / units.time[0], "force": force / units.force[0]}
-    return ColumnDataSource(data, name=name)
+    second, force = units.time[0], units.force[0]
+    return force_columns(seconds / second, run.force[index, contact], force, jumps, 1.0 / second)

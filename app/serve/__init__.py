@@ -1,1 +1,1 @@
-"""What serving needs: websocket, guards, logs, meters, pace of frames, turns, shared results, compiling beforehand."""
+"""What serving needs: document lock, sockets, guards, logs, meters, pace, turns, shared results, compiling ahead."""

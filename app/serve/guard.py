@@ -1,4 +1,4 @@
-"""What every request passes before it is answered: host, session, how many; and what every answer carries.
+"""Request guard: checks host, session and the number of visitors, and adds security headers.
 
 docs/security.md says what is promised. Bokeh's, Panel's and Tornado's handlers are kept; `guarded` derives a class from
 each that looks first.
@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import Any
 
+from bokeh.server.server import Server
 from bokeh.server.views.session_handler import SessionHandler
 from bokeh.server.views.ws import WSHandler
 from bokeh.util.token import get_session_id
@@ -206,3 +207,15 @@ def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]
     guard = GuardedSocket if issubclass(handler, WSHandler) else Guard
     files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
     return type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})
+
+
+def guard_handlers(server: Server, rules: Rules) -> None:
+    """Put a guard before every handler of the server.
+
+    Bokeh has no public way to its handlers. If a release keeps them elsewhere, this raises `AttributeError` and the
+    server does not start: without guards it must not.
+    """
+    application = server._tornado
+    for rule in application.wildcard_router.rules:
+        if isinstance(rule.target, type) and issubclass(rule.target, RequestHandler):
+            rule.target = guarded(rule.target, rules)

@@ -11,7 +11,7 @@ import time
 _FIELDS = ("request", "path", "remote")
 
 
-class Lines(logging.Formatter):
+class JsonFormatter(logging.Formatter):
     """A record as one line of JSON."""
 
     def format(self, record: logging.LogRecord) -> str:
@@ -24,21 +24,21 @@ class Lines(logging.Formatter):
         return json.dumps(line, ensure_ascii=False)
 
 
-def is_ours(record: logging.LogRecord) -> bool:
-    """False for what Bokeh logs of a message that it cannot handle: the guard's own line says it, without a traceback.
+def only_when_debugging(_record: logging.LogRecord) -> bool:
+    """A filter for what Bokeh logs of a message that it cannot handle: with --log-level debug alone.
 
-    A stranger can send such a message as often as he likes. With --log-level debug Bokeh's line is there, too.
+    The guard's own line says it without a traceback, and a stranger can send such a message as often as he likes.
     """
     return logging.getLogger().isEnabledFor(logging.DEBUG)
 
 
-def begin(level: str) -> None:
+def configure(level: str) -> None:
     """Everything that is logged in this process from `level` on goes to standard error in such lines."""
     handler = logging.StreamHandler(sys.stderr)
-    handler.setFormatter(Lines())
+    handler.setFormatter(JsonFormatter())
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
     for name in ("panel", "bokeh", "tornado"):
         library = logging.getLogger(name)
         library.handlers, library.propagate = [], True
         library.setLevel(logging.NOTSET if level == "debug" else max(logging.WARNING, getattr(logging, level.upper())))
-    logging.getLogger("bokeh.server.protocol_handler").addFilter(is_ours)
+    logging.getLogger("bokeh.server.protocol_handler").addFilter(only_when_debugging)

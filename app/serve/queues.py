@@ -20,7 +20,7 @@ from typing import TypeVar
 from granchain_core import Cancelled
 
 from .meters import METERS
-from .turns import Account, Turn
+from .turns import CpuTime, SchedulerSlot
 
 Result = TypeVar("Result")
 
@@ -108,7 +108,7 @@ MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
 COMPILATIONS = Queue("compilations", 2)
 
-Work = Callable[[Turn], Iterator[object]]
+Work = Callable[[SchedulerSlot], Iterator[object]]
 
 #: How long a first picture is computed before a newer request stops it [s].
 _PATIENCE = 1.0
@@ -155,17 +155,17 @@ class LatestWins:
     """
 
     def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
-                 account: Account | None = None) -> None:
+                 cpu_time: CpuTime | None = None) -> None:
         self._deliver = deliver
         self._fail = fail
-        self.account = Account() if account is None else account
+        self.cpu_time = CpuTime() if cpu_time is None else cpu_time
         self._lock = threading.Lock()
         self._waiting: Work | None = None
         self._running = False
         self._refining = False
         self._closed = False
         self._began = 0.0
-        self._stop = Turn(self.account)
+        self._stop = SchedulerSlot(self.cpu_time)
 
     @property
     def busy(self) -> bool:
@@ -189,7 +189,7 @@ class LatestWins:
             self._began = time.monotonic()
         VISITORS.submit(self._drain)
 
-    def _give_up(self, stop: Turn) -> None:
+    def _give_up(self, stop: SchedulerSlot) -> None:
         """The first result has not come for a second: begin with what waits."""
         with self._lock:
             if self._stop is stop and self._waiting is not None:
@@ -208,7 +208,7 @@ class LatestWins:
             self._running = work is not None
             self._refining = False
             self._began = time.monotonic()
-            self._stop = Turn(self.account)
+            self._stop = SchedulerSlot(self.cpu_time)
             if self._closed:
                 self._stop.set()
             return work

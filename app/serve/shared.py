@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 from granchain_core.stop import Stop
 
 from .queues import Queue
-from .turns import Account, Flag, Party, Turn
+from .turns import CpuTime, Flag, SchedulerSlot, SharedCpuTime
 
 Item = TypeVar("Item")
 
@@ -30,8 +30,8 @@ class _Computation(Generic[Item]):
         self.items: list[Item] = []
         self.done = False
         self.error: Exception | None = None
-        self.party = Party()
-        self.stop = Turn(self.party)
+        self.cpu_time = SharedCpuTime()
+        self.stop = SchedulerSlot(self.cpu_time)
 
 
 class Shared(Generic[Item]):
@@ -50,8 +50,8 @@ class Shared(Generic[Item]):
         self.used = 0
         self.hits, self.misses = 0, 0
 
-    def follow(self, key: Hashable, compute: Callable[[Turn], Iterator[Item]], stop: Stop,
-               account: Account) -> Generator[Item, None, None]:
+    def follow(self, key: Hashable, compute: Callable[[SchedulerSlot], Iterator[Item]], stop: Stop,
+               cpu_time: CpuTime) -> Generator[Item, None, None]:
         """The items of `compute`, or of the computation with the same key that is under way or finished.
 
         A key of None is shared with nobody. Raises `Cancelled` when `stop` is set, and what `compute` raises.
@@ -63,35 +63,35 @@ class Shared(Generic[Item]):
                 ready = self._finished[key][0]
             else:
                 ready = None
-                one = self._joined(key, compute, account)
+                one = self._joined(key, compute, cpu_time)
         if ready is not None:
             yield from ready
             return
         try:
             yield from self._awaited(one, stop)
         finally:
-            self._leave(key, one, account)
+            self._leave(key, one, cpu_time)
 
-    def _joined(self, key: Hashable, compute: Callable[[Turn], Iterator[Item]],
-                account: Account) -> _Computation[Item]:
+    def _joined(self, key: Hashable, compute: Callable[[SchedulerSlot], Iterator[Item]],
+                cpu_time: CpuTime) -> _Computation[Item]:
         """With the lock held: the computation under way, or a new one."""
         found = None if key is None else self._under_way.get(key)
         if found is None:
             self.misses += 1
             found = _Computation()
-            found.party.members.append(account)
+            found.cpu_time.members.append(cpu_time)
             if key is not None:
                 self._under_way[key] = found
             self._queue.submit(self._compute, key, found, compute)
         else:
             self.hits += 1
-            found.party.members.append(account)
+            found.cpu_time.members.append(cpu_time)
         return found
 
-    def _leave(self, key: Hashable, one: _Computation[Item], account: Account) -> None:
+    def _leave(self, key: Hashable, one: _Computation[Item], cpu_time: CpuTime) -> None:
         with self._lock:
-            one.party.members.remove(account)
-            if not one.party.members and not one.done:
+            one.cpu_time.members.remove(cpu_time)
+            if not one.cpu_time.members and not one.done:
                 one.stop.set()
                 self._forget(key, one)
 
@@ -121,7 +121,8 @@ class Shared(Generic[Item]):
                     raise one.error
                 return
 
-    def _compute(self, key: Hashable, one: _Computation[Item], compute: Callable[[Turn], Iterator[Item]]) -> None:
+    def _compute(self, key: Hashable, one: _Computation[Item],
+                 compute: Callable[[SchedulerSlot], Iterator[Item]]) -> None:
         """In a thread of the queue."""
         error: Exception | None = None
         try:

@@ -24,7 +24,7 @@ _HALF_LIFE = 5.0
 _LONGEST_TURN = 0.1
 
 
-class Account:
+class CpuTime:
     """The processor time that one visitor has used lately [s]."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
@@ -40,12 +40,12 @@ class Account:
         self._used, self._at = self.used + seconds, self._clock()
 
 
-class Party(Account):
+class SharedCpuTime(CpuTime):
     """Visitors who wait for the same picture: they share its cost, and queue as the one that has used least."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.members: list[Account] = []
+        self.members: list[CpuTime] = []
 
     @property
     def used(self) -> float:
@@ -62,12 +62,12 @@ class Party(Account):
 class _Wait:
     """One thread that waits for its turn."""
 
-    def __init__(self, account: Account) -> None:
-        self.account, self.granted = account, threading.Event()
+    def __init__(self, cpu_time: CpuTime) -> None:
+        self.cpu_time, self.granted = cpu_time, threading.Event()
 
 
-class Turns:
-    """Who computes now: at most `at_once`; of those that wait, the account that has used least is next."""
+class FairScheduler:
+    """Who computes now: at most `at_once`; of those that wait, who has used least is next."""
 
     def __init__(self, at_once: int) -> None:
         self._at_once = at_once
@@ -80,9 +80,9 @@ class Turns:
         """How many wait for their turn."""
         return len(self._waiting)
 
-    def begin(self, account: Account, stop: Stop) -> object:
+    def begin(self, cpu_time: CpuTime, stop: Stop) -> object:
         """Wait for a turn, or until the stop flag is set; returns what `end` needs."""
-        mine = _Wait(account)
+        mine = _Wait(cpu_time)
         with self._lock:
             self._waiting.append(mine)
             self._grant()
@@ -100,25 +100,25 @@ class Turns:
             self._running.pop(turn, None)
             self._grant()
 
-    def wanted(self, account: Account) -> bool:
+    def should_yield(self, cpu_time: CpuTime) -> bool:
         """Whether another waits that has used less."""
         if not self._waiting:
             return False
         with self._lock:
-            mine = account.used
-            return any(other.account.used < mine for other in self._waiting)
+            mine = cpu_time.used
+            return any(other.cpu_time.used < mine for other in self._waiting)
 
     def _grant(self) -> None:
         """With the lock held: give free turns to those who have used least."""
         late = time.monotonic() - _LONGEST_TURN
         while self._waiting and sum(began > late for began in self._running.values()) < self._at_once:
-            best = min(self._waiting, key=lambda one: one.account.used)
+            best = min(self._waiting, key=lambda one: one.cpu_time.used)
             self._waiting.remove(best)
             self._running[best] = time.monotonic()
             best.granted.set()
 
 
-TURNS = Turns(max(2, os.cpu_count() or 1))
+TURNS = FairScheduler(max(2, os.cpu_count() or 1))
 
 
 class Flag(Stop):
@@ -137,15 +137,15 @@ class Flag(Stop):
             self.on_set()
 
 
-class Turn(Flag):
+class SchedulerSlot(Flag):
     """The stop flag of a picture's computation, which takes turns with others while it computes."""
 
-    __slots__ = ("_began", "_turn", "_turns", "account")
+    __slots__ = ("_began", "_scheduler", "_turn", "cpu_time")
 
-    def __init__(self, account: Account, turns: Turns = TURNS) -> None:
+    def __init__(self, cpu_time: CpuTime, scheduler: FairScheduler = TURNS) -> None:
         super().__init__()
-        self.account = account
-        self._turns = turns
+        self.cpu_time = cpu_time
+        self._scheduler = scheduler
         self._turn: object = None
         self._began = 0.0
 
@@ -154,7 +154,7 @@ class Turn(Flag):
         if self._turn is None:
             return
         self._charge()
-        if self._turns.wanted(self.account):
+        if self._scheduler.should_yield(self.cpu_time):
             self._leave()
             self._enter()
 
@@ -169,7 +169,7 @@ class Turn(Flag):
             self._leave()
 
     @contextmanager
-    def lent(self) -> Iterator[None]:
+    def released(self) -> Iterator[None]:
         """While this thread waits for something else, another has its turn."""
         if self._turn is None:
             yield
@@ -193,14 +193,14 @@ class Turn(Flag):
             yield result
 
     def _enter(self) -> None:
-        self._turn = self._turns.begin(self.account, self)
+        self._turn = self._scheduler.begin(self.cpu_time, self)
         self._began = time.thread_time()
 
     def _leave(self) -> None:
         turn, self._turn = self._turn, None
-        self._turns.end(turn)
+        self._scheduler.end(turn)
 
     def _charge(self) -> None:
         now = time.thread_time()
-        self.account.charge(now - self._began)
+        self.cpu_time.charge(now - self._began)
         self._began = now

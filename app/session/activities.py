@@ -39,7 +39,7 @@ def _lyapunov(picture: Settled | None) -> tuple[str, str]:
 
 def _account(session: Session, busy: bool) -> tuple[str, str]:
     picture = session.picture
-    if not session.account:
+    if not session.energy_account:
         return OFF, "switched off"
     if session.mode == "live":
         return OFF, "not computed in a live run"

@@ -11,7 +11,7 @@ from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.run.live import joined
 
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
-from ..serve.turns import Account, Turn
+from ..serve.turns import CpuTime, SchedulerSlot
 
 _LONGEST_STEP = 0.1
 """Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden."""
@@ -32,13 +32,13 @@ class LiveRun:
     """One chain that keeps running, from rest or from `start`; `step` and `advance` are for a worker thread, the rest
     for the page.
 
-    While it computes it holds its `turn`.
+    While it computes it holds its `slot`.
     """
 
-    def __init__(self, scene: Scene, used: Account, start: State | None = None) -> None:
+    def __init__(self, scene: Scene, cpu_time: CpuTime, start: State | None = None) -> None:
         self.samples = samples_for(scene)
-        self.turn = Turn(used)
-        self._chain = LiveChain(scene, samples=self.samples, start=start, stop=self.turn)
+        self.slot = SchedulerSlot(cpu_time)
+        self._chain = LiveChain(scene, samples=self.samples, start=start, stop=self.slot)
         self._window = LiveWindow(self.samples)
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None
@@ -65,7 +65,7 @@ class LiveRun:
 
     def close(self) -> None:
         """The visitor left: what is being computed ends."""
-        self.turn.set()
+        self.slot.set()
 
     def step(self, periods_per_second: float) -> LivePicture:
         """Advance by the viewing time since the last step; in slow motion, wait for the next sample.
@@ -78,7 +78,7 @@ class LiveRun:
         elapsed = 0.03 if self._last is None else min(now - self._last, _LONGEST_STEP)
         self._owed = min(self._owed, 1.0) + elapsed * rate
         if self._owed < 1.0:
-            with self.turn.lent():
+            with self.slot.released():
                 time.sleep((1.0 - self._owed) / rate)
             self._owed = 1.0
         self._last = time.perf_counter()

@@ -10,7 +10,7 @@ import numpy as np
 from granchain_core import BadInput, Run, Scene, State
 from granchain_core.quantities import QUANTITIES
 
-from ..pictures.axes import in_words, signed_in_words
+from ..format import in_words, signed_in_words
 from .share import PINS, START, decode, encode
 from .starts import read_start, start_text
 

@@ -12,7 +12,7 @@ from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
-from ..serve.turns import Account
+from ..serve.turns import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
 from .share import EXTRAS, QUESTION, SPEEDS, START, encode, pins_in
@@ -26,7 +26,7 @@ MODES, STARTS = EXTRAS["mode"], EXTRAS["start"]
 class Session:
     """The state of one page; methods change it or raise `BadInput` and leave it as it was.
 
-    `used` is the processor time of its pictures, and `insisted` the scene that is computed however long it takes.
+    `cpu_time` is the processor time of its pictures, and `insisted` the scene that is computed however long it takes.
     `started_from` is the state in which the motion on the screen began, None for rest; `story` is "NAME.STEP", and
     `question` the Analysis page's with its values, as in a link.
     """
@@ -34,7 +34,7 @@ class Session:
     scene: Scene = field(default_factory=lambda: scene("sec2"))
     mode: str = "settled"
     start: str = "rest"
-    theme: str = "auto"
+    look: str = "auto"
     scale: str = "same"
     curves: str = "auto"
     place: dict[str, str] = field(default_factory=dict)
@@ -44,9 +44,9 @@ class Session:
     started_from: State | None = None
     sentence: str = ""
     notice: str = ""
-    account: bool = False
+    energy_account: bool = False
     remembered: dict[str, Any] = field(default_factory=dict)
-    used: Account = field(default_factory=Account)
+    cpu_time: CpuTime = field(default_factory=CpuTime)
     insisted: Scene | None = None
     pins: tuple[Pin, ...] = ()
     story: str = ""
@@ -56,7 +56,7 @@ class Session:
     def link(self) -> str:
         """The query string that brings back what is on the screen: scene, knobs, where the motion began, the view."""
         view = {"mode": self.mode, "start": self.start, "scale": self.scale, "curves": self.curves,
-                "speed": f"{self.speed:g}", "account": "on" if self.account else "off"}
+                "speed": f"{self.speed:g}", "account": "on" if self.energy_account else "off"}
         began = self.started_from if self.mode == "settled" else None
         texts = {START: start_text(began), "story": self.story, QUESTION: self.question, **pin_texts(self.pins)}
         return encode(self.scene, view, texts)
@@ -78,7 +78,7 @@ class Session:
     def switch(self, name: str, on: bool) -> None:
         """Switch an effect on or off; the values of its knobs are kept until it is switched on again."""
         if name == ACCOUNT:
-            self.account = on
+            self.energy_account = on
             return
         moved = changes(name, on, self.scene, self.remembered)
         before = {knob: self.scene.knobs[knob] for knob in moved if knob != "kappa"}

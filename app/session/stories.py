@@ -13,13 +13,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from granchain_core import BadInput, Run, Scene, Settled, pulse, run, scene, settle
+from granchain_core import BadInput, Run, Scene, State, pulse, run, scene, settle
 from granchain_core.errors import unknown_name
 from granchain_core.scene import ASSETS
 from granchain_core.stop import Stop
 
-from ..frames import samples_for
-from ..pictures.axes import in_words
+from ..format import in_words
 from .share import EXTRAS
 
 FOLDER = ASSETS / "stories"
@@ -131,12 +130,12 @@ def told_words(story: Story, number: int, words: str) -> str:
     return _NUMBER.sub(value, getattr(story.steps[number - 1], words))
 
 
-def settled_step(step: Step, stop: Stop | None = None) -> Settled:
-    """The motion of a step, which starts at rest or comes through its `via`."""
-    start = None
+def state_before(step: Step, stop: Stop | None = None) -> State | None:
+    """The state in which the motion of a step begins: the last one of its `via`, None for rest."""
+    state: State | None = None
     for frequency in step.via:
-        start = settle(step.scene.evolve(f=frequency), start=start, stop=stop).state
-    return settle(step.scene, start=start, samples=samples_for(step.scene), stop=stop)
+        state = settle(step.scene.evolve(f=frequency), start=state, stop=stop).state
+    return state
 
 
 def differences(step: Step, shown: Run) -> list[str]:

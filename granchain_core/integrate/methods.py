@@ -94,9 +94,10 @@ class Method:
     `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
     for, `order_with_cut` where tension is cut: only the adaptive method ends its steps at the force's kink, F = 0.
     Orders are measured, the smallest of the damping laws, for adaptive methods per mean step
-    (tests/numerics/test_orders.py); only `order_with_cut` of the naive methods is not. With `events` steps end at contact events or are split there; with `adaptive` an error control sets them;
-    `symplectic` holds without damping. `stepper` makes what the engine steps with. `usual_error` is the relative error
-    at the default step, or over the tolerance, 0 where none is known. `converges_regularly`: the error falls by the
+    (tests/numerics/test_orders.py); only `order_with_cut` of the naive methods is not. With `events` steps end at
+    contact events or are split there; with `adaptive` an error control sets them; `symplectic` holds without damping.
+    `stepper` makes what the engine steps with. `usual_error` is the relative error at the default step, or over the
+    tolerance, 0 where none is known. `converges_regularly`: the error falls by the
     method's order at every refinement, contact events or not. `variables` are "uw" or "uv".
     """
 

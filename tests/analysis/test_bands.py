@@ -79,7 +79,8 @@ def test_the_diode_lets_the_drive_through_one_way_once_its_orbit_is_unstable() -
     chain = scene("diode")
     below, above = (settle(chain.evolve(A0=amplitude)) for amplitude in (7.3e-7, 7.7e-7))
     assert below.regime.period == 1 and above.regime.name == "quasi-periodic"
-    x = scale_chain(below.run.scene).beads_of(scale_chain(below.run.scene).scaled(below.state))
+    scaled = scale_chain(below.run.scene)
+    x = scaled.beads_of(scaled.from_si(below.state))
     stable = fixed_point(FiniteDifferenceMap(below.run.scene, 1), x)
     unstable = fixed_point(FiniteDifferenceMap(above.run.scene, 1), x)
     assert stable is not None and unstable is not None and stable.modulus < 1.0 < unstable.modulus

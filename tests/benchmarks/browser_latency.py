@@ -21,7 +21,7 @@ from typing import Any
 from playwright.sync_api import Page, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-from browser.started import dashboard, launch
+from browser.server import dashboard, launch
 
 FIND = """
 window.findDeep = (selector, node = document) => {

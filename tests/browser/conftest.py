@@ -14,7 +14,7 @@ import pytest
 from evidence import WATCHED, folder_of, leave, watch
 from knobs import COMPILED
 from playwright.sync_api import Browser, Page, expect, sync_playwright
-from started import dashboard, launch
+from server import dashboard, launch
 
 HERE = Path(__file__).parent
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from drawn import source
+from bokeh_figures import source
 from knobs import COMPILED, Visit, type_into
 from playwright.sync_api import Locator, Page, expect
-from started import at_rest, until
+from server import at_rest, until
 
 #: The figure of the page, and how many points each method has in it.
 FIGURE = 'Bokeh.documents.find((one) => one.roots()[0].name === "accuracy" && one.roots()[0].below[0].axis_label)'

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from knobs import type_into
 from playwright.sync_api import Page, expect
-from started import until
+from server import until
 
 from granchain_core import lyapunov_spectrum, scene, settle, spectrum
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 
 import pytest
-from drawn import place, source, tooltips
+from bokeh_figures import place, source, tooltips
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
-from started import at_rest, until
+from server import at_rest, until
 
 #: A short chain whose branch is followed in seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"

@@ -10,7 +10,7 @@ import pytest
 from evidence import watch
 from knobs import COMPILED, field, knob, type_into
 from playwright.sync_api import Browser, Page, expect
-from started import Server
+from server import Server
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from knobs import COMPILED, Visit, field, settled
 from playwright.sync_api import Browser, expect
-from started import dashboard
+from server import dashboard
 
 SAYS_LATE_THAT_IT_IS_READY = """
 const before = WebSocket.prototype.send;

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 from knobs import COMPILED, Visit, settled, type_into
+from layout_faults import faults
 from playwright.sync_api import expect
-from room import faults
-from started import at_rest, until
+from server import at_rest, until
 from test_axe import violations
 
 from granchain_core import scene_names

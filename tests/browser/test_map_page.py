@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from drawn import place, source, tooltips
+from bokeh_figures import place, source, tooltips
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
-from started import until
+from server import until
 
 #: A short chain far up: its diagram is there in a second or two.
 SMALL = "?v=1&scene=sec2&N=2"

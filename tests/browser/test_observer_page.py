@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
-from started import at_rest, until
+from server import at_rest, until
 
 #: What the page drew last: period and distance.
 LAST = "granchain.pages.get('observer')?.history.at(-1)"

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 
 from playwright.sync_api import Locator, Page, expect
-from started import until
+from server import until
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
@@ -39,7 +39,7 @@ def test_figures_are_drawn_with_caption_and_rows(visit: Visit) -> None:
     expect(picture.locator("canvas").first).to_be_visible()
     chosen(sheet, "3a")
     expect(sheet.get_by_role("img", name="Figure 3a")).to_be_visible(timeout=COMPILED)
-    until(page, lambda: bool(page.evaluate("granchain.pages.get('paper').figure.model('drive and force')?.data.force.length > 700")))
+    until(page, lambda: bool(page.evaluate("granchain.pages.get('paper').figure.model('input force')?.data.force.length > 700")))
     page.evaluate("window.kept = granchain.pages.get('paper').figure.document; granchain.nextTheme()")  # another theme, another figure
     until(page, lambda: bool(page.evaluate(
         "granchain.pages.get('paper').figure.document && kept !== granchain.pages.get('paper').figure.document")))

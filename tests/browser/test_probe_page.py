@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from drawn import source
+from bokeh_figures import source
 from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
-from started import until
+from server import until
 
 from app.parts.figure_style import BOTTOM, GAP, TOP
 

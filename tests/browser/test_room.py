@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 from knobs import COMPILED, Visit
+from layout_faults import faults
 from playwright.sync_api import Page, expect
-from room import faults
-from started import until
+from server import until
 
 #: Laptops, screens, a beamer, a phone.
 SIZES = ((1024, 768), (1180, 820), (1280, 800), (1280, 720), (1366, 768), (1440, 900), (1536, 864), (1920, 1080),

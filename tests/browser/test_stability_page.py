@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from drawn import place, source, tooltips
+from bokeh_figures import place, source, tooltips
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Locator, Page, expect
-from started import until
+from server import until
 
 
 def opened(page: Page, words: str = "Stable") -> Locator:

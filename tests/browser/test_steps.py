@@ -6,10 +6,10 @@ from pathlib import Path
 
 import h5py
 from knobs import COMPILED, Visit, field, settled, type_into
+from layout_faults import faults
 from PIL import Image
 from playwright.sync_api import Page, expect
-from room import faults
-from started import until
+from server import until
 
 # Points of the lines of pins in a figure, which lie behind all others.
 PINNED = """(name) => Bokeh.documents.map((one) => one.get_model_by_name(name)).find(Boolean).renderers

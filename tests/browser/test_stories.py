@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 from knobs import Visit
+from layout_faults import faults
 from playwright.sync_api import Page, ViewportSize, expect
-from room import faults
-from started import until
+from server import until
 
 from app.session.stories import IRREGULAR, TOLERANCE, UNDRIVEN, Story, stories, told_words
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
-from started import at_rest
+from server import at_rest
 
 from app.parts.figure_style import BOTTOM, GAP, TOP
 

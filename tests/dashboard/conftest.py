@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
-from opened import Dashboard
+from headless_dashboard import Dashboard
 
 
 @pytest.fixture

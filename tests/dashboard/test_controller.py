@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 from bokeh.events import Tap
-from opened import Dashboard
+from headless_dashboard import Dashboard
 
 from app import server
 from app.dashboard import links_and_files, main_picture, measurement
@@ -70,7 +70,7 @@ def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str
                         lambda *given, **named: (threads.append(threading.current_thread().name), read(*given, **named))[1])
     dashboard.received({"do": "csv", "name": "mine.csv", "content": base64.b64encode(text.encode()).decode()})
     assert not dashboard.views.tabs.state.get("understood")
-    dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
+    dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
     assert sentence in dashboard.session.sentence
     assert dashboard.views.tabs.state.get("understood", "").startswith(understood)
     assert all(name.startswith("files") for name in threads) and bool(threads) == (len(text) <= MOST_BYTES)
@@ -86,7 +86,7 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
     shown = run(scene("sec2"), periods=0, record=1, samples=24)
     monkeypatch.setattr(dashboard.pictures, "run", lambda: shown)
     dashboard.received({"do": "save"})
-    dashboard.work_off(lambda: any(message["type"] == "file" for message in dashboard.told))
+    dashboard.run_callbacks_until(lambda: any(message["type"] == "file" for message in dashboard.told))
     (file,) = [message for message in dashboard.told if message["type"] == "file"]
     assert file["name"] == "sec2-340Hz.h5" and file["content"][1:4] == b"HDF"
     assert threads[0].startswith("files")
@@ -110,10 +110,10 @@ def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, m
     session, pictures = dashboard.session, dashboard.pictures
     session.set_mode("live")
     session.playing = False
-    pictures.live = LiveRun(session.scene, session.used)
+    pictures.live = LiveRun(session.scene, session.cpu_time)
     pictures._arrived(pictures.live.advance(7))
     dashboard.received({"do": "scale", "value": "fit"})
-    dashboard.work_off(lambda: not pictures.busy)
+    dashboard.run_callbacks_until(lambda: not pictures.busy)
     assert sent[0] is sent[1] and len(sent) == 2 and pictures.live._shown == 7
 
 
@@ -139,7 +139,7 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(d
     dashboard.pictures.compute()
     assert waiting.wait(10)
     dashboard.close(None)
-    dashboard.work_off(lambda: not dashboard.pictures.busy)
+    dashboard.run_callbacks_until(lambda: not dashboard.pictures.busy)
     assert settled == []
 
 
@@ -176,7 +176,7 @@ def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashbo
     dashboard.received({"do": "go", "query": "v=1&scene=sec2&speed=5&account=on"})
     dashboard.received({"do": "reconnected", "playing": False, "uploaded": True})
     session = dashboard.session
-    assert (session.speed, session.playing, session.account) == (5.0, False, True)
+    assert (session.speed, session.playing, session.energy_account) == (5.0, False, True)
     assert not dashboard.views.header.state["playing"]
     assert session.sentence.endswith("has started again from rest and your uploaded data are gone.")
 
@@ -212,7 +212,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
 
     monkeypatch.setattr(server.pn, "serve", lambda pages, **options: given.update(options) or Served())
     monkeypatch.setattr(server.COMPILER, "prepare", lambda scene: None)
-    monkeypatch.setattr(server.logs, "begin", lambda level: None)
+    monkeypatch.setattr(server.logs, "configure", lambda level: None)
     monkeypatch.setattr(server.gc, "freeze", lambda: None)
     monkeypatch.setattr(server.settings.perform_document_validation, "set_value", lambda value: None)
     server.serve()

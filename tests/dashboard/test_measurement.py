@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from opened import Dashboard
+from headless_dashboard import Dashboard
 
 from app.dashboard.measurement import SAMPLES
 from app.dashboard.show import show_settled
@@ -33,7 +33,7 @@ def sent(content: bytes) -> dict[str, Any]:
 def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
     """What the tab's state has under `name` once the message is worked off; the sentence where it is refused."""
     dashboard.received(message)
-    dashboard.work_off(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get(name)))
+    dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get(name)))
     return dashboard.views.tabs.state.get(name) or dashboard.session.sentence
 
 
@@ -50,7 +50,7 @@ def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> N
     assert question["columns"][0] == [1, "", "frequency", "Hz"] and "kHz" in question["units"]["frequency"]
     answer = {"do": "csv-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "", "dataset": ""}
     dashboard.received(answer)
-    dashboard.work_off(lambda: dashboard.views.tabs.state["question"]["about"] == ["decimal"])
+    dashboard.run_callbacks_until(lambda: dashboard.views.tabs.state["question"]["about"] == ["decimal"])
     understood = after(dashboard, {"do": "csv-answer", "columns": [], "decimal": "comma"}, "understood")
     assert "1100 to 1200 Hz" in understood and dashboard.views.tabs.state["question"] is None
 
@@ -129,7 +129,7 @@ def with_series(dashboard: Dashboard, chain: Scene) -> str:
     text = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.005)).encode()
     show(dashboard)
     dashboard.received({"do": "csv", "name": "mine.csv", "content": base64.b64encode(text).decode()})
-    dashboard.work_off(lambda: "series" in str(dashboard.views.tabs.state.get("misfit")) or "rms" in str(dashboard.views.tabs.state.get("misfit")))
+    dashboard.run_callbacks_until(lambda: "series" in str(dashboard.views.tabs.state.get("misfit")) or "rms" in str(dashboard.views.tabs.state.get("misfit")))
     return str(dashboard.views.tabs.state["misfit"]["sentence"])
 
 
@@ -146,7 +146,7 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     dashboard.files.picture_ready(preview)
     assert dashboard.views.tabs.state["misfit"] is None
     dashboard.files.picture_ready(dashboard.session.picture)
-    dashboard.work_off(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
+    dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
     dashboard.received({"do": "csv-remove"})
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
 
@@ -164,7 +164,7 @@ def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> No
         f"{t:.9g},{u:.9g},{force:.9g}\n" for t, u, force in zip(table[:, 0], swing, table[:, 3], strict=True))
     show(dashboard)
     dashboard.received(sent(text.encode()))
-    dashboard.work_off(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
+    dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
     trains = dashboard.views.trains
     line, = (one for one in trains.left.renderers if one.level == "overlay")
     drawn = {name: np.asarray(values, dtype=float) for name, values in line.data_source.data.items()}
@@ -178,7 +178,7 @@ def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> No
 def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashboard: Dashboard) -> None:
     show(dashboard)
     assert "virtual experiment, nothing measured" in after(dashboard, {"do": "csv-virtual"}, "understood")
-    dashboard.work_off(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
+    dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
 
 
 def test_a_series_without_a_force_is_refused(dashboard: Dashboard) -> None:

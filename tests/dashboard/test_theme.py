@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import app
-from app.parts import figure_style
+from app.pictures.force_lines import DRIVE, INPUT, OUTPUT
 from app.pictures.theme import THEMES, Theme, style_sheet
 from app.session.share import EXTRAS
 
@@ -32,7 +32,7 @@ def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
     assert (style.pop("--small"), style.pop("--type")) == (f"{theme.small}px", f"{theme.type}px")
     assert style == {f"--{field.name.replace('_', '-')}": str(getattr(theme, field.name)) for field in fields(Theme)
                      if field.name not in ("scheme", "small", "type")}
-    assert (theme.drive, theme.input, theme.output) == (figure_style.DRIVE, figure_style.INPUT, figure_style.OUTPUT)
+    assert (theme.drive, theme.input, theme.output) == (DRIVE.colour, INPUT.colour, OUTPUT.colour)
 
 
 def test_no_theme_but_the_projectors_fixes_the_size_of_words() -> None:

@@ -41,10 +41,10 @@ def hits_and_misses(cache: Path, tree: Path) -> tuple[int, int]:
 MARK = """
 import sys
 from granchain_core import scene, warm
-warm.PIECES[warm.LIVE] = lambda short: None
+warm.PIECES[warm.FIXED_STEP] = lambda short: None
 if sys.argv[1] == "compile":
-    warm.compile_piece(scene("sec2"), warm.LIVE)
-print(warm.is_warm(scene("sec2"), [warm.LIVE]))
+    warm.compile_piece(scene("sec2"), warm.FIXED_STEP)
+print(warm.is_warm(scene("sec2"), [warm.FIXED_STEP]))
 """
 
 

@@ -73,7 +73,7 @@ def random_scene(rng: np.random.Generator, structures: list) -> Scene:
     return chosen
 
 
-def adaptive_setting(chosen: Scene, tolerance: float) -> np.ndarray:
+def reference(chosen: Scene, tolerance: float) -> np.ndarray:
     """Displacements (T, N) in m."""
     engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, balance=True)
     engine.start(rest(chosen))
@@ -84,7 +84,7 @@ def judge(chosen: Scene) -> Verdict | None:
     """The verdict on one scene; None where the numbers fail, which is said and no dishonesty."""
     try:
         found = run(chosen, periods=0, record=PERIODS, samples=SAMPLES)
-        true, nearly = adaptive_setting(chosen, 3e-15), adaptive_setting(chosen, 3e-14)
+        true, nearly = reference(chosen, 3e-15), reference(chosen, 3e-14)
     except NumbersFailed:
         return None
     largest = np.abs(true).max()

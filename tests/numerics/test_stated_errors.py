@@ -76,7 +76,7 @@ def test_computations_with_the_same_steps_are_not_compared():
     halved, finer = (one.steps_per_period(scaled, stated_errors.SAMPLES)
                      for one in (setting.finer(), setting.finer_than(scaled, stated_errors.SAMPLES)))
     assert finer > halved == setting.steps_per_period(scaled, stated_errors.SAMPLES)
-    true = stated_errors.accurate(chain, 3e-15)
+    true = stated_errors.reference(chain, 3e-15)
     result = run(chain, periods=0, record=stated_errors.PERIODS, samples=stated_errors.SAMPLES)
     assert 0.0 < np.abs(result.displacement - true).max() / np.abs(true).max() <= result.error_estimate <= chain.accuracy
 

@@ -166,7 +166,7 @@ class Page(FakeHost):
 
     def work(self, until: Any, seconds: float = 60.0) -> None:
         """Work off until something holds; nothing may fail."""
-        self.work_off(until, seconds)
+        self.run_callbacks_until(until, seconds)
         assert self.failures == []
 
     def marks(self, name: str) -> int:

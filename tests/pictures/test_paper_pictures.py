@@ -37,7 +37,7 @@ def source(drawn: LayoutDOM, name: str) -> dict[str, Any]:
 
 #: Panels of each figure, and words that its axes have.
 EXPECTED = {
-    "1": (1, "mm"), "2": (1, "largest elastic output force (N)"), "3": (4, "displacement (µm)"), "3a": (2, "time (ms)"),
+    "1": (1, "mm"), "2": (1, "largest elastic output force (N)"), "3": (4, "drive u₀ (µm)"), "3a": (2, "time (ms)"),
     "3b": (2, "input force (N)"), "4": (1, "mm"), "5": (2, "velocity amplitude V0 (mm/s)"), "6": (4, "output force (N)"),
     "7": (6, "input force (N)"), "8": (1, "mm"), "9": (4, "drive frequency f (Hz)"), "10": (6, "time (ms)"),
     "11": (6, "displacement (µm)"), "12": (9, "shaker velocity (mm/s)"),
@@ -75,7 +75,7 @@ def test_figure_2_names_peaks_and_dips_with_their_regimes() -> None:
 
 def test_figure_3_shows_as_many_pushes_as_the_paper_counts() -> None:
     for number, pushes in (("3a", 4), ("3b", 3)):  # in four periods of 1:1, in nine of 1:3
-        force = source(paper_figure(result(number), THEMES["light"]), "drive and force")["force"]
+        force = source(paper_figure(result(number), THEMES["light"]), "input force")["force"]
         strong = np.asarray(force) > 0.7 * np.max(force)
         begins = int(strong[0]) + int((strong[1:] & ~strong[:-1]).sum()) - int(strong[0] and strong[-1])
         assert begins == pushes

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from app import server
 from app.cli import main
+from app.serve.guard import Rules, guard_handlers
 from app.server import is_loopback
 
 _SECRET = b"a secret of this test alone, long enough"
@@ -52,3 +54,9 @@ def test_what_cannot_be_used_is_refused_with_a_sentence(words: list[str], senten
                                                         capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["serve", *words]) == 2
     assert sentence in capsys.readouterr().err
+
+
+def test_a_server_whose_handlers_are_not_found_does_not_start() -> None:
+    """A release that keeps them elsewhere must not serve without guards."""
+    with pytest.raises(AttributeError, match="_tornado"):
+        guard_handlers(SimpleNamespace(), Rules())

@@ -13,7 +13,7 @@ from bokeh.models import Select
 from bokeh.plotting import figure
 from bokeh.themes import Theme
 
-from app.serve.websocket import remember_defaults
+from app.serve.bokeh_defaults import remember_defaults
 
 CHANGES = Theme(json={"attrs": {"Axis": {"axis_label_text_font_size": "31px"}, "Line": {"line_width": 7}}})
 
@@ -62,7 +62,7 @@ def test_a_release_without_that_search_keeps_its_own(name: str, monkeypatch: pyt
         _get_default = has_unstable_default = None
 
     delattr(Newer, name)
-    monkeypatch.setattr("app.serve.websocket.PropertyDescriptor", Newer)
+    monkeypatch.setattr("app.serve.bokeh_defaults.PropertyDescriptor", Newer)
     before = dict(vars(Newer))
     remember_defaults()
     assert dict(vars(Newer)) == before

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
-from app.serve.turns import Account, Party, Turn, Turns
+from app.serve.turns import CpuTime, FairScheduler, SchedulerSlot, SharedCpuTime
 from granchain_core import Stop
 
 
@@ -19,17 +19,17 @@ def until(holds: object, seconds: float = 20.0) -> None:
 
 def test_half_of_what_was_used_is_forgotten_in_five_seconds() -> None:
     now = [0.0]
-    account = Account(lambda: now[0])
-    account.charge(2.0)
+    cpu_time = CpuTime(lambda: now[0])
+    cpu_time.charge(2.0)
     now[0] = 5.0
-    assert account.used == 1.0
-    account.charge(1.0)
+    assert cpu_time.used == 1.0
+    cpu_time.charge(1.0)
     now[0] = 10.0
-    assert account.used == 1.0
+    assert cpu_time.used == 1.0
 
 
 def test_a_party_pays_together_and_has_the_claim_of_its_poorest() -> None:
-    rich, poor, party = Account(lambda: 0.0), Account(lambda: 0.0), Party()
+    rich, poor, party = CpuTime(lambda: 0.0), CpuTime(lambda: 0.0), SharedCpuTime()
     rich.charge(8.0)
     party.members += [rich, poor]
     assert party.used == 0.0
@@ -39,11 +39,11 @@ def test_a_party_pays_together_and_has_the_claim_of_its_poorest() -> None:
 
 def test_of_those_who_wait_the_one_that_has_used_least_is_next() -> None:
     """Not the one that came first."""
-    turns, order = Turns(1), []
-    first = turns.begin(Account(), Stop())
+    turns, order = FairScheduler(1), []
+    first = turns.begin(CpuTime(), Stop())
     accounts = {}
     for name, used in (("much", 3.0), ("little", 0.1), ("some", 1.0)):
-        accounts[name] = Account()
+        accounts[name] = CpuTime()
         accounts[name].charge(used)
 
     def wait(name: str) -> None:
@@ -62,12 +62,12 @@ def test_of_those_who_wait_the_one_that_has_used_least_is_next() -> None:
 
 
 def test_at_a_pause_the_turn_goes_to_who_has_used_less() -> None:
-    turns, done = Turns(1), []
-    mine = Account()
+    turns, done = FairScheduler(1), []
+    mine = CpuTime()
     mine.charge(5.0)
-    turn = Turn(mine, turns)
+    turn = SchedulerSlot(mine, turns)
     with turn.held():
-        thread = threading.Thread(target=lambda: done.append(turns.begin(Account(), Stop())))
+        thread = threading.Thread(target=lambda: done.append(turns.begin(CpuTime(), Stop())))
         thread.start()
         until(lambda: turns.waiting == 1)
         threading.Timer(0.05, lambda: turns.end(done[0]) if done else None).start()
@@ -78,18 +78,18 @@ def test_at_a_pause_the_turn_goes_to_who_has_used_less() -> None:
 
 def test_a_turn_that_never_pauses_keeps_nobody_waiting() -> None:
     """As many as have turns at once and more."""
-    turns = Turns(2)
+    turns = FairScheduler(2)
     for _ in range(20):
-        turns.begin(Account(), Stop())
+        turns.begin(CpuTime(), Stop())
     got = threading.Event()
-    threading.Thread(target=lambda: (turns.begin(Account(), Stop()), got.set()), daemon=True).start()
+    threading.Thread(target=lambda: (turns.begin(CpuTime(), Stop()), got.set()), daemon=True).start()
     assert got.wait(20)
 
 
 def test_who_left_does_not_wait_for_a_turn() -> None:
-    turns, stop, ended = Turns(1), Stop(), threading.Event()
-    turns.begin(Account(), Stop())
+    turns, stop, ended = FairScheduler(1), Stop(), threading.Event()
+    turns.begin(CpuTime(), Stop())
     stop.set()
-    threading.Thread(target=lambda: (turns.begin(Account(), stop), ended.set()), daemon=True).start()
+    threading.Thread(target=lambda: (turns.begin(CpuTime(), stop), ended.set()), daemon=True).start()
     assert ended.wait(20)
     assert turns.waiting == 0

@@ -42,7 +42,7 @@ def test_what_is_no_state_is_refused(text: str, told: str) -> None:
 
 
 def test_an_address_brings_everything_back() -> None:
-    left = Session(SHOWN, start="previous", scale="fit", speed=0.25, account=True, story="coexisting.2",
+    left = Session(SHOWN, start="previous", scale="fit", speed=0.25, energy_account=True, story="coexisting.2",
                    started_from=START, pins=(Pin(scene("sec2")), Pin(scene("rig").evolve(D=12.0), START)))
     back = Session()
     start, refused = take_address(back, left.link)

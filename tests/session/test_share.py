@@ -137,7 +137,7 @@ def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, am
     rng = np.random.default_rng(seed)
     states = [State(1e-6 * rng.standard_normal(beads), 1e-2 * rng.standard_normal(beads), 0.12345678901234567)
               if started >> place & 1 else None for place in range(1 + pins)]
-    left = Session(shown, start="previous", scale="fit", speed=0.25, account=True, curves="rest.up.down.features",
+    left = Session(shown, start="previous", scale="fit", speed=0.25, energy_account=True, curves="rest.up.down.features",
                    started_from=states[0], story="coexisting.2", pins=tuple(Pin(shown, one) for one in states[1:]),
                    question="strobes?knob=A0&from=1.23456789012345e-07&to=1.23456789012345e-06&values=199&keep=499")
     back = Session()

@@ -48,7 +48,7 @@ def failing(error: Exception) -> Callable[[Job], None]:
 def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) -> None:
     task.start(lambda job: job.say("measuring"))
     assert task.running
-    host.work_off(lambda: not task.running)
+    host.run_callbacks_until(lambda: not task.running)
     assert host.said == [("measuring", ""), ("done", "")]
 
 
@@ -59,7 +59,7 @@ def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) ->
 def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: Dashboard,
                                                           task: Task) -> None:
     task.start(failing(error))
-    host.work_off(lambda: not task.running and not host.callbacks)
+    host.run_callbacks_until(lambda: not task.running and not host.callbacks)
     assert host.said == [("failed", sentence)]
     assert host.failures == ([error] if told else [])
 
@@ -68,7 +68,7 @@ def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: Dashboard)
     problem = BadInput("f must be positive.")
     task = Task(host, Queue("test", 1), host.say, failed=host.failed)  # type: ignore[arg-type]
     task.start(failing(problem))
-    host.work_off(lambda: not task.running)
+    host.run_callbacks_until(lambda: not task.running)
     assert host.failures == [problem]
 
 
@@ -88,7 +88,7 @@ def test_nothing_of_cancelled_work_arrives(host: Dashboard, task: Task) -> None:
     assert not task.cancel(), "there is nothing to cancel any more"
     leave.set()
     task.start(lambda job: None)
-    host.work_off(lambda: not task.running)
+    host.run_callbacks_until(lambda: not task.running)
     assert host.said == [("done", "")]
 
 
@@ -100,7 +100,7 @@ def test_cancelled_is_no_failure(host: Dashboard, task: Task) -> None:
 
     task.start(work)
     task.start(lambda job: None)
-    host.work_off(lambda: not task.running)
+    host.run_callbacks_until(lambda: not task.running)
     assert host.said == [("done", "")] and host.failures == []
 
 
@@ -112,7 +112,7 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: Dashboard) ->
     task.cancel()
     leave.set()
     assert queue.submit(lambda: True).result(20)
-    host.work_off(lambda: not host.callbacks)
+    host.run_callbacks_until(lambda: not host.callbacks)
     assert host.said == [] and host.failures == []
 
 
@@ -122,7 +122,7 @@ def test_work_gives_way_to_a_moving_knob(host: Dashboard, task: Task) -> None:
     time.sleep(0.1)
     assert host.callbacks == []
     host.awaiting_picture = False
-    host.work_off(lambda: not task.running)
+    host.run_callbacks_until(lambda: not task.running)
 
 
 def test_compiling_is_said_and_given_up_with_the_job(host: Dashboard, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -130,7 +130,7 @@ def test_compiling_is_said_and_given_up_with_the_job(host: Dashboard, task: Task
     monkeypatch.setattr("app.session.task.COMPILER.await_piece", lambda *_: False)
     monkeypatch.setattr("app.session.task.COMPILER.load", lambda *_: pytest.fail("loaded"))
     task.start(lambda job: job.compile(scene("sec2"), "live"))
-    host.work_off(lambda: host.said == [("compiling", "")])
+    host.run_callbacks_until(lambda: host.said == [("compiling", "")])
     assert host.failures == []
 
 

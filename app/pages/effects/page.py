@@ -154,7 +154,7 @@ class EffectsPage(Page):
         self._view.update_state(panel={
             "effects": [self._effect(name, session.scene) for name in EFFECTS],
             "slots": [{"slot": name, "title": title, "type": kind}
-                      for name, title, kind in slots_of(session.scene, session.account)],
+                      for name, title, kind in slots_of(session.scene, session.energy_account)],
             "always": list(ALWAYS),
             "structure": structure(session.scene),
             "step": self._step(session.scene),
@@ -166,7 +166,7 @@ class EffectsPage(Page):
         refused = refusal(name, scene)
         return {
             "name": name, "slot": effect.slot, "title": effect.title, "meaning": effect.meaning, "refused": refused,
-            "on": present(name, scene, self._host.session.account),
+            "on": present(name, scene, self._host.session.energy_account),
             "code": _words(costs.get(CODE)), "motion": _words(costs.get(MOTION)),
             "state": refused or self._failed.get(name) or (
                 "compiling its kernel …" if name == self._compiling else

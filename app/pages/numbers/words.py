@@ -6,7 +6,7 @@ import numpy as np
 
 from granchain_core import Run
 
-from ...pictures.axes import in_words
+from ...format import in_words
 
 #: Instants of a table over time; the file has all.
 _INSTANTS = 25

@@ -10,9 +10,9 @@ from bokeh.embed import json_item
 
 from granchain_core import Run
 
+from ...format import in_words
 from ...parts.component import text
 from ...parts.figure_part import FigurePart
-from ...pictures.axes import in_words
 from ...pictures.probe import PICTURES, closed_spells, probe_state, without_points
 from ...pictures.theme import Theme
 from ...scripts import module

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache, partial
 from typing import Any
 
-from granchain_core import BadInput, State, settle
+from granchain_core import BadInput, State
 
 from ...parts.component import Component
 from ...serve.compiler import PICTURE_PIECES
@@ -13,7 +13,7 @@ from ...serve.queues import ANALYSES
 from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import whole
-from ...session.stories import Step, Story, stories, told_words
+from ...session.stories import Step, Story, state_before, stories, told_words
 from ...session.task import Job, Task
 
 
@@ -83,10 +83,7 @@ class StoriesPage(Page):
     def _through(self, step: Step, job: Job) -> None:
         """In a worker thread: settle the chain where it comes from."""
         job.compile(step.scene, *PICTURE_PIECES)
-        state: State | None = None
-        for frequency in step.via:
-            state = settle(step.scene.evolve(f=frequency), start=state, stop=job.stop).state
-        job.next_tick(self._show, step, state)
+        job.next_tick(self._show, step, state_before(step, job.stop))
 
     def _show(self, step: Step, state: State | None) -> None:
         self._host.open(step.scene, state, step.curves)

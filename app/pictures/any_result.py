@@ -97,7 +97,8 @@ def _strobes(found: StrobeDiagram, theme: Theme, bead: int | None = None) -> Lay
     return strobe_diagram(found, found.scene.N if bead is None else bead, theme)
 
 
-_DRAW: dict[type, Callable[..., LayoutDOM]] = {
+#: The function that draws each class of results.
+DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
     Run: motion, Settled: _settled, Driven: motion, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
     Diagram: both_maps, Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum,
     Transfer: transfer, LyapunovSpectrum: lyapunov, StrobeDiagram: _strobes, Basins: basins, Attractors: attractors,
@@ -139,7 +140,7 @@ def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
     """The function that draws a result, and the size in which it reads well."""
     if isinstance(result, _PAPER):
         return paper_figure, size_of(result)
-    for kind, draw in _DRAW.items():
+    for kind, draw in DRAWERS.items():
         if isinstance(result, kind):
             return draw, (WIDTH, 2 * HEIGHT if kind is Diagram else HEIGHT)
     if isinstance(result, Sequence) and not isinstance(result, str) and result:
@@ -147,5 +148,5 @@ def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
             if all(isinstance(one, kind) for one in result):
                 return draw, (WIDTH, HEIGHT)
     raise BadInput(f"There is no picture of a {type(result).__name__}; there are those of "
-                   f"{', '.join(kind.__name__ for kind in _DRAW)}, of lists of curves or branches, and of the results "
-                   "of granchain_core.paper.compute.")
+                   f"{', '.join(kind.__name__ for kind in DRAWERS)}, of lists of curves or branches, and of the "
+                   "results of granchain_core.paper.compute.")

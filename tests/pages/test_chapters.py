@@ -25,7 +25,7 @@ def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -
     host = FakeHost()
     chapters = Chapters(host, shown.append)  # type: ignore[arg-type]
     chapters.name(curve, SEC2)
-    host.work_off(lambda: bool(shown), 60.0)
+    host.run_callbacks_until(lambda: bool(shown), 60.0)
     found = {one["name"]: one["f"] for one in shown[0] if one["kind"] == "peak"}
     assert [f"1:{n}" for n in range(1, 5)] == [name for name in found if name != "1:5"]
     assert (found["1:1"], found["1:2"], found["1:3"]) == pytest.approx((340.0, 620.0, 1130.0), abs=30.0)
@@ -73,6 +73,6 @@ def test_what_one_visitor_has_named_is_not_computed_for_the_next(curve: list[Cur
         host = FakeHost()
         chapters = Chapters(host, shown.append)  # type: ignore[arg-type]
         chapters.name(curve, scene_of_its_own)
-        host.work_off(lambda shown=shown: bool(shown), 60.0)
+        host.run_callbacks_until(lambda shown=shown: bool(shown), 60.0)
         assert [one["kind"] for one in shown[0]] == ["band"]  # nothing else has a name here
     assert settled_at == [point.frequency for _, point in extreme_points(curve)]

@@ -1,0 +1,53 @@
+"""The lines beside the energies of a motion, as the page and every file draw them: titles, looks, columns of data.
+
+On the left the input force over the lower axis and the drive over the upper one, on the right the output force and its
+elastic part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..frames import with_jumps
+from .theme import THEMES
+
+
+@dataclass(frozen=True)
+class Look:
+    """A line: the titles of its axis, its role in a theme, its width [px] and dashes."""
+
+    title: str
+    short: str
+    role: str
+    width: float
+    dash: tuple[int, ...] = ()
+
+    @property
+    def colour(self) -> str:
+        """The same in every theme."""
+        return str(getattr(THEMES["light"], self.role))
+
+    def label(self, unit: str, narrow: bool = False) -> str:
+        """The title of the axis, shorter where there is little room."""
+        return f"{self.short if narrow else self.title} ({unit})"
+
+
+DRIVE = Look("drive u₀", "drive", "drive", 2.0)
+INPUT = Look("input force", "in", "input", 2.5)
+ELASTIC = Look("elastic output force", "elastic", "output", 2.0, (5, 4))
+OUTPUT = Look("output force", "out", "output", 2.5)
+
+
+def columns(time: np.ndarray, **lines: tuple[np.ndarray, float]) -> dict[str, np.ndarray]:
+    """Lines with points at `time`: for each its values, and the unit in which they are drawn."""
+    scaled = {"time": time, **{name: values / unit for name, (values, unit) in lines.items()}}
+    return {name: np.asarray(values, dtype=np.float32) for name, values in scaled.items()}
+
+
+def force_columns(time: np.ndarray, force: np.ndarray, unit: float, jumps: np.ndarray,
+                  scale: float = 1.0) -> dict[str, np.ndarray]:
+    """A force whose `jumps` (J, 2) have points of their own between the rows; `scale` takes their times to the axis."""
+    at, values = with_jumps(time, force, jumps * np.array([scale, 1.0]))
+    return columns(at, force=(values, unit))

@@ -1,0 +1,20 @@
+"""An attribute of a library that a later release might not have."""
+
+from __future__ import annotations
+
+import sys
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+
+def hide(monkeypatch: pytest.MonkeyPatch, module: ModuleType, owner: type, name: str) -> None:
+    """Take an attribute away from `module` alone: the library still needs its own."""
+
+    def found(self: object, attribute: str) -> Any:
+        if attribute == name and sys._getframe(1).f_globals.get("__name__") == module.__name__:
+            raise AttributeError(name)
+        return object.__getattribute__(self, attribute)
+
+    monkeypatch.setattr(owner, "__getattribute__", found)

@@ -1,0 +1,18 @@
+"""A server of a test's own whose document answers a question."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import panel as pn
+import pytest
+from answering_server import Served
+
+
+@pytest.fixture
+def served(monkeypatch: pytest.MonkeyPatch) -> Iterator[Served]:
+    """A server of this test's own whose page counts as drawn."""
+    monkeypatch.setattr(type(pn.state), "loaded", property(lambda _: True))
+    one = Served()
+    yield one
+    one.stop()
