@@ -11,7 +11,7 @@ arclength s, on which Newton's method solves map(state, x) = state bordered by t
 need no special treatment; the root of the condition along s is found by secants. From one y to the next the curve is
 extrapolated, with steps that are halved where that fails.
 
-Source: Kuznetsov, Elements of Applied Bifurcation Theory (2004), chapter 10.
+Source: Kuznetsov 2004, chapter 10.
 """
 
 from __future__ import annotations

@@ -109,7 +109,7 @@ def naive_bounce(strength: float, steps: float) -> float:
 
 
 def restitution_picture() -> Picture:
-    """Error of the restitution over steps in a contact: ours at its accurate setting, and plain RK4."""
+    """Error of the restitution over steps in a contact: ours at its usual setting, and plain RK4."""
     steps = np.array([10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0])
     true = restitution("linear", 0.3, False)
     ours = max(1e-16, abs(bounce("linear", 0.3, False) - true))

@@ -57,7 +57,7 @@ def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
         assert alone.run.max_output_force == pytest.approx(one.max_output_force, rel=2e-4)  # its error_estimate
 
 
-def test_periodic_ones_are_accurate_orbits_and_stable(many: list[Attractor]) -> None:
+def test_periodic_ones_are_converged_orbits_and_stable(many: list[Attractor]) -> None:
     periodic = [one for one in many if one.regime.period]
     for one in periodic:
         assert one.orbit is not None and one.orbit.residual <= 1e-11 and one.stable

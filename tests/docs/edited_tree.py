@@ -11,7 +11,7 @@ from pathlib import Path
 from documents import ROOT, blocks, edited
 
 _PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml", "README.md", "docs/model.md",
-          "tests/session/test_share.py")
+          "tests/session/test_share.py", "tests/numerics/test_orders.py")
 
 
 def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:

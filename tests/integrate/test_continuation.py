@@ -30,7 +30,7 @@ def test_two_halves_are_the_whole_bit_by_bit(method, _):
     together = whole.record(32)
     first, second = halves.record(16), halves.record(16)
     if method == "dop853":
-        # a accurate step ends at the record's end, so its steps differ; a hundred tolerances of 1e-11 between them
+        # an adaptive step ends at the record's end, so its steps differ; a hundred tolerances of 1e-11 between them
         near = {"rtol": 0.0, "atol": 1e-9}
         np.testing.assert_allclose(np.vstack([first.displacement, second.displacement[1:]]), together.displacement, **near)
     else:

@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels.dop853 import run as accurate
+from granchain_core.kernels.dop853 import run as dop853
 
 
 def grazing(depth: float, method: str, tolerance: float = 1e-9):
@@ -53,7 +53,7 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
     assert seen <= engine.counts.events <= 1.1 * seen + 3
 
 
-def test_across_events_the_accurate_method_keeps_to_a_hundred_tolerances():
+def test_across_events_the_adaptive_method_keeps_to_a_hundred_tolerances():
     """What event location is for: without it a method of order 8 has the order of the kink that it steps over."""
     chain = scene("sec2").evolve(F0=0.0)
     true = Engine(chain, Setting("dop853", tolerance=1e-14), 8).record(16).displacement
@@ -68,14 +68,14 @@ def test_a_chain_that_never_opens_has_no_events():
     assert result.cost.events == 0
 
 
-def test_accurate_steps_end_on_the_events():
+def test_adaptive_steps_end_on_the_events():
     """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
     engine = Engine(chain, Setting("dop853", tolerance=1e-9), 1)
     engine.periods(2)
     t, landed = 0.0, []
     for _ in range(400):
-        status, h, contact = accurate.located_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
+        status, h, contact = dop853.located_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
                                                       engine.scaled.period, engine.counts.array)
         assert status == 0
         if contact >= 0:

@@ -115,7 +115,7 @@ def test_the_table_of_methods_claims_no_more_than_is_measured(method):
 
 
 @pytest.mark.parametrize("regime", [r for r in REGIMES if r not in ("none", "cut")])
-def test_error_of_the_accurate_method_follows_its_tolerance(regime):
+def test_error_of_the_adaptive_method_follows_its_tolerance(regime):
     """At every tolerance the error stays below a thousand times it: each of some hundred events and steps may add one
     tolerance, and the sensitivity of these motions is below 10 (reference.npz). Without damping, and where a force is
     cut, sensitivities are thousands."""

@@ -68,8 +68,8 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
     """The verdict on one draw; `compute` takes the place of `run`.
 
     The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds; where tension is cut, `run`
-    itself is accurate, and that solver is the only independent one. Naive RK4 and LSODA are judged too, for at most
-    `others` seconds each.
+    uses the adaptive method itself, and that solver is the only independent one. Naive RK4 and LSODA are judged too, for
+    at most `others` seconds each.
     """
     try:
         chosen = draw.scene()

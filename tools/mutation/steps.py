@@ -66,7 +66,7 @@ FIXED = (
 
 ADAPTIVE = (
     Mutant("step-over-a-touch", _BRACKET, "return reach > 0.0", "return reach > 1e300",
-           "a contact that closes and opens inside a accurate step is not looked for", k.GRAZING),
+           "a contact that closes and opens inside an adaptive step is not looked for", k.GRAZING),
     Mutant("touch-bound-from-below", _BRACKET, "reach = max(sign", "reach = min(sign",
            "touches are looked for only where both straight lines meet them", k.STEP_EVENTS),
     Mutant("touch-only-from-open", _BRACKET, "if not (sign * s0 > 0.0 and sign * s1 < 0.0):",
