@@ -97,7 +97,7 @@ class Controller:
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
         if self._left:
             return
-        with unlocked():  # what one message changes leaves as one message
+        with unlocked():  # send all changes caused by one message as one patch
             try:
                 action(*arguments)
             except Exception as error:

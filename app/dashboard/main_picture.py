@@ -65,7 +65,7 @@ def _refusing(scene: Scene) -> Iterator[None]:
 
 
 class Pictures:
-    """Settled pictures and the live run. `note` takes a sentence that the next picture takes away.
+    """Settled pictures and the live run. `note` shows a message that the next picture clears.
 
     `arrived` is called with every settled picture, before it is sent.
     """

@@ -1,1 +1,1 @@
-"""The pictures in words and in tables, for who cannot see them or wants to read a value."""
+"""The pictures in words and in tables, for screen readers and for reading off values."""
