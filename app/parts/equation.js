@@ -32,8 +32,8 @@ export function render({ model }) {
     shrinkToWidth();
   };
   model.on("state", show);
-  onWidth(root, fit);
-  window.granchain.on("theme", fit); // the projector's words are larger
+  onWidth(root, shrinkToWidth);
+  window.granchain.on("theme", shrinkToWidth); // the projector's words are larger
   show();
   return root;
 }
