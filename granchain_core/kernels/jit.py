@@ -16,9 +16,9 @@ from typing import Any
 import numba
 from numba import types
 from numba.core import event
-from numba.extending import overload
 
 from .cache import CACHE_FOLDER, KernelCache
+from .function_types import ChoiceType, FunctionType
 from .link_only import compiler_options
 
 #: What the compiler may do with floating-point numbers: not assume that none is NaN or infinite.
@@ -70,7 +70,7 @@ class Internal:
         functools.update_wrapper(self, dispatcher.py_func)
         self.py_func = dispatcher.py_func
         self.dispatcher = dispatcher
-        self._numba_type_ = types.Dispatcher(dispatcher)
+        self._numba_type_ = FunctionType(dispatcher)
 
     def __call__(self, *args: Any) -> Any:
         """The function itself."""
@@ -132,10 +132,12 @@ def by_slot(absent, forceinline=False):
     generic.__name__ = generic.__qualname__ = absent.__name__
     generic.__doc__, generic.__module__ = absent.__doc__, absent.__module__
 
-    @overload(generic, strict=False, jit_options=_INTERNAL | {"forceinline": forceinline})
-    def _typed(*args):
-        slot = args[0]
-        return chosen(slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None))
+    compiled = functools.cache(numba.njit(nogil=True, **_INTERNAL | {"forceinline": forceinline}))
+
+    def choose(slot):
+        return compiled(chosen(slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)))
+
+    generic._numba_type_ = ChoiceType(absent.__qualname__, choose)
 
     def of(*slot_classes):
         def register(implementation):

@@ -100,8 +100,8 @@ class StroboscopicMap:
         return np.linalg.solve(velocity_from_w(lo, self.inner(self.engine.y)), tangent.matrix)
 
     def end(self, x: np.ndarray) -> np.ndarray:
-        """The state n periods after x, without tangents."""
-        self._run(x, None)
+        """The state n periods after x, without tangents: with none of them, by the kernel that has their code."""
+        self._run(x, new_tangent(np.zeros((len(x), 0)), self.engine.scaled.bodies, 0))
         return self.inner(self.engine.y)
 
     @property
@@ -111,7 +111,7 @@ class StroboscopicMap:
         found[:, 1] /= self.engine.scaled.period
         return found
 
-    def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent | None) -> float:
+    def _run(self, x: np.ndarray, tangent: Tangent | VelocityTangent) -> float:
         engine = self.engine
         engine.start_scaled(x)
         self._work.next_step[0] = min(0.1, engine.scaled.period / STAGES)

@@ -10,9 +10,6 @@ import numpy as np
 from ..integrate import Engine
 from ..integrate.batch import NEVER, Batch
 from ..kernels.batch.period_end import STROBES_KEPT
-from ..kernels.forces.largest import new_log
-from ..kernels.rk4.lyapunov import run_two_trajectories
-from ..kernels.samples import Output
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scaling import ScaledChain
 from ..stop import Stop
@@ -65,19 +62,21 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     """Mean exponent per period of each block of `block` periods, after one block to turn into the leading direction.
 
     `engine` is a fixed-step one at phase 0 and goes on; returns the exponents (blocks,) and its strobes (P, 2, N).
+    Period by period both motions are run by the kernel that everything else uses, the shadow's disturbance is measured
+    and brought back to its first length.
     """
+    row, count = 2 * engine.scaled.bodies, (blocks + 1) * block
     shadow = Engine(engine.scaled.scene, engine.setting, engine.samples, stop=engine.stop)
     shadow.start(engine.state)
-    row = engine.scaled.bodies
-    shadow.y[: 2 * row] = engine.y[: 2 * row] + _offset(row)
-    shadow.place()
-    growth = np.zeros((blocks + 1) * block)
-    strobes = np.zeros((len(growth), 2, row))
-    # step by step, whatever vectors the engine has: one kernel for chains of every length
-    stepper = engine.stepper
-    one, other = (each.stepper.trajectory(each.y)._replace(work=each.stepper.work._replace(simd=None))
-                  for each in (engine, shadow))
-    status, done = run_two_trajectories(stepper.method, one, other, growth, strobes,
-                                        Output(new_log(), engine.counts.array, engine.stop.flag))
-    engine.raise_for(status, done)
-    return growth[block:].reshape(blocks, block).mean(axis=1), strobes[:, :, 1:-1]
+    offset = _offset(engine.scaled.bodies)
+    growth, strobes = np.zeros(count), np.zeros((count, 2, engine.scaled.beads))
+    for period in range(count):
+        shadow.y[:row] = engine.y[:row] + offset
+        shadow.place()
+        strobes[period] = engine.periods(1)[0][1]
+        shadow.periods(1)
+        offset = shadow.y[:row] - engine.y[:row]
+        distance = max(float(np.linalg.norm(offset)), 1e-300)
+        growth[period] = np.log(distance / _DISTANCE)
+        offset *= _DISTANCE / distance
+    return growth[block:].reshape(blocks, block).mean(axis=1), strobes

@@ -30,7 +30,7 @@ STEADY = (
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
     Mutant("relaxed-by-change", "steady/settling/relax.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
            "the converged orbit is left too early", k.CLAIMS_SETTLED),
-    Mutant("shadow-not-pulled-back", "kernels/rk4/lyapunov.py", "* (start / now)", "* 1.0",
+    Mutant("shadow-not-pulled-back", "steady/lyapunov.py", "offset *= _DISTANCE / distance", "offset *= 1.0",
            "the exponent is that of a distance long since large", k.LYAPUNOV),
 )
 

@@ -88,17 +88,23 @@ def columns_of(tangent, columns):
 
 @keep_stage.of(Tangent)
 def _(tangent, state, slope, stage):
-    write_stage(tangent.stages, state, slope, stage)
+    if tangent.matrix.shape[0] > 0:
+        write_stage(tangent.stages, state, slope, stage)
 
 
 @by_slot
 def propagate(tangent, slots, time, h, contacts):
-    """Take the tangents through the accepted step of size h; returns its share of ∫ trace. Absent: there are none."""
+    """Take the tangents through the accepted step of size h; returns its share of ∫ trace, 0 without columns.
+
+    Absent: there are none.
+    """
     return 0.0
 
 
 @propagate.of(Tangent)
 def _(tangent, slots, time, h, contacts):
+    if tangent.matrix.shape[0] == 0:  # no columns: the same kernel serves the motion alone
+        return 0.0
     share = linearise(slots, time, h, contacts, tangent)
     for stage in range(STAGES + 1):
         for earlier in range(stage):
