@@ -27,6 +27,7 @@ from typing import Any
 import llvmlite.binding
 import numba
 from numba.core import caching
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
 from .compile_lock import CompileLock
@@ -272,8 +273,15 @@ class KernelCache(caching.FunctionCache):
                 lock.release()
 
     def _load(self, sig: Any, target_context: Any) -> Any:
+        """A compiled version from disk, or None.
+
+        Numba would first read the types and functions that its compiler knows, SciPy's linear algebra among them: half
+        a second in every process, for code that is compiled already. The runtime is all that such code needs.
+        """
         try:
-            return super().load_overload(sig, target_context)
+            rtsys.initialize(target_context)
+            with self._guard_against_spurious_io_errors():
+                return self._load_overload(sig, target_context)
         except OSError as problem:
             self._go_on_without(problem)
             return None
