@@ -45,6 +45,7 @@ _COMMANDS = {
     "spectrum": "lines of a force, and the transfer from input to output",
     "lyapunov": "all Lyapunov exponents, and the dimension of the attractor",
     "strobes": "strobes over a knob: the bifurcation diagram",
+    "attractors": "the steady states that coexist at one setting, and the share of random starts that lead to each",
     "basins": "to which steady state each start of a plane leads",
     "pulse": "the first pulse along a chain: its force, speed and width at every contact",
     "bands": "pass bands of a precompressed chain: cut-off and band edges",

@@ -9,6 +9,7 @@ from typing import Any
 from granchain_core import BadInput
 
 from .common import chosen_scene, in_background, say, show_json
+from .data_options import add_answers, with_answers
 from .options import add_result
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
@@ -18,9 +19,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `observe`."""
     add_result(parser)
     parser.add_argument("--input", required=True, metavar="FILE",
-                        help="CSV with time, force and, if measured, output force; or an HDF5 file of granchain run")
-    parser.add_argument("--time-unit", metavar="UNIT", help="s, ms or us, where a CSV's header names none")
-    parser.add_argument("--force-unit", metavar="UNIT", help="N, mN or kN, where a CSV's header names none")
+                        help="a table of time, force and, if measured, output force; or an HDF5 file of granchain")
+    parser.add_argument("--time-unit", metavar="UNIT", help="s, ms or us, where the header names none")
+    parser.add_argument("--force-unit", metavar="UNIT", help="N, mN, µN, kN, lbf or kgf, where the header names none")
+    add_answers(parser)
     parser.add_argument("--offset", default="0", metavar="N|median",
                         help="force [N] to subtract, or the median of all samples")
     parser.add_argument("--gap", default="refuse", metavar="refuse|zero|interpolate",
@@ -39,7 +41,8 @@ def do(arguments: argparse.Namespace) -> None:
     chosen = chosen_scene(arguments)
     if arguments.start not in ("rest", "input"):
         raise BadInput(f"--start {arguments.start!r} is not one of rest, input.")
-    record = read_force(arguments.input, arguments.time_unit, arguments.force_unit)
+    record = with_answers(arguments, lambda answers: read_force(arguments.input, arguments.time_unit,
+                                                                arguments.force_unit, answers))
     begin = first_state(arguments.input, chosen.N) if arguments.start == "input" else None
     check_picture(arguments.picture)
     if arguments.out:

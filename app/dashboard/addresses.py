@@ -12,7 +12,7 @@ from ..pages.analysis.questions import read_question
 from ..pages.stories.page import story_places
 from ..session.pins import Pin, read_pin
 from ..session.session import Session
-from ..session.share import EXTRAS, PINS, QUESTION, START, decode
+from ..session.share import PINS, QUESTION, START, decode
 from ..session.starts import read_start
 from .table import overlay_names, tab_names
 
@@ -26,11 +26,8 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
     """
     places = {"tab": tab_names(), "page": overlay_names(), "embed": ("1",)}
     scene, fields, sentences = decode(query, {**places, "story": story_places()})
-    view = {name: fields.get(name, values[0]) for name, values in EXTRAS.items()}
     session.scene = scene
-    session.mode, session.start, session.scale = view["mode"], view["start"], view["scale"]
-    session.curves, session.look = view["curves"], view["look"]
-    session.speed, session.energy_account = float(view["speed"]), view["account"] == "on"
+    session.take_view(fields)
     session.place = {name: fields[name] for name in places if name in fields}
     session.story = fields.get("story", "")
     session.pins = tuple(_pins([fields[name] for name in PINS if name in fields], sentences))

@@ -35,7 +35,7 @@ from .pinned import Pinned
 from .playback import Playback
 from .sentences import Sentences
 from .show import show_regime
-from .table import PAGES
+from .table import CURVE, PAGES
 
 
 class Controller:
@@ -61,7 +61,7 @@ class Controller:
         self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
         self._looked_at: dict[str, Page | CurveController] = {
-            "curve": self.curves, **{row.name: page for row, page in zip(PAGES, self.pages, strict=True)}}
+            CURVE: self.curves, **{row.name: page for row, page in zip(PAGES, self.pages, strict=True)}}
         own: Actions = {
             "ping": lambda _: views.chain.send(type="pong"),
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -93,6 +93,19 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     TabSpec("data", "", taller=True),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
+#: What the resonance curve, which is no page, is called in the message `visible`.
+CURVE = "curve"
+
+
+def check_names(rows: Sequence[PageSpec | TabSpec]) -> None:
+    """Raise `ValueError` for two tabs of one name, or a page that is called like the curve."""
+    names = [CURVE, *(row.name for row in rows)]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"{name!r} in app/dashboard/table.py is taken; give the page another name.")
+
+
+check_names(TABS)
 
 
 def described_tabs() -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ No Panel and no Bokeh in here, so that every rule of the page can be tested with
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -15,7 +16,7 @@ from granchain_core.scene import Bead
 from ..serve.turns import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
-from .share import EXTRAS, QUESTION, SPEEDS, START, encode, pins_in
+from .share import EXTRAS, QUESTION, SPEEDS, START, VIEW, encode, pins_in
 from .starts import start_text
 from .switches import ACCOUNT, changes
 
@@ -55,11 +56,16 @@ class Session:
     @property
     def link(self) -> str:
         """The query string that brings back what is on the screen: scene, knobs, where the motion began, the view."""
-        view = {"mode": self.mode, "start": self.start, "scale": self.scale, "curves": self.curves,
-                "speed": f"{self.speed:g}", "account": "on" if self.energy_account else "off"}
+        view = {name: setting.text(getattr(self, setting.attribute))
+                for name, setting in VIEW.items() if not setting.by_browser}
         began = self.started_from if self.mode == "settled" else None
         texts = {START: start_text(began), "story": self.story, QUESTION: self.question, **pin_texts(self.pins)}
         return encode(self.scene, view, texts)
+
+    def take_view(self, fields: Mapping[str, str]) -> None:
+        """Take over the view settings of a link; one that is not among its fields gets its default."""
+        for name, setting in VIEW.items():
+            setattr(self, setting.attribute, setting.read(fields.get(name, setting.values[0])))
 
     @property
     def pins_left_out(self) -> str:

@@ -6,7 +6,8 @@ Each field is checked by itself: a bad one is refused with a sentence, and the o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 from urllib.parse import parse_qsl, urlencode
@@ -28,17 +29,37 @@ def joined(names: Iterable[str]) -> str:
 
 #: Drive periods that the page can show in a second; the first is the default.
 SPEEDS = (1.0, 0.1, 0.25, 0.5, 2.0, 5.0, 20.0, 100.0)
-#: View settings a link may carry; the first value is the default. "look" is the theme; at "auto" the browser chooses.
-#: "curves" has every choice of them; without it a scene shows its own.
-EXTRAS: dict[str, tuple[str, ...]] = {
-    "mode": ("settled", "live"),
-    "start": ("rest", "previous"),
-    "scale": ("same", "fit"),
-    "curves": ("auto", *sorted({joined(some) for size in range(5) for some in combinations(CURVES, size)})),
-    "look": ("auto", "light", "dark", "projector"),
-    "speed": tuple(f"{speed:g}" for speed in SPEEDS),
-    "account": ("off", "on"),
+
+
+@dataclass(frozen=True)
+class ViewField:
+    """A view setting of a link: its values, the default first, and the attribute of `Session` that keeps it.
+
+    `read` makes the attribute of the link's text, `text` the text of the attribute. A field that the browser knows best
+    is added to the link there (`by_browser`).
+    """
+
+    attribute: str
+    values: tuple[str, ...]
+    read: Callable[[str], object] = str
+    text: Callable[[Any], str] = str
+    by_browser: bool = False
+
+
+#: The view settings by their names in a link; a row is all that a further one needs besides its attribute. "look" is
+#: the theme; at "auto" the browser chooses. "curves" has every choice of them; without it a scene shows its own.
+VIEW: dict[str, ViewField] = {
+    "mode": ViewField("mode", ("settled", "live")),
+    "start": ViewField("start", ("rest", "previous")),
+    "scale": ViewField("scale", ("same", "fit")),
+    "curves": ViewField("curves", ("auto", *sorted({joined(some) for size in range(5)
+                                                    for some in combinations(CURVES, size)}))),
+    "look": ViewField("look", ("auto", "light", "dark", "projector"), by_browser=True),
+    "speed": ViewField("speed", tuple(f"{speed:g}" for speed in SPEEDS), float, lambda speed: f"{speed:g}"),
+    "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }
+#: Their values; the first is the default.
+EXTRAS: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}
 #: Where the motion began, the pinned pictures, and the question of the Analysis page: texts that `starts.py`, `pins.py`
 #: and `pages/analysis/questions.py` read.
 START = "from"

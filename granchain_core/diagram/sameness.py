@@ -16,14 +16,13 @@ import numpy as np
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting, State, adaptive_setting, fixed_step_setting
 from ..orbits import Orbit, periodic_orbit
+from ..orbits.search import least_period_of
 from ..scaling import scale_chain
 from ..scene import Scene
 from ..steady.steady_state import SteadyState
 
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are the same.
 _SAME = 1e-7
-#: Scaled strobes of an orbit that agree to this after fewer periods have the shorter period.
-_REPEATS = 1e-6
 #: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
 _APART = 3.0
 #: States in the section of a motion that is not periodic, taken after as many further periods.
@@ -106,8 +105,7 @@ def _polished(one: Found) -> Found:
     try:
         orbit = periodic_orbit(one.result.scene, period, one.result.state)
         section = _strobes(orbit.scene, orbit.state, period, _ADAPTIVE_SETTING)
-        shortest = next(n for n in range(1, period + 1)
-                        if period % n == 0 and np.abs(section - np.roll(section, n, axis=0)).max() <= _REPEATS)
+        shortest = least_period_of(orbit)
         if shortest < period:  # in the batch a slow approach with alternating sign looked like twice the period
             orbit = periodic_orbit(one.result.scene, shortest, orbit.state)
     except (BadInput, NumbersFailed):  # a scene that cuts tension has no converged orbits

@@ -1,5 +1,6 @@
 """What was measured: the features the paper's text states, and a user's own data."""
 
+from .columns import Convention
 from .compare import Difference, compared
 from .drive import read_amplitude
 from .features import Feature, stated_features
@@ -8,5 +9,5 @@ from .question import Answers, Question, Unclear, answers_of
 from .reader import read_data, read_experiment
 from .series import Series, Shaker
 
-__all__ = ["Answers", "Difference", "Feature", "Measured", "Question", "Series", "Shaker", "Unclear", "answers_of",
-           "compared", "read_amplitude", "read_data", "read_experiment", "stated_features"]
+__all__ = ["Answers", "Convention", "Difference", "Feature", "Measured", "Question", "Series", "Shaker", "Unclear",
+           "answers_of", "compared", "read_amplitude", "read_data", "read_experiment", "stated_features"]

@@ -16,7 +16,7 @@ from .series import Series, Shaker
 _MOVES = ("velocity", "displacement", "acceleration")
 _IN_TIME = ("velocity", "displacement", "input_force", "output_force")
 #: Fewest samples of a series.
-_FEWEST = 9
+_FEWEST = 8
 
 
 @dataclass(frozen=True)
@@ -111,9 +111,11 @@ def _series(at: Columns, layout: str, about: dict[str, Any]) -> Series:
     if len(time) < _FEWEST:
         raise BadInput(f"Line {at.lines[-1]}: a series has at least {_FEWEST} samples; this one ends after "
                        f"{len(time)}.")
-    at.check(np.diff(time, prepend=time[0] - 1.0) <= 0.0, "times must ascend.")
+    at.check(np.diff(time, prepend=-np.inf) <= 0.0, "time{} s does not come after that of the line before; times must "
+             "ascend.", time)
     quantities = ", ".join(name.replace("_", " ") for name in at.values if name != "time")
     found = {name: at.one(name) if at.has(name) else None for name in ("velocity", "input_force", "output_force")}
     return Series(time - time[0], found["velocity"], found["input_force"], found["output_force"],
                   f"{len(time)} samples over {time[-1] - time[0]:.4g} s of {quantities}; {layout}",
-                  at.one("displacement") if at.has("displacement") else None, **about)
+                  at.one("displacement") if at.has("displacement") else None, **about, lines=at.lines,
+                  began=float(time[0]))

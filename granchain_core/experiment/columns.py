@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -28,6 +28,31 @@ Chosen = dict[str, list[tuple[int, str]]]
 
 
 @dataclass(frozen=True)
+class Convention:
+    """What a reader takes for granted where a file does not say it.
+
+    Attributes
+    ----------
+    untitled : tuple of str
+        What the columns of a file without titles hold, from the first on; a file may end earlier.
+    units : dict
+        The unit of a quantity whose title has none.
+    insisted : tuple of str
+        Quantities of which no title may have another unit than that.
+    same : dict
+        A quantity that is another one in this reader.
+    """
+
+    untitled: tuple[str, ...] = ()
+    units: dict[str, str] = field(default_factory=dict)
+    insisted: tuple[str, ...] = ()
+    same: dict[str, str] = field(default_factory=dict)
+
+
+NO_CONVENTION = Convention()
+
+
+@dataclass(frozen=True)
 class Asked:
     """The columns of a file with what is known of them, its first rows, and whether they have titles."""
 
@@ -40,10 +65,14 @@ class Asked:
         return Unclear(Question(reason, ("columns",), tuple(self.guesses), self.rows))
 
 
-def chosen_columns(asked: Asked, answers: Answers, wanted: Sequence[str], numeric: Sequence[int]) -> Chosen:
-    """The columns that are read. Raises `Unclear` where titles and answers do not settle it."""
+def chosen_columns(asked: Asked, answers: Answers, wanted: Sequence[str], numeric: Sequence[int],
+                   convention: Convention = NO_CONVENTION) -> Chosen:
+    """The columns that are read. Raises `Unclear` where titles, answers and convention do not settle it."""
     if answers.columns:
         return answered(asked, answers)
+    if not asked.titled and 2 <= len(asked.guesses) == len(numeric) <= len(convention.untitled):
+        return {name: [(place, convention.units[name])]
+                for place, name in enumerate(convention.untitled[: len(numeric)])}
     if not asked.titled:
         if len(numeric) in (2, 3) and not any(one.unit for one in asked.guesses):
             likely = [Guess(i + 1, "", quantity, unit) for i, (quantity, unit) in
@@ -54,7 +83,13 @@ def chosen_columns(asked: Asked, answers: Answers, wanted: Sequence[str], numeri
     for place, guess in enumerate(asked.guesses):
         if guess.quantity is None or place not in numeric:
             continue
-        found.setdefault(guess.quantity, []).append((place, guess.unit or ""))
+        quantity = convention.same.get(guess.quantity, guess.quantity)
+        usual = convention.units.get(quantity, "")
+        if quantity in convention.insisted and guess.unit not in (None, usual):
+            raise BadInput(f"The header says the {quantity.replace('_', ' ')} is in {guess.unit}, and {usual} was "
+                           "asked for; they must agree.")
+        known = guess.unit or ("" if bracketed_unit(guess.title) else usual)
+        found.setdefault(quantity, []).append((place, known))
     kinds = [kind for kind in kinds_of(list(found)) if kind in wanted]
     if not kinds:
         raise asked.ask(_missing(asked, wanted))

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import BadInput
-from .columns import Asked, answered, in_si
+from .columns import NO_CONVENTION, Asked, Convention, answered, in_si
 from .digitizer import datasets_in, is_project, is_two_headed
 from .grid import Row, grid_of
 from .labelled import HDF5, read_labelled
@@ -52,7 +52,8 @@ def read_experiment(path: str | Path, answers: Answers | None = None,
 
 
 def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[str] = KINDS,
-              source: str = "", most_bytes: int = MOST_BYTES, most_rows: int = MOST_ROWS) -> Series | Shaker | Measured:
+              source: str = "", most_bytes: int = MOST_BYTES, most_rows: int = MOST_ROWS,
+              convention: Convention = NO_CONVENTION) -> Series | Shaker | Measured:
     """The measurement in the bytes of a text file; `wanted` are the kinds that its reader can use.
 
     Raises `Unclear` for what has to be asked, and `BadInput` naming the line.
@@ -65,7 +66,7 @@ def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[s
     if is_two_headed(grid.rows):
         decimal = decimal_of([(n, f) for n, fields in grid.rows[2:] for f in fields if f], answers)
         return _digitised(_pairs(grid.rows, decimal), answers, wanted, source, "a table of WebPlotDigitizer")
-    return read_text_table(grid, answers, wanted, source)
+    return read_text_table(grid, answers, wanted, source, convention)
 
 
 def _digitised(datasets: dict[str, list[tuple[float, float]]], answers: Answers, wanted: Sequence[str], source: str,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,7 +15,8 @@ from .measured import Noted
 class Series(Noted):
     """A measured time series: time (T,) [s] from 0 and, where measured, velocity [m/s] and forces [N], else None.
 
-    `displacement` is the shaker's [m]. `units` are those of the file by quantity.
+    `displacement` is the shaker's [m]. `units` are those of the file by quantity, `lines` (T,) its line of every sample
+    where it is a text, and `began` the time of the first sample in it [s].
     """
 
     time: np.ndarray
@@ -26,6 +28,8 @@ class Series(Noted):
     source: str = ""
     note: str = ""
     units: dict[str, str] = field(default_factory=dict)
+    lines: Sequence[int] = ()
+    began: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
-from .columns import Asked, chosen_columns, in_si
+from .columns import NO_CONVENTION, Asked, Convention, chosen_columns, in_si
 from .grid import LIKE_A_NUMBER, Grid, Row
 from .measured import Measured, note_of
 from .numerals import decimal_mark, number_as
@@ -111,8 +111,8 @@ def _trimmed(data: list[Row], width: int) -> list[Row]:
     return found
 
 
-def read_text_table(grid: Grid, answers: Answers, wanted: Sequence[str],
-           source: str) -> Series | Shaker | Measured:
+def read_text_table(grid: Grid, answers: Answers, wanted: Sequence[str], source: str,
+                    convention: Convention = NO_CONVENTION) -> Series | Shaker | Measured:
     """The measurement in a grid."""
     parts = _parted(grid)
     width = len(parts.data[0][1])
@@ -123,7 +123,7 @@ def read_text_table(grid: Grid, answers: Answers, wanted: Sequence[str],
         guesses.pop()  # a separator ends every line
     header = [(parts.header_line, parts.titles)] if parts.titles else []
     asked = Asked(guesses, first_rows([*header, *parts.data]), bool(parts.titles))
-    chosen = chosen_columns(asked, answers, wanted, numeric)
+    chosen = chosen_columns(asked, answers, wanted, numeric, convention)
     used = sorted({place for places in chosen.values() for place, _ in places})
     fields = [(number, row[place]) for number, row in parts.data for place in used]
     if grid.separator == "," and not any("," in field for _, field in fields):

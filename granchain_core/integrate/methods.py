@@ -1,4 +1,4 @@
-"""The table of methods: what each is, what it may be used for, what it costs, how fine it runs for an accuracy."""
+"""The table of integration methods: orders, restrictions, costs, and the step or tolerance for an accuracy."""
 
 from __future__ import annotations
 
@@ -89,23 +89,40 @@ class StepCost:
 
 @dataclass(frozen=True)
 class Method:
-    """One way to integrate.
+    """A method of integration: a row of `METHODS`.
 
-    `order_smooth` holds where no contact opens or closes, `order` across contact events over the accuracies it is used
-    for, `order_with_cut` where tension is cut: only the adaptive method ends its steps at the force's kink, F = 0.
-    Orders are measured, the smallest of the damping laws, for adaptive methods per mean step
-    (tests/numerics/test_orders.py); only `order_with_cut` of the naive methods is not. With `events` steps end at
-    contact events or are split there; with `adaptive` an error control sets them; `symplectic` holds without damping.
-    `stepper` makes what the engine steps with. `usual_error` is the relative error at the default step, or over the
-    tolerance, 0 where none is known. `converges_regularly`: the error falls by the
-    method's order at every refinement, contact events or not. `variables` are "uw" or "uv".
+    Orders are measured (tests/numerics/test_orders.py): the smallest of all damping laws, and of adaptive methods per
+    mean step. `order_with_cut` of the naive methods is not measured.
+
+    Attributes
+    ----------
+    name, title : str
+        What it is called on the command line, and in tables.
+    order_smooth, order, order_with_cut : float
+        Orders where no contact opens or closes; across contact events, at the accuracies the method is used for; and
+        where tension is cut. Only the adaptive method ends its steps at the kink of a cut force, F = 0.
+    adaptive : bool
+        Whether an error control sets the steps.
+    symplectic : bool
+        Whether it is symplectic without damping.
+    restrictions, reference : str
+        What it cannot do; its source.
+    stepper : callable
+        Makes what the engine steps with.
+    cost : StepCost
+        Time of a step.
+    usual_error : float
+        Relative error at the default step, or over the tolerance; 0 where none is known.
+    converges_regularly : bool
+        Whether the error falls by the method's order at every refinement, contact events or not.
+    variables : str
+        "uw" or "uv".
     """
 
     name: str
     title: str
     order_smooth: float
     order: float
-    events: bool
     adaptive: bool
     symplectic: bool
     restrictions: str
@@ -144,31 +161,31 @@ METHODS: dict[str, Method] = {
     m.name: m
     for m in (
         Method(
-            name="rk4", title="RK4 in w", order_smooth=4.0, order=2.0, events=False, adaptive=False, symplectic=False,
+            name="rk4", title="RK4 in w", order_smooth=4.0, order=2.0, adaptive=False, symplectic=False,
             restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, its jump "
                          "read off the step's ends",
             reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9)),
         Method(
             name=FIXED_STEP, title="RK4 in w, steps split at contact events, quadrature corrected there",
-            order_smooth=4.0, order=3.9, events=True, adaptive=False, symplectic=False,
+            order_smooth=4.0, order=3.9, adaptive=False, symplectic=False,
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; with more than "
                          "30 beads two changes of one inner contact inside a step are not seen",
             reference="Kutta 1901; w-variables and events: docs/model.md", stepper=_fixed(Rk4Split, simd=True),
             cost=StepCost(450e-9, 45e-9), usual_error=_FIXED_STEP_ERROR, converges_regularly=True),
         Method(
             name="rk4-naive", title="RK4 in (u, v), the obvious first attempt", order_smooth=4.0, order=1.0,
-            events=False, adaptive=False, symplectic=False,
+            adaptive=False, symplectic=False,
             restrictions="no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
             reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv"),
         Method(
             name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt", order_smooth=1.0,
-            order=1.0, events=False, adaptive=False, symplectic=True,
+            order=1.0, adaptive=False, symplectic=True,
             restrictions="no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
             variables="uv"),
         Method(
             name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
-            events=True, adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
+            adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive,
             cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
     )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,9 +23,8 @@ from ..stop import Stop
 
 #: Tolerance of one step. The map is then accurate enough for Newton's method to converge to `CONVERGED` (orbit.py).
 TOLERANCE = 1e-13
-#: Relative change after a part of its period at which an orbit is one of that shorter period: far above the map's own
-#: error, far below the distance of two orbits.
-_BACK = 1e-8
+#: An orbit that is back within this, relatively, after a part of its period has that shorter period.
+BACK = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,18 +135,3 @@ def velocity_from_w(scaled: ScaledChain, x: np.ndarray) -> np.ndarray:
     matrix[n + rows[1:], rows[:-1]] = inverse[1:] * gate[1:-1]
     matrix[n + rows[:-1], rows[1:]] = inverse[:-1] * gate[1:-1]
     return matrix
-
-
-def relative_change(change: np.ndarray, x: np.ndarray) -> float:
-    """The larger of the changes of displacements and of w, each relative to its largest entry."""
-    half = len(x) // 2
-    return max(float(np.abs(change[part]).max() / max(1e-300, np.abs(x[part]).max()))
-               for part in (slice(0, half), slice(half, None)))
-
-
-def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int) -> int:
-    """Smallest divisor n of `period` with Pⁿ(x) = x, or `period` itself; `after(n)` is Pⁿ(x)."""
-    for shorter in range(1, period):
-        if period % shorter == 0 and relative_change(after(shorter) - x, x) < _BACK:
-            return shorter
-    return period

@@ -16,8 +16,9 @@ from ..errors import NumbersFailed
 from ..integrate import State
 from ..scaling import scale_chain
 from ..scene import Scene
+from ..steady.returns import least_period
 from ..stop import Stop
-from .flow import StroboscopicMap, least_period
+from .flow import BACK, StroboscopicMap
 from .orbit import Orbit, periodic_orbit
 
 #: Closest returns from which Newton's method is started.
@@ -81,4 +82,4 @@ def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
     def after(periods: int) -> np.ndarray:
         return StroboscopicMap(orbit.scene, periods, stop)(x, directions=np.zeros((len(x), 0))).end
 
-    return least_period(after, x, orbit.period)
+    return least_period(after, x, orbit.period, BACK)

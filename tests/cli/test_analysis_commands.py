@@ -1,19 +1,22 @@
-"""spectrum, lyapunov, strobes, basins, pulse and bands: their JSON, their words, their pictures, and what they refuse."""
+"""spectrum, lyapunov, strobes, attractors, basins, pulse, bands: their JSON, their words, their pictures, and what they refuse."""
 
 from __future__ import annotations
 
 import json
 from pathlib import Path
 
+import h5py
 import pytest
 
 from app.cli import main
+from granchain_core import attractors, scene
 
 SHORT = ["sec2", "--set", "N=2", "--set", "f=2000"]
 COMMANDS = {
     "spectrum": [*SHORT, "--samples", "32"],
     "lyapunov": [*SHORT, "--periods", "20"],
     "strobes": [*SHORT, "--over", "f=1900:2000:2", "--keep", "4"],
+    "attractors": [*SHORT, "--random-states", "2"],
     "basins": [*SHORT, "--x", "u1=0:2e-7:2", "--y", "v1=0:1e-3:2"],
     "pulse": ["impact", "--set", "N=5"], "bands": ["precompressed"],
 }
@@ -21,11 +24,12 @@ KEYS = {
     "spectrum": {"force", "period", "resolution", "aliasing", "frequency", "amplitude", "phase", "transfer"},
     "lyapunov": {"exponents", "errors", "resolved", "dimension", "dimension_low", "dimension_high", "mean_trace", "liouville", "periods"},
     "strobes": {"knob", "start", "bead", "values", "regime", "period", "displacement", "velocity"},
+    "attractors": {"scene", "knobs", "random_states", "seed", "attractors"},
     "basins": {"x", "y", "number", "attractors"}, "bands": {"bands", "cut_off"},
     "pulse": {"contact", "time", "force", "speed_beads", "speed", "width", "velocity", "error_estimate", "energy_residual"},
 }
 #: A source in the picture of each, where it has one.
-SOURCES = {"spectrum": "lines", "strobes": "strobes", "basins": "basin 1"}
+SOURCES = {"spectrum": "lines", "strobes": "strobes", "attractors": "period 1", "basins": "basin 1"}
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -39,7 +43,7 @@ def test_json_has_its_keys_and_a_picture_its_points(command: str, tmp_path: Path
 
 @pytest.mark.parametrize(("command", "words"), [
     ("spectrum", "Fourier series of a motion of period 1"), ("lyapunov", "of 4 exponents resolved"),
-    ("strobes", "settled within"), ("basins", "100%"),
+    ("strobes", "settled within"), ("basins", "100%"), ("attractors", "100 ± 19 %             2.30266     yes       5  period 1"),
     ("pulse", "energy closes to"), ("bands", "cut-off 7200.22 Hz"),
 ])
 def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -52,9 +56,26 @@ def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFix
     (["strobes", *SHORT, "--over", "f=1:2"], "must have the form KNOB=a:b:n"),
     (["strobes", *SHORT, "--over", "wall=1:2:3"], "knob of a strobe diagram 'wall'"),
     (["strobes", *SHORT, "--over", "f=1000:1100:2", "--bead", "3"], "--bead 3 is outside 1 to 2"),
+    (["attractors", *SHORT, "--random-states", "-1"], "--random-states -1 is outside 0 to 10000"),
+    (["attractors", *SHORT, "--seed", "-1"], "--seed -1 is outside 0 to"), (["attractors", "impact"], "drive = rest"),
     (["basins", *SHORT, "--x", "u9=0:1:2", "--y", "v1=0:1:2"], "Coordinate 'u9' is none"),
     (["pulse", "impact", "--set", "N=2"], "at least three beads"), (["bands", "sec2"], "Without a preload"),
 ])
 def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 2
     assert sentence in capsys.readouterr().err
+
+
+def test_attractors_are_those_of_the_function(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The JSON and the file have what Python gives for the same seed; without random states no share is claimed."""
+    words = ["attractors", *SHORT, "--seed", "3", "--json"]
+    assert main([*words, "--random-states", "2", "--out", str(tmp_path / "a.h5")]) == 0
+    (told,) = json.loads(capsys.readouterr().out)["attractors"]
+    (one,) = attractors(scene("sec2").evolve(N=2, f=2000.0), 2, seed=3)
+    assert (told["max_output_force"], told["share"], told["stable"]) == (one.max_output_force, one.share, one.stable)
+    assert told["starts"] == ["rest", "up", "down", "random 0", "random 1"] == [origin.name for origin in one.origins]
+    with h5py.File(tmp_path / "a.h5") as file:
+        assert file["attractors/max_output_force"][:].tolist() == [one.max_output_force]
+    assert main([*words, "--random-states", "0"]) == 0
+    (told,) = json.loads(capsys.readouterr().out)["attractors"]
+    assert (told["share"], told["share_error"], told["starts"]) == (None, None, ["rest", "up", "down"])

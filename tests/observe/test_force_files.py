@@ -14,6 +14,7 @@ from recorded import error, recorded
 
 from app import cli
 from granchain_core import BadInput, observe, run, scene
+from granchain_core.experiment import Unclear, answers_of
 from granchain_core.observe import ForceRecord, force_record, read_force, read_force_csv
 from granchain_core.store import save, save_observation
 
@@ -49,12 +50,14 @@ def lines(changes: dict[int, str]) -> str:
 
 @pytest.mark.parametrize(("text", "sentence"), [
     (lines({12: "1e-4,nan"}), "Line 12: 'nan' is not a number"), (lines({12: "1e-4,inf"}), "Line 12: 'inf'"),
-    (lines({12: "5e-5,0.1"}), "Line 12: time 5e-05 s does not come after 9e-05 s"),
+    (lines({12: "5e-5,0.1"}), "Line 12: time 5e-05 s does not come after that of the line before"),
     (lines({12: "9e-5,0.1"}), "Line 12: time 9e-05 s does not come after"), (lines({12: "1e-4"}), "Line 12 has 1 columns"),
     (lines({12: ""}), "Line 13: 2e-05 s after the sample before, where 1e-05 s is usual: a gap"),
-    (csv(pulse(), header="time_s,pressure"), "column 'pressure'"), ("time_s,force_N\n0,1\n1e-5,1", "at least 8"),
-    ("0;0\n0.125;1,5", "Line 2: '0.125' is 0.125 s if the point .* and 125 s if the comma is"),
-    ("time_ms;force_mN\n0;1,500\n0.1;1", "Line 2: '1,500' is 1500 mN if the point .* and 1.5 mN if the comma is"),
+    (csv(pulse(), header="time_s,pressure"), "What 'pressure' holds is not clear"), ("time_s,force_N\n0,1\n1e-5,1", "at least 8"),
+    ("0;0\n0.125;1,5", "Line 2: '1,5' does not have a decimal point, and '0.125' in line 2 no decimal comma"),
+    ("time_ms;force_mN\n0;1,500\n0.1;1", "Line 2: '1,500' is 1500 with a decimal point and 1.5 with a decimal comma"),
+    (csv(pulse(), header="time_s,force_MN"), "What 'force_MN' holds is not clear"),
+    (csv(pulse(), header="time_s,force [pdl]"), "unit 'pdl' of column 'force .pdl.' is not known"),
     (csv(0.0 * pulse()), "zero at every sample"), ("", "empty"),
     (csv(pulse(), step=1e-3), r"Line 18: a pulse of 0.5 N may be as short as .* nearest valid spacing"),
 ])
@@ -64,13 +67,23 @@ def test_what_cannot_be_is_refused_with_its_line(text: str, sentence: str) -> No
 
 
 def test_units_that_contradict_the_header_are_refused() -> None:
-    with pytest.raises(BadInput, match="header says the force is in mN, and N was asked for"):
+    with pytest.raises(BadInput, match="header says the input force is in mN, and N was asked for"):
         read_force_csv(csv(pulse(), header="time_s,force_mN"), force_unit="N")
 
 
-def test_the_readings_of_an_ambiguous_number_are_in_the_unit_asked_for() -> None:
-    with pytest.raises(BadInput, match=r"'1\.100' is 1\.1 ms if the point is the decimal mark and 1100 ms if the comma is"):
-        read_force_csv("0;0,5\n1.100;1", time_unit="ms")
+def test_a_number_with_two_readings_is_asked_for_and_read_as_answered() -> None:
+    """An option of the command, --decimal, gives the answer."""
+    text = "\n".join(f"{row}.100;0,5" for row in range(1, 13))
+    with pytest.raises(Unclear, match=r"'1\.100' is 1\.1 with a decimal point and 1100 with a decimal comma"):
+        read_force_csv(text.replace("0,5", "5"))
+    assert read_force_csv(text, answers=answers_of(decimal="comma")).time[0] == 1100.0
+
+
+def test_times_stay_those_of_the_file() -> None:
+    """A recording may begin at any time; lines are counted with the header and comments."""
+    rows = "".join(f"{2.5 + i * STEP:.9g},{value:.9g}\n" for i, value in enumerate(pulse()))
+    record = read_force_csv(f"# rig\ntime_s,force_N\n{rows}")
+    assert record.time[0] == 2.5 and record.place(0) == "Line 3"
 
 
 @pytest.mark.parametrize(("time", "force", "sentence"), [

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from granchain_core.orbits import orbit
-from granchain_core.orbits.flow import Flow, relative_change
+from granchain_core.orbits.flow import Flow
+from granchain_core.steady.returns import relative_change
 
 
 @pytest.mark.parametrize("place", [0, 3])

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from app.dashboard.addresses import take_address
 from app.session.pins import NAMES, Pin
 from app.session.session import Session
-from app.session.share import EXTRAS, LONGEST, SPEEDS, decode, encode, joined, pins_in
+from app.session.share import EXTRAS, LONGEST, SPEEDS, VIEW, decode, encode, joined, pins_in
 from app.session.starts import MOST_BEADS
 from granchain_core import BadInput, State, scene, scene_names
 
@@ -114,6 +114,17 @@ def test_every_bad_field_gets_its_sentence_and_the_good_ones_count() -> None:
 def test_an_unknown_scene_or_version_is_said_and_the_first_scene_shown() -> None:
     back, _, refused = decode("v=9&scene=rigg")
     assert back == scene(scene_names()[0]) and len(refused) == 2
+
+
+@given(chosen=st.fixed_dictionaries({name: st.sampled_from(values) for name, values in EXTRAS.items()}))
+def test_every_view_setting_comes_back_into_its_attribute(chosen: dict[str, str]) -> None:
+    """Also to a session that had others; what the browser adds is read but not written."""
+    left, back = Session(), Session(mode="live", scale="fit", speed=5.0, energy_account=True, look="dark", curves="none")
+    left.take_view(chosen)
+    _, refused = take_address(back, left.link + f"&look={chosen['look']}")
+    assert refused == [] and "look=" not in left.link
+    assert all(getattr(back, field.attribute) == getattr(left, field.attribute) for field in VIEW.values())
+    assert (back.speed, back.energy_account) == (float(chosen["speed"]), chosen["account"] == "on")
 
 
 @given(st.text(max_size=200))

@@ -119,14 +119,14 @@ def test_what_cannot_be_is_refused(make, sentence: str) -> None:  # type: ignore
 
 
 def test_an_observer_takes_it_and_says_what_it_is(tmp_path: Path) -> None:
-    """Of a series with more columns than its own strict reader knows; a table that is not clear stays refused."""
+    """Of a series with more columns than it needs; a table that is not clear is refused."""
     path = tmp_path / "virtual.csv"
     path.write_text(virtual_series_csv(CHAIN, 3, Sensors(noise=0.001)), "utf-8")
     record, found = read_force(path), read_data(path.read_bytes())
     assert record.understood.startswith("virtual experiment, nothing measured")
     np.testing.assert_array_equal(record.force, found.input_force)
     np.testing.assert_array_equal(record.output, found.output_force)
-    for text, sentence in (("time_s,velocity_m_s\n" + "".join(f"{i},1\n" for i in range(12)), "not understood"),
+    for text, sentence in (("time_s,velocity_m_s\n" + "".join(f"{i},1\n" for i in range(12)), "no input force"),
                            ("time_s,input_force_N,velocity\n" + "".join(f"{i},1,1\n" for i in range(12)), "velocity")):
         path.write_text(text, "utf-8")
         with pytest.raises(BadInput, match=sentence):

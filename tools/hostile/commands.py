@@ -39,7 +39,7 @@ BASES = tuple(line.split() for line in (
     "pulse impact --set N=4 --json", "bands precompressed --json", "scenes --json", "cite sec2 --json", "figure 5 --out five.csv",
     "warm nowhere neither", "check --quack --quock", "accuracy sec2 --set N=zwei --set f=lots",
     "serve --port 0x10 --address 256.1.1.1 --most-visitors 0", "lyapunov sec2 --set N=0 --set D=-1",
-    "basins sec2 --set N=0 --set D=-1", "--help", "run --help", "nonsense", ""))
+    f"attractors sec2 {_SMALL} --random-states 1 --json", "basins sec2 --set N=0 --set D=-1", "--help", "run --help", "nonsense", ""))
 _OPTIONS = sorted({word for base in BASES for word in base if word.startswith("--")} | {
     "--resume", "--budget", "--method", "--period", "--observer", "--scheduler", "--threads", "--amplitude", "--picture", "--column"})
 _FILES = {"force.csv": "time_s,input_force_N\n0,0\n1e-4,0.1\n2e-4,0\n", "curve.csv": "frequency_Hz,max_output_force_N\n2900,0.1\n3000,0.1\n"}

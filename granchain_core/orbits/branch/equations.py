@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
+from ...steady.returns import least_period, relative_change
 from ...stop import Stop
-from ..flow import TOLERANCE, Flow, StroboscopicMap, least_period, relative_change
+from ..flow import BACK, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
 
 #: Relative residual at which Newton's method stops.
@@ -69,7 +70,7 @@ class BranchEquations:
 
     def least_period(self, x: np.ndarray, value: float) -> int:
         """The drive periods after which the orbit through x repeats, at most `period`."""
-        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period)
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, BACK)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:

@@ -15,6 +15,7 @@ from ...errors import NumbersFailed
 from ...integrate import Engine, adaptive_setting, fixed_step_setting
 from ...scene import Scene
 from ...stop import Stop
+from ..returns import sizes
 
 #: Steps in place of one default step: multipliers then differ from those of a tangent flow by about 1e-6.
 _REFINE = 4.0
@@ -93,13 +94,6 @@ class FixedPoint:
     def modulus(self) -> float:
         """The largest |μ|."""
         return float(np.abs(np.linalg.eigvals(self.derivative)).max())
-
-
-def sizes(x: np.ndarray) -> np.ndarray:
-    """The largest displacement and the largest w, each for its own half of a state (2N,)."""
-    half = len(x) // 2
-    largest = [max(1e-300, float(np.abs(part).max())) for part in (x[:half], x[half:])]
-    return np.repeat(largest, half)
 
 
 def fixed_point(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:

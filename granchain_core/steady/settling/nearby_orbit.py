@@ -18,7 +18,8 @@ from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
 from ...stop import Stop
 from ..regime import changes
-from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point, sizes
+from ..returns import shorter_periods, sizes
+from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
 #: Beads up to which the derivative of the map is computed.
 MOST_BEADS = 100
@@ -46,7 +47,8 @@ _TURN = 16
 _SLOW = 0.3
 #: Length to which a departure is enlarged along the growing directions, relative to the motion.
 _ENLARGED_TO = 3e-3
-#: The orbit has a shorter period if it is back this near after a part of it.
+#: An orbit that is back within this, relatively, after a part of its period has that shorter period. The fixed-step map
+#: is known less well than the one of `granchain_core/orbits/flow.py`.
 _BACK = 1e-6
 
 
@@ -140,12 +142,11 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
     found = fixed_point(stroboscopic_map, x)
     if found is None:
         return None
-    for shorter in (n for n in range(1, period) if period % n == 0):
-        part = FiniteDifferenceMap(scene, shorter, stop)
-        if float(np.abs((part(found.x) - found.x) / sizes(found.x)).max()) < _BACK:
-            again = fixed_point(part, found.x)
-            if again is not None:
-                return NearbyOrbit(part, again, x, again.modulus)
+    parts = {n: FiniteDifferenceMap(scene, n, stop) for n in range(1, period) if period % n == 0}
+    for shorter in shorter_periods(lambda n: parts[n](found.x), found.x, period, _BACK):
+        again = fixed_point(parts[shorter], found.x)
+        if again is not None:
+            return NearbyOrbit(parts[shorter], again, x, again.modulus)
     return NearbyOrbit(stroboscopic_map, found, x, found.modulus)
 
 

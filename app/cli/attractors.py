@@ -1,0 +1,74 @@
+"""`granchain attractors`: the steady states that coexist at one setting, and how many random starts lead to each."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
+from .options import add_json, add_scene, whole
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
+
+if TYPE_CHECKING:
+    from granchain_core import Attractor, Attractors
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `attractors`."""
+    add_scene(parser)
+    parser.add_argument("--random-states", type=whole, default=64, metavar="n",
+                        help="random starts, 0 to 10,000, besides rest and the sweeps up and down")
+    parser.add_argument("--seed", type=whole, default=0, metavar="S", help="of the random starts")
+    parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")
+    add_json(parser)
+    add_picture(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Find the steady states of a setting."""
+    from granchain_core import attractors, save
+    from granchain_core.diagram.attractors import MOST_STATES
+    from granchain_core.errors import check_range
+    from granchain_core.store import check_writable
+
+    chosen = chosen_scene(arguments)
+    check_picture(arguments.picture)
+    if arguments.out:
+        check_writable(arguments.out)
+    check_range("--random-states", arguments.random_states, 0, MOST_STATES)
+    check_range("--seed", arguments.seed, 0, 2**63 - 1)
+    progress = show_percent if sys.stderr.isatty() else None
+    found = in_background(lambda stop: attractors(chosen, arguments.random_states, arguments.seed, stop, progress),
+                          reports=True)
+    with unbroken():
+        if arguments.out:
+            save(found, arguments.out)
+        write_picture(arguments.picture, f"Attractors of {chosen.name}", found)
+    if arguments.json:
+        show_json(_json(found, arguments))
+        return
+    print("share        max_output_force_N  stable  starts  motion")
+    for one in found:
+        share = "–" if not arguments.random_states else f"{100.0 * one.share:.0f} ± {100.0 * one.share_error:.0f} %"
+        print(f"{share:>11}  {one.max_output_force:18.6g}  {_stability(one):>6}  {len(one.origins):6d}  "
+              f"{one.regime.sentence}")
+    say(f"{chosen.name}: {len(found)} found from rest, both sweeps and {arguments.random_states} random states.")
+
+
+def _stability(one: Attractor) -> str:
+    return "–" if one.stable is None else "yes" if one.stable else "no"
+
+
+def _json(found: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
+    """All steady states as one JSON object; shares are null where no random state was tried."""
+    tried = arguments.random_states > 0
+    return {"scene": found.scene.name, "knobs": found.scene.knobs, "random_states": arguments.random_states,
+            "seed": arguments.seed, "attractors": [{
+                "regime": one.regime.name, "period": one.regime.period, "stable": one.stable,
+                "max_output_force": one.max_output_force, "max_output_force_elastic": one.max_output_force_elastic,
+                "max_input_force": one.max_input_force, "error_estimate": one.error_estimate,
+                "error_estimate_elastic": one.force_errors.elastic, "error_estimate_input": one.force_errors.input,
+                "share": one.share if tried else None, "share_error": one.share_error if tried else None,
+                "starts": [origin.name for origin in one.origins]} for one in found]}

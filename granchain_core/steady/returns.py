@@ -1,0 +1,34 @@
+"""Whether a state comes back: relative sizes and changes of scaled states, and the least period of an orbit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+
+def sizes(x: np.ndarray) -> np.ndarray:
+    """The largest displacement and the largest w, each for its own half of a state (2N,)."""
+    half = len(x) // 2
+    largest = [max(1e-300, float(np.abs(part).max())) for part in (x[:half], x[half:])]
+    return np.repeat(largest, half)
+
+
+def relative_change(change: np.ndarray, x: np.ndarray) -> float:
+    """The larger of the changes of displacements and of w, each relative to its largest entry in x (2N,)."""
+    return float(np.abs(change / sizes(x)).max())
+
+
+def shorter_periods(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float) -> Iterator[int]:
+    """Divisors n of `period`, below it, after which x is back within a relative `tolerance`; `after(n)` is Pⁿ(x).
+
+    The tolerance must be far above the error of the map P and far below the distance of two orbits.
+    """
+    for n in range(1, period):
+        if period % n == 0 and relative_change(after(n) - x, x) < tolerance:
+            yield n
+
+
+def least_period(after: Callable[[int], np.ndarray], x: np.ndarray, period: int, tolerance: float) -> int:
+    """The smallest of `shorter_periods`, or `period` itself."""
+    return next(shorter_periods(after, x, period, tolerance), period)

@@ -1,0 +1,21 @@
+"""The table of pages: every name is used once, since messages and links tell pages apart by it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from app.dashboard.table import CURVE, PAGES, TABS, TabSpec, check_names
+
+
+@pytest.mark.parametrize("row", [replace(PAGES[0], name=CURVE), TabSpec(PAGES[0].name, "learn")], ids=["curve", "twice"])
+def test_a_name_that_is_taken_is_refused(row: TabSpec) -> None:
+    with pytest.raises(ValueError, match=f"'{row.name}' in app/dashboard/table.py is taken"):
+        check_names((*TABS, row))
+
+
+def test_the_browser_calls_the_curve_as_the_server_does() -> None:
+    script = Path(__file__).parents[2] / "app" / "dashboard" / "visibility.js"
+    assert f'const CURVE = "{CURVE}";' in script.read_text(encoding="utf-8")

@@ -1,0 +1,79 @@
+"""The layout of the pages: no block of commands or formulas that an automatic line wrap has run together."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+from documents import PAGES, ROOT
+
+from app.cli.commands import parser_for
+
+_CONTRIBUTING = ROOT / "CONTRIBUTING.md"
+_PROGRAMS = {"granchain", "pip", "playwright", "pre-commit", "python", "python3"}
+
+
+def lines_outside_fences(page: Path) -> list[tuple[int, str]]:
+    """Number and text of every line that stands in no fenced block."""
+    found, fenced = [], False
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        fence = line.lstrip().startswith("```")
+        fenced ^= fence
+        if not (fenced or fence):
+            found.append((number, line))
+    return found
+
+
+def shell_lines(page: Path) -> list[str]:
+    """The lines of a page's indented blocks: those below an empty line that begin with four blanks."""
+    found, block, before = [], False, ""
+    for _, line in lines_outside_fences(page):
+        block = line.startswith("    ") and (block or not before)
+        found += [line.strip()] if block else []
+        before = line
+    return found
+
+
+def commands_in(line: str) -> list[list[str]]:
+    """The words of each command of a line of a shell, without settings of the environment."""
+    words = shlex.split(line, comments=True)
+    parts: list[list[str]] = [[]]
+    for word in words:
+        if word == "&&":
+            parts.append([])
+        elif parts[-1] or not re.match(r"[A-Z_]+=", word):
+            parts[-1].append(word)
+    return parts
+
+
+_COMMANDS = [words for line in shell_lines(_CONTRIBUTING) for words in commands_in(line)]
+
+
+@pytest.mark.parametrize("words", _COMMANDS, ids=" ".join)
+def test_each_line_of_commands_holds_one_that_can_run(words: list[str]):
+    """It begins with a program, no other program stands within it, and what it names is there."""
+    program, *rest = words
+    assert Path(program).name in _PROGRAMS
+    assert not [word for word in rest if word.startswith(".venv/bin/") or word == "python3"]
+    match Path(program).name, rest:
+        case "python", ["-m", module, *arguments]:
+            assert importlib.util.find_spec(module)
+            assert all((ROOT / word).exists() for word in arguments if word.startswith("tests"))
+        case "pip", ["install", "-e", extra]:
+            name = extra.removeprefix(".[").removesuffix("]")
+            assert f"\n{name} = [" in (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+        case "granchain", arguments:
+            parser_for(arguments).parse_args(arguments)
+
+
+def test_the_set_up_has_its_commands():
+    assert [Path(words[0]).name for words in _COMMANDS[:5]] == ["python3", "pip", "granchain", "pip", "pre-commit"]
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "tests" / "benchmarks" / "README.md"], ids=lambda page: str(page.relative_to(ROOT)))
+def test_pages_have_no_double_empty_lines(page: Path):
+    empty = {number for number, line in lines_outside_fences(page) if not line}
+    assert [number for number in sorted(empty) if number + 1 in empty] == []
