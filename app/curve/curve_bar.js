@@ -9,6 +9,8 @@ function choiceBox(model, name) {
   return box;
 }
 
+const RATIO = "1:3, for instance: the driver pushes the first bead strongly once in three drive periods.";
+
 // Every mark with its name, whether the curve has it or not, so that the key keeps its size while a knob moves. The
 // periods have their word once.
 function keyOf(kinds) {
@@ -27,6 +29,12 @@ function keyOf(kinds) {
       ...periods.map((one) => mark(one, one.name.slice(PERIOD.length))),
     ),
     ...kinds.filter((one) => !periods.includes(one)).map((one) => mark(one, one.name)),
+    element(
+      "span",
+      { className: "ratio", title: RATIO },
+      element("b", { textContent: "1:n" }),
+      " one push in n periods",
+    ),
   ];
 }
 

@@ -238,7 +238,8 @@ class CurveController:
     def _show_features(self, scene: Scene) -> None:
         stated = stated_features() if self._wanted["features"] else ()
         self._figure.features(stated)
-        self._bar.update_state(**self._wanted, rig=scene.pattern == rig_beads(), stated=[stated_name(one) for one in stated])
+        self._bar.update_state(**self._wanted, rig=scene.pattern == rig_beads(),
+                               stated=[stated_name(one) for one in stated])
 
     def _report(self, progress: Progress) -> None:
         """From the worker thread: points are collected and drawn a few at a time."""

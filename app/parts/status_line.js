@@ -16,8 +16,9 @@ const ENTRIES = [
   ["effects", (v) => v.join(" · "), "The effects being computed; an absent one has no code and costs nothing."],
 ];
 
-// What gives way, in this order, where the line has no room for all: an entry goes, or has fewer words.
-const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime"];
+// What gives way, in this order, where the line has no room for all: an entry goes, or has fewer words, as often as the
+// server has a shorter form of them.
+const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime"];
 const PHONE = matchMedia("(max-width: 820px)"); // there it may have several lines: the page scrolls
 
 function entryOf([name, write, meaning], state) {
@@ -60,8 +61,9 @@ class Line {
 
   widthOf(name, entry) {
     if (!this.fonts.has(name)) {
-      const { font, paddingLeft, paddingRight } = getComputedStyle(entry);
-      this.fonts.set(name, [font, parseFloat(paddingLeft) + parseFloat(paddingRight)]);
+      const { fontWeight, fontSize, fontFamily, paddingLeft, paddingRight } = getComputedStyle(entry);
+      const padding = parseFloat(paddingLeft) + parseFloat(paddingRight);
+      this.fonts.set(name, [`${fontWeight} ${fontSize} ${fontFamily}`, padding]);
     }
     const [font, padding] = this.fonts.get(name);
     this.pen.font = font;
@@ -74,19 +76,20 @@ class Line {
     const { state } = this;
     for (const [name, entry] of this.entries) {
       entry.hidden = false;
-      if (state[`${name}_short`]) entry.textContent = state[name];
+      if (state[`${name}_shorter`]) entry.textContent = state[name];
     }
     if (PHONE.matches) return;
     let need = this.gap; // beside what grows
     for (const [name, entry] of this.entries) need += this.widthOf(name, entry);
+    const shorter = { accuracy: [...(state.accuracy_shorter ?? [])], regime: [...(state.regime_shorter ?? [])] };
     for (const name of GIVES_WAY) {
       const entry = this.entries.get(name);
       if (need <= this.room || !entry) continue;
       need -= this.widthOf(name, entry);
-      if (state[`${name}_short`]) {
-        entry.textContent = state[`${name}_short`];
-        need += this.widthOf(name, entry);
-      } else entry.hidden = true;
+      entry.hidden = !shorter[name];
+      if (entry.hidden) continue;
+      entry.textContent = shorter[name].shift() ?? entry.textContent;
+      need += this.widthOf(name, entry);
     }
     const { regime = "", regime_hint = "" } = state;
     this.regime.title = this.regime.textContent === regime ? regime_hint : `${regime}. ${regime_hint}`;

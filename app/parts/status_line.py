@@ -26,9 +26,10 @@ def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[s
     words.
     """
     regime = picture.regime.sentence
+    name = regime.split(",")[0]  # without the evidence
     return {
         "regime": regime_words(picture, place, regime),
-        "regime_short": regime_words(picture, place, regime.split(",")[0]),  # without the evidence
+        "regime_shorter": [regime_words(picture, place, name), regime_words(picture, Place(""), name)],
         "regime_hint": regime_hint(picture),
         "start": f"from {picture.start}",
         **run_entries(picture.run, force),
@@ -82,7 +83,7 @@ def run_entries(run: Run, force: str) -> dict[str, Any]:
         "force": f"{force} at the wall",
         "force_hint": force_hint(run),
         "accuracy": f"{accuracy_words(run)} · in {duration(run.cost.wall_s)}",
-        "accuracy_short": accuracy_words(run),
+        "accuracy_shorter": [accuracy_words(run)],
         "accuracy_hint": errors_hint(run),
         "energy": "" if run.energy_residual is None else f"energy residual {short_error(run.energy_residual)}",
         "method": run.cost.method,
