@@ -7,13 +7,16 @@ from typing import Any
 
 from ..parts.component import Component, text
 from ..pictures.curve import LABELS
+from ..pictures.regimes import REGIMES, SYMBOLS
 from ..scripts import module
 
 _MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency rising, the state carried along.",
              "down": "Frequency falling, the state carried along."}
 #: What may be shown: name, label and meaning.
 CHOICES = (*((name, label, _MEANINGS[name]) for name, label in LABELS.items()),
-           ("features", "paper’s features", "Frequencies the paper states for its rig; it gives no forces."))
+           ("features", "paper’s features ┊", "Frequencies the paper states for its rig; it gives no forces."))
+#: Every mark that a curve may have, for the key.
+KINDS = [{"name": name, "symbol": SYMBOLS[marker], "colour": colour} for name, (marker, colour, _) in REGIMES.items()]
 
 
 class CurveBar(Component):
@@ -23,5 +26,5 @@ class CurveBar(Component):
     _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "chapters": [],
-                                          "kinds": [], "driven": True}, **params)
+        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "chapters": [], "stated": [],
+                                          "kinds": KINDS, "driven": True, "rig": False}, **params)

@@ -1,16 +1,21 @@
-// The names of the curve's peaks, valleys and stop band as buttons over its figure. A name that would lie on another
-// one moves up, and is left out where there is no room: strong peaks come first.
+// The names of the curve's peaks, valleys and stop band as buttons over its figure, and those of what the paper states
+// at their lines. A name that would lie on another one moves up, and is left out where there is no room: what the paper
+// states and strong peaks come first. A valley's name and a stated one keep off the points of the curve if they can.
 
-import { frameOf, modelsNamed, onLayout, viewOf } from "../parts/bokeh.js";
+import { frameOf, marksOf, modelsNamed, onLayout, viewOf } from "../parts/bokeh.js";
 import { button, element } from "../parts/dom.js";
 
 const FIGURE = "resonance curve"; // the name of its model
-const ABOVE = 9; // px between a point and its name
+const ABOVE = { peak: 11, band: 5, valley: 9 }; // px between a point and its name; on a peak there is the ring's place
+const BESIDE = 3; // px between the line of what the paper states and its name
+const MARK = 4; // px from the middle of a point to its edge
 const STEP = 6; // px by which a name moves up
-const ASIDE = { peak: [0, -8, 8, -16, 16], band: [0, -8, 8, -16, 16], valley: [0, -4, 4] }; // px to the side
+const ASIDE = { peak: [0, -8, 8, -16, 16], band: [0, -8, 8, -16, 16], valley: [0, -4, 4, -8, 8] }; // px to the side
 const ORDER = { peak: 0, band: 1, valley: 2 };
 
 const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+
+const around = (x, y) => ({ left: x - MARK, right: x + MARK, top: y - MARK, bottom: y + MARK });
 
 // The lowest box from `lowest` upwards in which `free` holds, straight over the point or a little beside it.
 function freeBox({ left, right, top, x, lowest, sideways }, free, wide, tall) {
@@ -23,6 +28,64 @@ function freeBox({ left, right, top, x, lowest, sideways }, free, wide, tall) {
   return null;
 }
 
+// The box of a name beside its line at `x`, as far up as it can be.
+function besideLine({ left, right, top, bottom }, x, free, wide, tall) {
+  for (let y = top + 1; y + tall <= bottom; y += STEP)
+    for (const at of [x - BESIDE - wide, x + BESIDE]) {
+      const box = { left: at, right: at + wide, top: y, bottom: y + tall };
+      if (at >= left && at + wide <= right && free(box)) return box;
+    }
+  return null;
+}
+
+// The room of a figure's frame for names, with what has its place already.
+class Room {
+  constructor(frame, stated) {
+    const { x_scale, y_scale, bbox } = frame;
+    Object.assign(this, { x_scale, y_scale, bbox, kept: [] });
+    this.points = marksOf(modelsNamed(FIGURE)[0]).map(([f, force]) => [x_scale.compute(f), y_scale.compute(force)]);
+    this.lines = stated.map(({ f }) => x_scale.compute(f));
+    this.alone = (box) => this.kept.every((other) => apart(other, box));
+    this.offPoints = (box) => this.alone(box) && this.points.every(([x, y]) => apart(box, around(x, y)));
+  }
+
+  // Puts a name where the first of these functions of its width and height has a box, or hides it; returns whether it
+  // has a place.
+  place(label, ways) {
+    label.hidden = false;
+    const { offsetWidth: wide, offsetHeight: tall } = label;
+    let box = null;
+    for (const way of ways) box ??= way(wide, tall);
+    label.hidden = !box;
+    if (!box) return false;
+    this.kept.push(box);
+    Object.assign(label.style, { left: `${box.left}px`, top: `${box.top}px` });
+    return true;
+  }
+
+  putStated(label, f) {
+    const x = this.x_scale.compute(f);
+    const offLines = (box) =>
+      this.offPoints(box) && this.lines.every((at) => at === x || at < box.left || at > box.right);
+    const conditions = [offLines, this.offPoints, this.alone];
+    this.place(
+      label,
+      conditions.map((free) => (wide, tall) => besideLine(this.bbox, x, free, wide, tall)),
+    );
+  }
+
+  put(label, { f, height, kind }, free) {
+    const { left, right, top, bottom } = this.bbox;
+    return this.place(label, [
+      (wide, tall) => {
+        const lowest = Math.min(bottom, this.y_scale.compute(height) - ABOVE[kind]) - tall;
+        const x = this.x_scale.compute(f) - wide / 2;
+        return freeBox({ left, right: right - wide, top, x, lowest, sideways: ASIDE[kind] }, free, wide, tall);
+      },
+    ]);
+  }
+}
+
 export class ChapterLabels {
   constructor(go) {
     this.go = go;
@@ -31,20 +94,21 @@ export class ChapterLabels {
     this.root.setAttribute("role", "group");
     this.root.ariaLabel = "peaks, valleys and stop band of the curve";
     this.host.append(this.root);
-    this.chapters = [];
+    this.chapters = this.stated = [];
     new ResizeObserver(() => this.later()).observe(this.host);
     window.granchain.on("theme", () => this.later());
   }
 
-  show(chapters) {
-    if (JSON.stringify(chapters) === JSON.stringify(this.chapters)) return;
-    this.chapters = chapters;
-    this.root.replaceChildren(
-      ...chapters.map(({ kind, name, words, f }) => {
-        const title = `${words}; go to ${f} Hz`;
-        return button(name, () => this.go(f), { className: kind, title, ariaLabel: title, hidden: true });
-      }),
-    );
+  // `stated` is what the paper says: name, words and frequency, as those of a chapter.
+  show(chapters, stated) {
+    const both = JSON.stringify([chapters, stated]);
+    if (both === this.both) return;
+    Object.assign(this, { both, chapters, stated });
+    this.labels = [...stated, ...chapters].map(({ kind, name, words, f }) => {
+      const title = `${words}; go to ${f} Hz`;
+      return button(name, () => this.go(f), { className: kind, title, ariaLabel: title, hidden: true });
+    });
+    this.root.replaceChildren(...this.labels);
     this.later();
   }
 
@@ -66,29 +130,26 @@ export class ChapterLabels {
   }
 
   place() {
-    if (!this.chapters.length) return;
+    if (!this.chapters.length && !this.stated.length) return;
     const frame = this.frame();
     if (!frame) return;
-    const { left, right, top, bottom } = frame.bbox;
-    const kept = [];
-    const order = [...this.chapters.keys()].sort(
-      (a, b) =>
-        ORDER[this.chapters[a].kind] - ORDER[this.chapters[b].kind] || this.chapters[b].force - this.chapters[a].force,
-    );
-    for (const i of order) {
-      const { f, height, kind } = this.chapters[i];
-      const label = this.root.children[i];
-      label.hidden = false;
-      const wide = label.offsetWidth,
-        tall = label.offsetHeight;
-      const x = frame.x_scale.compute(f) - wide / 2;
-      const lowest = Math.min(bottom, frame.y_scale.compute(height) - ABOVE) - tall;
-      const place = { left, right: right - wide, top, x, lowest, sideways: ASIDE[kind] };
-      const box = freeBox(place, (one) => kept.every((other) => apart(one, other)), wide, tall);
-      label.hidden = !box;
-      if (!box) continue;
-      kept.push(box);
-      Object.assign(label.style, { left: `${box.left}px`, top: `${box.top}px` });
-    }
+    // A peak's name can move aside and a valley's hardly, so valleys come first; not where a peak has no place then.
+    if (!this.fill(frame, true)) this.fill(frame, false);
+  }
+
+  // Puts all names; returns whether every peak has its own.
+  fill(frame, valleysFirst) {
+    const room = new Room(frame, this.stated);
+    const [stated, named] = [this.labels.slice(0, this.stated.length), this.labels.slice(this.stated.length)];
+    this.stated.forEach(({ f }, i) => {
+      room.putStated(stated[i], f);
+    });
+    const places = this.chapters.map((chapter, i) => [chapter, named[i]]);
+    const valleys = places.filter(([{ kind }]) => kind === "valley");
+    const put = valleysFirst ? valleys.filter(([one, label]) => room.put(label, one, room.offPoints)) : [];
+    const others = places.filter((one) => !put.includes(one));
+    others.sort(([a], [b]) => ORDER[a.kind] - ORDER[b.kind] || b.force - a.force);
+    for (const [one, label] of others) room.put(label, one, room.alone);
+    return places.every(([{ kind }, label]) => kind !== "peak" || !label.hidden);
   }
 }

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from granchain_core import CurvePoint, Scene, settle
+from granchain_core.experiment import Feature
 from granchain_core.steady.curve.resonance import STOPS, Place, peaks_and_valleys, place_words, push_words, pushes
 from granchain_core.stop import Stop
 
@@ -65,6 +66,13 @@ def band_chapter(band: tuple[CurvePoint, CurvePoint]) -> dict[str, Any]:
     return {"kind": "band", "name": "stop band", "words": f"stop band from {first.frequency:.0f} Hz",
             "f": round(0.5 * (first.frequency + last.frequency), 1), "force": max(first.max_output_force,
                                                                                   last.max_output_force)}
+
+
+def stated_name(feature: Feature) -> dict[str, Any]:
+    """The name of a peak or valley that the paper states, at its frequency: "1:1", or "1:1 anti" for a valley."""
+    ratio = feature.kind.split()[0]
+    return {"kind": "stated", "name": ratio if feature.is_resonance else f"{ratio} anti", "f": feature.frequency,
+            "words": f"stated in the paper: {feature.kind} at {feature.frequency:g} Hz, {feature.repeats} repeats"}
 
 
 def _extreme_chapters(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,

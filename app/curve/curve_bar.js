@@ -9,15 +9,48 @@ function choiceBox(model, name) {
   return box;
 }
 
+const RATIO = "1:3, for instance: the driver pushes the first bead strongly once in three drive periods.";
+
+// Every mark with its name, whether the curve has it or not, so that the key keeps its size while a knob moves. The
+// periods have their word once.
+function keyOf(kinds) {
+  const mark = ({ symbol, colour }, name) => {
+    const drawn = element("b", { textContent: symbol });
+    drawn.style.color = colour;
+    return element("span", {}, drawn, ` ${name}`);
+  };
+  const PERIOD = "period ";
+  const periods = kinds.filter(({ name }) => name.startsWith(PERIOD));
+  return [
+    element(
+      "span",
+      { className: "periods" },
+      "period",
+      ...periods.map((one) => mark(one, one.name.slice(PERIOD.length))),
+    ),
+    ...kinds.filter((one) => !periods.includes(one)).map((one) => mark(one, one.name)),
+    element(
+      "span",
+      { className: "ratio", title: RATIO },
+      element("b", { textContent: "1:n" }),
+      " one push in n periods",
+    ),
+  ];
+}
+
 export function render({ model }) {
   const { choices } = model.state;
   const boxes = new Map(choices.map(([name]) => [name, choiceBox(model, name)]));
-  const labels = choices.map(([name, text, title]) => element("label", { title }, boxes.get(name), text));
+  const labels = new Map(
+    choices.map(([name, text, title]) => [name, element("label", { title }, boxes.get(name), text)]),
+  );
   const done = meter("progress of the curve");
   const stop = button("✕", () => model.send_msg({ do: "curve-stop" }), { title: "Stop the curve" });
   const progress = element("span", { className: "progress" }, done, stop);
   const show = () => {
     for (const [name, box] of boxes) box.checked = Boolean(model.state[name]);
+    // Frequencies of another chain would say nothing.
+    labels.get("features").hidden = !(model.state.rig || model.state.features);
     progress.hidden = !(model.state.done >= 0 && model.state.done < 1);
     done.value = model.state.done ?? 0;
   };
@@ -25,14 +58,9 @@ export function render({ model }) {
   const places = new ChapterLabels((f) => model.send_msg({ do: "set", name: "f", value: f }));
   const name = () => {
     key.replaceChildren(
-      ...(model.state.driven ? [] : ["Nothing drives this chain: there is no resonance curve."]),
-      ...model.state.kinds.map((one) => {
-        const symbol = element("b", { textContent: one.symbol });
-        symbol.style.color = one.colour;
-        return element("span", {}, symbol, ` ${one.name}`);
-      }),
+      ...(model.state.driven ? keyOf(model.state.kinds) : ["Nothing drives this chain: there is no resonance curve."]),
     );
-    places.show(model.state.chapters);
+    places.show(model.state.chapters, model.state.stated);
   };
   model.on("state", () => {
     show();
@@ -41,6 +69,6 @@ export function render({ model }) {
   show();
   name();
   const title = element("h2", { textContent: "resonance curve: largest force at the wall" });
-  const head = element("div", { className: "row" }, title, progress);
-  return element("div", { className: "part" }, head, element("div", { className: "row" }, ...labels), key);
+  const head = element("div", { className: "row titled" }, title, progress);
+  return element("div", { className: "part" }, head, element("div", { className: "row" }, ...labels.values()), key);
 }

@@ -28,7 +28,7 @@ from ..session.session import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
 from .bar import CHOICES, CurveBar
-from .chapters import Chapters
+from .chapters import Chapters, stated_name
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
 from .view import Curve
 
@@ -236,8 +236,10 @@ class CurveController:
             self._task.cancel()
 
     def _show_features(self, scene: Scene) -> None:
-        self._bar.update_state(**self._wanted)
-        self._figure.features(stated_features() if self._wanted["features"] else [])
+        stated = stated_features() if self._wanted["features"] else ()
+        self._figure.features(stated)
+        self._bar.update_state(**self._wanted, rig=scene.pattern == rig_beads(),
+                               stated=[stated_name(one) for one in stated])
 
     def _report(self, progress: Progress) -> None:
         """From the worker thread: points are collected and drawn a few at a time."""
@@ -278,10 +280,10 @@ class CurveController:
         return (place + progress.done) / len(self._remaining)
 
     def _show_chapters(self, chapters: list[dict[str, Any]]) -> None:
-        """Chapters with their heights on the axis, and the marks that occur, for the key."""
+        """Chapters with their heights on the axis."""
         factor = self._figure.factor
         places = [{**one, "height": one["force"] / factor} for one in chapters]
-        self._bar.update_state(chapters=places, kinds=self._figure.kinds() if chapters else [])
+        self._bar.update_state(chapters=places)
 
     def _ended(self, status: str, _: str) -> None:
         if status == "failed":

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 from bokeh.events import Tap
-from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Line, Plot, Range1d, Scatter, Segment, Span, Text
+from bokeh.models import ColumnDataSource, GlyphRenderer, HoverTool, Line, Plot, Range1d, Scatter, Segment, Span
 
 from granchain_core import CurvePoint, Run
 from granchain_core.experiment import Difference, Feature, Measured, compared
@@ -17,7 +17,6 @@ from ..frames import round_up
 from ..parts.figure_style import OUTPUT, quiet_axis, quiet_plot, together
 from ..pictures.curve import DASHES, curve_columns, curve_tooltips
 from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
-from ..pictures.regimes import REGIMES, SYMBOLS, regime_key
 from ..pictures.theme import GREY
 from .pinned_curves import PinnedCurves
 
@@ -81,8 +80,7 @@ class Curve:
 
     def _bring_forward(self) -> None:
         """Draw what the paper states in front of the curves, in whichever order they came."""
-        stated = [self._stated, self._labels]
-        self.figure.renderers = [*(one for one in self.figure.renderers if one not in stated), *stated]
+        self.figure.renderers = [*(one for one in self.figure.renderers if one is not self._stated), self._stated]
 
     def _marks(self) -> None:
         """Stated features and the current point, in front of the curves."""
@@ -90,9 +88,6 @@ class Curve:
         self._stated = plot.add_glyph(self._features, Segment(
             x0="frequency", y0=0, x1="frequency", y1="top", line_color=GREY, line_width=3, line_dash=[1, 5],
             line_cap="round"))
-        self._labels = plot.add_glyph(self._features, Text(
-            x="frequency", y="top", text="label", angle=np.pi / 2, text_align="right", text_baseline="bottom",
-            text_font_size="12px", text_color=GREY, x_offset=-3))
         plot.add_tools(HoverTool(renderers=[self._stated], line_policy="interp",
                                  tooltips=[("stated", "@label"), ("source", "@source")]))
         self._dot = plot.add_glyph(self._now, Scatter(x="frequency", y="force", size=15, fill_color=None,
@@ -117,7 +112,6 @@ class Curve:
         self._ink = colour
         for renderer in (self._dot, *self._bars):
             renderer.glyph.line_color = colour
-        self._labels.glyph.text_color = colour
         self._dot.glyph.size = 15 * thick
         self._pinned.ink(colour)
 
@@ -183,12 +177,6 @@ class Curve:
         """The points of a direction in ascending frequency."""
         return sorted(self._points[direction], key=lambda point: point.frequency)
 
-    def kinds(self) -> list[dict[str, str]]:
-        """Name, symbol and colour of every mark that the curves have, for a key."""
-        drawn = {regime_key(p.regime.name, p.regime.period) for points in self._points.values() for p in points}
-        return [{"name": name, "symbol": SYMBOLS[marker], "colour": colour}
-                for name, (marker, colour, _) in REGIMES.items() if name in drawn]
-
     def place(self, run: Run) -> Place | None:
         """Where a run lies on the whole curve from rest; None while there is none."""
         if not self._whole:
@@ -231,6 +219,7 @@ class Curve:
             "label": [f"{f.kind}, {f.repeats} repeats" for f in features],
             "source": [f.source for f in features],
         }
+        self._rescale()
 
     def measured(self, measured: Measured | None) -> None:
         """Show the visitor's own data with error bars, or none."""
@@ -271,7 +260,8 @@ class Curve:
             self._pinned.draw(scale[0])
             if self._measurement is not None:
                 self.measured(self._measurement)
-        self.figure.y_range.end = 1.15 * high / scale[0]  # room for the names of the peaks
+        # Room for the names of the peaks, and for those that the paper states above them.
+        self.figure.y_range.end = (1.3 if self._features.data["top"] else 1.15) * high / scale[0]
         self.figure.yaxis[0].axis_label = f"output force ({scale[1]}N)"  # its heading says that it is the largest
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:

@@ -12,8 +12,7 @@ from panel.io import unlocked
 from granchain_core import BadInput, Scene, Settled, State
 
 from ..curve.page import CurveController
-from ..parts.foundation import beside_kappa, foundation_words
-from ..parts.knobs import knob_state
+from ..parts.knobs import beside_knobs, knob_state
 from ..pictures.theme import Theme
 from ..serve.compiler import COMPILER
 from ..serve.document_lock import with_document_lock
@@ -266,8 +265,8 @@ class Controller:
 
     def _send_knob_values(self, seq: object = None) -> None:
         scene = self.session.scene
-        self.views.knobs.send(type="values", seq=seq, values=dict(scene.knobs),
-                              foundation=foundation_words(scene), kept=beside_kappa(scene), query=self.session.link)
+        self.views.knobs.send(type="values", seq=seq, values=dict(scene.knobs), **beside_knobs(scene),
+                              query=self.session.link)
 
     def _scene_changed(self, start: State | None = None) -> None:
         self._compute(start)

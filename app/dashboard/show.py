@@ -52,7 +52,7 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
         _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force),
               live=True, running=running)
         views.curve.now(run.scene.knobs["f"], frames.largest_output)
-        views.status_line.update_state(regime=f"live, {since}", regime_hint="", start="",
+        views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
                                        **run_entries(run, views.trains.output_words(run.max_output_force)))
 
 

@@ -10,6 +10,12 @@ export const viewOf = (model) => window.Bokeh.index.find_one(model);
 // The box of a figure's frame in its element, and its scales from data to pixels; null before it is laid out.
 export const frameOf = (view) => view?.frame ?? null;
 
+// The points of all marks of a figure that can be seen, in the units of its axes.
+export const marksOf = ({ renderers }) =>
+  renderers
+    .filter(({ visible, glyph, level }) => visible && glyph.type === "Scatter" && level !== "overlay")
+    .flatMap(({ data_source: { data } }) => Array.from(data.frequency ?? [], (f, i) => [f, data.force[i]]));
+
 // Calls `act` when a figure has other ranges or another size.
 export function onLayout({ x_range, y_range, properties }, act) {
   for (const signal of [y_range.change, x_range.change, properties.inner_width.change]) signal.connect(act);

@@ -91,12 +91,16 @@ export class Cursor {
         ...style,
       });
     const top = (box) => `${box.top - stage.top + 2}px`;
-    const titles = this.stage.querySelectorAll(".title");
+    const titles = [...this.stage.querySelectorAll(".title")];
     for (const title of titles) {
       const name = title.dataset.over;
       const box = { left, map, right }[name];
       put(title, box, name === "left" ? this.left : this.gap, this.gap, { top: top(box) });
+      title.classList.remove("short");
     }
+    const line = parseFloat(getComputedStyle(titles[0]).lineHeight);
+    const short = titles.some((title) => title.offsetHeight > 1.5 * line);
+    for (const title of titles) title.classList.toggle("short", short);
     put(document.getElementById("scale"), map, this.gap, this.gap, {
       top: `${map.bottom - stage.top - this.bottom + 4}px`,
     });
@@ -107,7 +111,7 @@ export class Cursor {
         top: `${box.bottom - stage.top - peak.offsetHeight - 4}px`,
       });
     }
-    const title = [...titles].at(-1);
+    const title = titles.at(-1);
     const under = title.offsetTop + title.offsetHeight;
     put(document.getElementById("key"), right, this.gap, 0, {
       top: `${under}px`,

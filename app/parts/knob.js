@@ -70,7 +70,8 @@ export class Knob {
     });
     this.slider = element("input", { type: "range", min: 0, max: STEPS, step: 1, ariaLabel: label });
     this.el.append(this.field, element("span", { className: "unit", textContent: unit }), this.slider);
-    if (at_zero) this.el.append(element("small", { className: "at-zero", textContent: `0: ${at_zero}` }));
+    this.said = element("small", { className: "at-zero" });
+    if (at_zero) this.el.append(this.said);
     this.field.addEventListener("input", () => {
       this.editing = true;
       this.field.dataset.typing = "yes";
@@ -121,6 +122,14 @@ export class Knob {
   set(value, now = false) {
     this.show(value);
     this.send({ do: "set", name: this.spec.name, value }, now);
+  }
+
+  // Why the knob turns nothing now, or, with no words, what 0 means.
+  say(idle) {
+    const { at_zero } = this.spec;
+    if (!at_zero) return;
+    this.said.textContent = idle || `0: ${at_zero}`;
+    this.el.classList.toggle("idle", Boolean(idle));
   }
 
   show(value, preset) {

@@ -68,8 +68,11 @@ class Knobs {
     this.show(this.model.state);
   }
 
-  show({ values, preset, foundation, kept }) {
-    for (const [name, knob] of this.knobs) if (name in values) knob.show(values[name], preset?.[name]);
+  show({ values, preset, foundation, kept, idle }) {
+    for (const [name, knob] of this.knobs) {
+      if (name in values) knob.show(values[name], preset?.[name]);
+      knob.say(idle?.[name] ?? "");
+    }
     this.foundation.textContent = foundation;
     this.kept.textContent = kept ?? "";
   }

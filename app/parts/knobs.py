@@ -40,8 +40,14 @@ def knob_state(current: Scene) -> dict[str, Any]:
         "specs": [_spec(name, current, preset) for name in MAIN + MORE],
         "values": {name: current.knobs[name] for name in MAIN + MORE},
         "preset": {name: preset[name] for name in MAIN + MORE},
-        "foundation": foundation_words(current), "kept": beside_kappa(current),
+        **beside_knobs(current),
     }
+
+
+def beside_knobs(current: Scene) -> dict[str, Any]:
+    """What is said beside the knobs of a scene: of the foundation, and of a knob that turns nothing now."""
+    idle = {"D": "no effect: the law, under “more”, is “none”"} if current.dissipation == "none" else {}
+    return {"foundation": foundation_words(current), "kept": beside_kappa(current), "idle": idle}
 
 
 def _spec(name: str, current: Scene, preset: dict[str, Any]) -> dict[str, Any]:

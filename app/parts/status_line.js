@@ -1,6 +1,6 @@
 // The status line: what is on the screen, how sure it is and what it cost.
 
-import { button, element } from "./dom.js";
+import { button, element, onWidth } from "./dom.js";
 
 const ENTRIES = [
   ["busy", (v) => v, "The server is busy: computations queue and intermediate pictures are skipped."],
@@ -16,6 +16,11 @@ const ENTRIES = [
   ["effects", (v) => v.join(" · "), "The effects being computed; an absent one has no code and costs nothing."],
 ];
 
+// What gives way, in this order, where the line has no room for all: an entry goes, or has fewer words, as often as the
+// server has a shorter form of them.
+const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime"];
+const PHONE = matchMedia("(max-width: 820px)"); // there it may have several lines: the page scrolls
+
 function entryOf([name, write, meaning], state) {
   const entry = element(name === "accuracy" ? "button" : "span", {
     textContent: write(state[name]),
@@ -24,6 +29,71 @@ function entryOf([name, write, meaning], state) {
   });
   if (name === "accuracy") entry.addEventListener("click", () => window.granchain.openPage("accuracy"));
   return entry;
+}
+
+// The line's entries, in one line always: one that wraps moves every picture while a knob moves, and has them drawn anew.
+class Line {
+  constructor() {
+    this.el = element("div", { className: "line" });
+    this.pen = document.createElement("canvas").getContext("2d");
+    this.fonts = new Map(); // by the entry's name; asking the browser for them costs a layout
+    onWidth(this.el, () => this.measure());
+    window.granchain.on("theme", () => this.measure());
+  }
+
+  measure() {
+    this.fonts.clear();
+    const { width, paddingLeft, paddingRight, columnGap } = getComputedStyle(this.el);
+    this.room = parseFloat(width) - parseFloat(paddingLeft) - parseFloat(paddingRight);
+    this.gap = parseFloat(columnGap);
+    this.fit();
+  }
+
+  show(state) {
+    this.state = state;
+    const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");
+    this.regime = element("b", { textContent: state.regime ?? "", title: state.regime_hint ?? "" });
+    this.entries = new Map([["regime", this.regime], ...known.map((entry) => [entry[0], entryOf(entry, state)])]);
+    const [, ...others] = this.entries.values();
+    this.el.replaceChildren(this.regime, element("i", { className: "grow" }), ...others);
+    this.fit();
+  }
+
+  widthOf(name, entry) {
+    if (!this.fonts.has(name)) {
+      const { fontWeight, fontSize, fontFamily, paddingLeft, paddingRight } = getComputedStyle(entry);
+      const padding = parseFloat(paddingLeft) + parseFloat(paddingRight);
+      this.fonts.set(name, [`${fontWeight} ${fontSize} ${fontFamily}`, padding]);
+    }
+    const [font, padding] = this.fonts.get(name);
+    this.pen.font = font;
+    const before = name === "accuracy" ? "error: " : ""; // the style sheet's
+    return this.pen.measureText(before + entry.textContent).width + padding + this.gap;
+  }
+
+  fit() {
+    if (!this.entries || !(this.room > 0)) return;
+    const { state } = this;
+    for (const [name, entry] of this.entries) {
+      entry.hidden = false;
+      if (state[`${name}_shorter`]) entry.textContent = state[name];
+    }
+    if (PHONE.matches) return;
+    let need = this.gap; // beside what grows
+    for (const [name, entry] of this.entries) need += this.widthOf(name, entry);
+    const shorter = { accuracy: [...(state.accuracy_shorter ?? [])], regime: [...(state.regime_shorter ?? [])] };
+    for (const name of GIVES_WAY) {
+      const entry = this.entries.get(name);
+      if (need <= this.room || !entry) continue;
+      need -= this.widthOf(name, entry);
+      entry.hidden = !shorter[name];
+      if (entry.hidden) continue;
+      entry.textContent = shorter[name].shift() ?? entry.textContent;
+      need += this.widthOf(name, entry);
+    }
+    const { regime = "", regime_hint = "" } = state;
+    this.regime.title = this.regime.textContent === regime ? regime_hint : `${regime}. ${regime_hint}`;
+  }
 }
 
 // Says what motion there is now, once it has stood for a moment: a moving knob passes many.
@@ -45,7 +115,7 @@ export function render({ model }) {
     title: "It may take as long as the sentence says; a moved knob ends it.",
   });
   const sentence = element("div", { className: "sentence", role: "alert" }, words, insist, close);
-  const line = element("div", { className: "line" });
+  const line = new Line();
   const show = () => {
     const { state } = model;
     words.textContent = state.sentence ?? "";
@@ -53,14 +123,9 @@ export function render({ model }) {
     announce(state.regime ?? "");
     sentence.hidden = !state.sentence;
     insist.hidden = !state.insist;
-    const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");
-    line.replaceChildren(
-      element("b", { textContent: state.regime ?? "", title: state.regime_hint ?? "" }),
-      element("i", { className: "grow" }),
-      ...known.map((entry) => entryOf(entry, state)),
-    );
+    line.show(state);
   };
   model.on("state", show);
   show();
-  return element("div", { className: "part" }, sentence, line);
+  return element("div", { className: "part" }, sentence, line.el);
 }

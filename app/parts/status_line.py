@@ -25,19 +25,22 @@ def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[s
     `place` is where it lies on the curve from rest, None while there is none; `force` is the largest output force in
     words.
     """
+    regime = picture.regime.sentence
+    name = regime.split(",")[0]  # without the evidence
     return {
-        "regime": regime_words(picture, place),
+        "regime": regime_words(picture, place, regime),
+        "regime_shorter": [regime_words(picture, place, name), regime_words(picture, Place(""), name)],
         "regime_hint": regime_hint(picture),
         "start": f"from {picture.start}",
         **run_entries(picture.run, force),
     }
 
 
-def regime_words(picture: Settled, place: Place | None) -> str:
-    """The regime in words: strong pushes of the driver in how many periods, what the curve has here, the evidence."""
+def regime_words(picture: Settled, place: Place | None, regime: str) -> str:
+    """The motion in words: strong pushes of the driver in how many periods, what the curve has here, and its regime."""
     ready = "" if picture.final else "preview, "
     counted = place_words(pushes(picture.run), place)
-    return ready + (f"{counted}, " if counted else "") + picture.regime.sentence
+    return ready + (f"{counted}, " if counted else "") + regime
 
 
 def regime_hint(picture: Settled) -> str:
@@ -56,9 +59,8 @@ def error_words(error: float | None, before: str = "") -> str:
 
 
 def accuracy_words(run: Run) -> str:
-    """The accuracy asked for and reached, and the time that took."""
-    reached = error_words(run.error_estimate, "reached ")
-    return f"asked {short_error(run.scene.accuracy)} · {reached} · in {duration(run.cost.wall_s)}"
+    """The accuracy asked for and reached."""
+    return f"asked {short_error(run.scene.accuracy)} · {error_words(run.error_estimate, 'reached ')}"
 
 
 def force_hint(run: Run) -> str:
@@ -80,7 +82,8 @@ def run_entries(run: Run, force: str) -> dict[str, Any]:
     return {
         "force": f"{force} at the wall",
         "force_hint": force_hint(run),
-        "accuracy": accuracy_words(run),
+        "accuracy": f"{accuracy_words(run)} · in {duration(run.cost.wall_s)}",
+        "accuracy_shorter": [accuracy_words(run)],
         "accuracy_hint": errors_hint(run),
         "energy": "" if run.energy_residual is None else f"energy residual {short_error(run.energy_residual)}",
         "method": run.cost.method,

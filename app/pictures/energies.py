@@ -27,8 +27,9 @@ def energy_hover(time_unit: str, energy_unit: str) -> list[tuple[str, str]]:
 
 
 def bead_interval(beads: int, most: int) -> int:
-    """From one bead that has its number on the axis to the next, for about `most` numbers."""
-    return max(1, round(beads / most))
+    """From one bead that has its number on the axis to the next, a round number: at most `most` have theirs."""
+    decade = 10 ** int(math.log10(max(1, beads / most)))
+    return next(step * decade for step in (1, 2, 5, 10) if beads <= most * step * decade)
 
 
 def energy_bar(mapper: LinearColorMapper, theme: Theme) -> ColorBar:

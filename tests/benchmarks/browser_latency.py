@@ -1,6 +1,7 @@
 """How fast the page answers: slider step to painted settled picture, and frames and lag of the live mode.
 
     python tests/benchmarks/browser_latency.py [--steps 60] [--seconds 60] [--address URL]
+    python tests/benchmarks/browser_latency.py --drags          long tasks alone, while f, A0, D and k are dragged
 
 Every figure is taken in the browser: from the slider's key event to the end of the animation frame in which the
 new picture was painted. Steps after which the pixels of the energy map were still the old ones are counted.
@@ -10,9 +11,11 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import statistics
 import sys
 import tempfile
+import time
 from contextlib import nullcontext
 from itertools import pairwise
 from pathlib import Path
@@ -58,6 +61,7 @@ granchain.on("painted", (event) => {
   window.paintedOnce = null;
   if (once && !event.live) once();
   if (event.live && window.paintedLive) window.paintedLive(event);
+  window.pictures += 1;
 });
 """
 
@@ -72,6 +76,12 @@ async (seconds) => {
 }
 """
 
+LONG_TASKS = """
+window.longTasks = [];
+new PerformanceObserver((list) => { for (const one of list.getEntries()) longTasks.push(one.duration); })
+  .observe({ type: "longtask" });
+window.pictures = 0;
+"""
 
 DRAG = """
 async (seconds) => {
@@ -132,12 +142,36 @@ def live_figures(page: Page, seconds: float) -> dict[str, Any]:
             "lag_p95_ms": quantile(lags, 0.95), "gap_p95_ms": quantile(gaps, 0.95)}
 
 
+def dragged(page: Page, name: str, seconds: float) -> dict[str, Any]:
+    """A knob's slider dragged to and fro with the mouse, twice over a third of its length, and put back: pictures that
+    were painted, and the tasks of the page's main thread above 50 ms."""
+    slider = page.locator(f'[data-knob="{name}"] input[type="range"]')
+    box = slider.bounding_box()
+    assert box is not None
+    share = slider.evaluate("(one) => (one.value - one.min) / (one.max - one.min)")
+    home, y = box["x"] + 8 + share * (box["width"] - 16), box["y"] + box["height"] / 2
+    page.evaluate("longTasks.length = pictures = 0")
+    page.mouse.move(home, y)
+    page.mouse.down()
+    start = time.monotonic()
+    while (elapsed := time.monotonic() - start) < seconds:
+        x = home + 0.18 * box["width"] * math.sin(4 * math.pi * elapsed / seconds)
+        page.mouse.move(min(max(x, box["x"] + 4), box["x"] + box["width"] - 4), y)
+        time.sleep(1 / 60)
+    page.mouse.up()
+    tasks, pictures = page.evaluate("[longTasks, pictures]")
+    slider.dblclick()
+    page.wait_for_timeout(1500)
+    return {"pictures": pictures, "long_tasks": len(tasks), "longest_ms": max(tasks, default=None)}
+
+
 def main() -> None:
     """Print the figures as one JSON object."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--steps", type=int, default=60)
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--address", help="a dashboard that runs already")
+    parser.add_argument("--drags", action="store_true", help="only long tasks while knobs are dragged")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         served = nullcontext(options.address) if options.address else dashboard(Path(folder) / "log")
@@ -146,11 +180,13 @@ def main() -> None:
             page = browser.new_page(viewport={"width": 1280, "height": 800})
             page.goto(address)
             page.evaluate(FIND)
+            page.evaluate(LONG_TASKS)
             page.evaluate(LISTEN)
             page.wait_for_timeout(15_000)
-            figures = {"settled": settled_latency(page, options.steps),
-                       "drag_A0": curve_redraws(page, 10.0),
-                       "live": live_figures(page, options.seconds)}
+            figures = {"dragged": {name: dragged(page, name, 6.0) for name in ("f", "A0", "D", "k")}}
+            if not options.drags:
+                figures |= {"settled": settled_latency(page, options.steps), "drag_A0": curve_redraws(page, 10.0),
+                            "live": live_figures(page, options.seconds)}
             browser.close()
     print(json.dumps(figures, indent=2))
 

@@ -58,6 +58,16 @@ def test_kappa_is_shown_for_every_k_and_amplitude(visit: Visit) -> None:
     expect(page.locator("#knobs .aside")).to_contain_text("none")
 
 
+def test_a_knob_that_turns_nothing_says_so(visit: Visit) -> None:
+    """Without dissipation there is no D in the equation."""
+    page = visit("?v=1&scene=impact")
+    damping = page.locator('[data-knob="D"]')
+    expect(damping).to_contain_text("no effect: the law, under “more”, is “none”")
+    page.get_by_text("more", exact=True).first.click()
+    page.get_by_label("dissipation law").select_option("linear")
+    expect(damping).to_contain_text("0: contacts lose no energy")
+
+
 def test_wrong_values_get_their_sentence(visit: Visit) -> None:
     page = visit()
     settled(page)

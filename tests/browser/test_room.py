@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from knobs import COMPILED, Visit
+from knobs import COMPILED, Visit, settled, type_into
 from layout_faults import faults
 from playwright.sync_api import Page, expect
 from server import until
@@ -38,8 +38,18 @@ BEADS = """() => {
 }"""
 
 
+# Whether the title over each picture has one line, and all of its words or each its short form.
+OVER = """() => {
+  const titles = [...document.querySelectorAll("#stage .title")];
+  const line = parseFloat(getComputedStyle(titles[0]).lineHeight);
+  return titles.every((one) => one.offsetHeight < 1.5 * line) && new Set(titles.map((one) => one.className)).size === 1;
+}"""
+
+
 def titles_are_whole(page: Page) -> None:
-    """Wait until the titles of the axes and the numbers of the beads are not cut; their step follows the width."""
+    """Wait until the titles over the pictures have one line, as the axis below needs the second, and the titles of the
+    axes and the numbers of the beads are not cut; their step follows the width."""
+    page.wait_for_function(OVER)
     page.wait_for_function(f"({TITLES})().every(([title, room]) => title && room >= 0)")
     page.wait_for_function(f"({BEADS})() > 0")
 
@@ -87,6 +97,54 @@ def test_the_projector_has_whole_titles_and_on_a_phone_a_menu(visit: Visit) -> N
     page.set_viewport_size({"width": 2560, "height": 1440})
     expect(page.get_by_role("button", name="More controls")).to_be_hidden()
     expect(page.locator("select.scene option:checked")).to_have_text("sec2 — Section 2: eleven steel beads, driven")
+
+
+# Where each picture, the curve and the line at the bottom are; which words of the line are cut.
+BOXES = """() => ["#left", "#map", "#right", "#curve", "#foot"].map((one) => {
+  const { x, y, width, height } = document.querySelector(one).getBoundingClientRect();
+  return [x, y, width, height].map(Math.round);
+})"""
+CUT = "(line) => [line, ...line.children].filter((one) => one.scrollWidth > one.clientWidth + 1).map((one) => one.textContent)"
+
+
+@pytest.mark.parametrize("look", ["light", "projector"])
+def test_a_moved_knob_moves_no_picture(visit: Visit, look: str) -> None:
+    """However long the words for the motion are, and whichever marks the curve has: a figure of another size is laid out
+    anew, which took most of the time of every picture."""
+    page = visit(f"?v=1&scene=sec2&look={look}")
+    settled(page)
+    expect(page.locator("#foot b")).not_to_contain_text("being computed")
+    boxes, said = page.evaluate(BOXES), set()
+    for name, value in (("f", "1130"), ("f", "951.5"), ("f", "1300"), ("f", "2500"), ("D", "60"), ("f", "380"), ("A0", "0.1")):
+        type_into(page, name, value)
+        settled(page)
+        assert page.evaluate(BOXES) == boxes and page.locator("#foot .line").evaluate(CUT) == [], (name, value)
+        said.add(page.locator("#foot b").inner_text())
+    assert max(map(len, said)) > min(map(len, said)) + 20
+    expect(page.locator("#foot #method")).to_be_hidden()  # it gave way
+    page.set_viewport_size({"width": 2560, "height": 1440})
+    expect(page.locator("#foot #method")).to_be_visible()
+
+
+@pytest.mark.parametrize("look", ["light", "projector"])
+def test_what_the_paper_states_is_named_at_its_frequency(visit: Visit, look: str) -> None:
+    page = visit(f"?v=1&scene=rig&look={look}")
+    stated = page.locator(".chapters .stated")
+    expect(stated).to_have_text(["1:1", "1:1 anti", "1:2"])
+    page.wait_for_selector(".chapters .peak", timeout=COMPILED)
+    for width, height in ((1024, 768), *WIDTHS):
+        page.set_viewport_size({"width": width, "height": height})
+        fits(page)
+        for name in stated.all():
+            expect(name).to_be_visible()
+    page.set_viewport_size({"width": 1280, "height": 800})
+    page.get_by_role("button", name="stated in the paper: 1:1 anti-resonance at 90 Hz").click()
+    expect(page.locator('[data-knob="f"] input[type="text"]')).to_have_value("90")
+    choice = page.get_by_label("paper’s features")
+    choice.uncheck()
+    expect(stated).to_have_count(0)
+    page.locator("select.scene").select_option("sec2")
+    expect(choice).to_be_hidden()  # the paper's frequencies are of other beads
 
 
 def test_titles_and_words_follow_the_window(visit: Visit) -> None:

@@ -14,7 +14,7 @@ import granchain
 from app.dashboard.layout import Views
 from app.pages.observer.view import first_state
 from app.parts.energy import EnergyMap
-from app.pictures.energies import ENERGY_COLOURS
+from app.pictures.energies import ENERGY_COLOURS, bead_interval
 from app.session.session import Session
 from granchain import scene
 
@@ -27,6 +27,15 @@ def test_colours_follow_the_square_root_of_the_energy(share: float) -> None:
     step = 0.5 / (len(ENERGY_COLOURS) - 1)
     low, high = np.sqrt(max(share - step, 0.0)), np.sqrt(share + step)
     assert 255 * low - 0.5 <= place <= 255 * high + 0.5
+
+
+@pytest.mark.parametrize("most", [6, 12])
+def test_few_enough_beads_have_their_number_and_the_step_is_round(most: int) -> None:
+    """Thirty beads with fifteen numbers were written over one another."""
+    for beads in (*range(1, 400), 10_000):
+        step = bead_interval(beads, most)
+        assert beads // step <= most and str(step).rstrip("0") in ("1", "2", "5")
+        assert step == 1 or beads / step > most / 2.5, "and no fewer than need be"
 
 
 def test_the_page_and_a_file_have_the_same_colours_for_the_same_energy() -> None:
