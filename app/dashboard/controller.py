@@ -7,7 +7,6 @@ from functools import partial
 from typing import Any
 
 from bokeh.document import Document
-from panel.io import unlocked
 
 from granchain_core import BadInput, Scene, Settled, State
 
@@ -15,6 +14,8 @@ from ..curve.page import CurveController
 from ..parts.foundation import beside_kappa, foundation_words
 from ..parts.knobs import knob_state
 from ..pictures.theme import Theme
+from ..serve.changes import gathered
+from ..serve.channel import Channel
 from ..serve.compiler import COMPILER
 from ..serve.document_lock import with_document_lock
 from ..serve.meters import METERS
@@ -46,6 +47,7 @@ class Controller:
 
     def __init__(self, document: Document, session: Session, start: State | None = None) -> None:
         self._document = document
+        self._channel = Channel(document)
         self._left = False
         self._first_start = start
         METERS.visitors += 1
@@ -97,7 +99,7 @@ class Controller:
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
         if self._left:
             return
-        with unlocked():  # send all changes caused by one message as one patch
+        with gathered(self._document):
             try:
                 action(*arguments)
             except Exception as error:
@@ -106,12 +108,12 @@ class Controller:
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """Call `action` with the document locked, as soon as that is possible; this may be called from any thread."""
         if not self._left:
-            self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
+            self._channel.call_soon(partial(self._guarded, action, *arguments))
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
         """Call `action` with the document locked, so many seconds from now."""
         if not self._left:
-            self._document.add_timeout_callback(partial(self._guarded, action, *arguments), round(1e3 * seconds))
+            self._channel.call_later(seconds, partial(self._guarded, action, *arguments))
 
     def say(self, sentence: str) -> None:
         """Show the visitor one sentence until the next valid action; an empty one removes it."""

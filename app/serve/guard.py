@@ -22,6 +22,7 @@ from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 from .compressed import CompressedFiles
 from .message_rules import Refused, check
 from .meters import METERS
+from .part_messages import take
 
 log = logging.getLogger("granchain.requests")
 
@@ -164,9 +165,11 @@ class GuardedSocket(Guard):
                 return
             header, metadata, content = self._frames
             self._frames = ()
-            check(header, content)
+            asked = check(header, content)
         except Refused as reason:
             self._refuse(str(reason))
+            return
+        if take(getattr(self, "connection", None), asked):
             return
         for frame in (header, metadata, content):
             await super().on_message(frame)  # type: ignore[misc]
