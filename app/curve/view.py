@@ -19,6 +19,7 @@ from ..pictures.curve import DASHES, curve_columns, curve_tooltips
 from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..pictures.regimes import REGIMES, SYMBOLS, regime_key
 from ..pictures.theme import GREY
+from ..serve.changes import change
 from .pinned_curves import PinnedCurves
 
 
@@ -218,10 +219,10 @@ class Curve:
         if (shown, self._scale) == self._place:
             return
         self._shown, self._place = shown, (shown, self._scale)
-        self._current.location = frequency
+        change(self._current, location=frequency)
         factor = self._scale[0]
-        self._now.data = {"frequency": [frequency] if force is not None else [],
-                          "force": [force / factor] if force is not None else []}
+        change(self._now, data={"frequency": [frequency] if force is not None else [],
+                                "force": [force / factor] if force is not None else []})
 
     def features(self, features: Sequence[Feature]) -> None:
         """Draw vertical marks at the frequencies that the paper states; it states no forces."""
@@ -271,8 +272,8 @@ class Curve:
             self._pinned.draw(scale[0])
             if self._measurement is not None:
                 self.measured(self._measurement)
-        self.figure.y_range.end = 1.15 * high / scale[0]  # room for the names of the peaks
-        self.figure.yaxis[0].axis_label = f"output force ({scale[1]}N)"  # its heading says that it is the largest
+        change(self.figure.y_range, end=1.15 * high / scale[0])  # room for the names of the peaks
+        change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")  # its heading says that it is the largest
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}
@@ -290,4 +291,4 @@ class Curve:
                 sources[direction] = self._line(direction, grey=sources is self._old)
         if direction in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            sources[direction].data = curve_columns(ordered, self._scale[0])
+            change(sources[direction], data=curve_columns(ordered, self._scale[0]))
