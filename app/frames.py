@@ -119,6 +119,8 @@ _SERIES = tuple(field.name for field in fields(Frames)
 
 def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A force train as a line with vertical jumps (J, 2): each adds two points, at 0 and at the force reached."""
+    if not len(jumps):
+        return time, force
     places = np.searchsorted(time, jumps[:, 0])
     feet = np.zeros(len(jumps))
     twice = np.repeat(places, 2)

@@ -34,6 +34,7 @@ class Curve:
         self._before: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
         self._scale = (1.0, "")
         self._whole = False
+        self._ordered: tuple[np.ndarray, np.ndarray, list[int | None]] | None = None
         self._shown: tuple[float, float | None] = (0.0, None)
         self._place: tuple[object, ...] = ()
         self._now = ColumnDataSource({"frequency": [], "force": []})
@@ -145,6 +146,7 @@ class Curve:
 
     def add(self, direction: str, points: list[CurvePoint], covers: bool) -> None:
         """Add points; once they cover the range the grey curve is removed."""
+        self._ordered = None
         self._points[direction] += [point for point in points if np.isfinite(point.max_output_force)]
         if covers:
             self._before[direction] = []
@@ -194,10 +196,12 @@ class Curve:
         """Where a run lies on the whole curve from rest; None while there is none."""
         if not self._whole:
             return None
-        points = self.points("rest")
+        if self._ordered is None:
+            points = self.points("rest")
+            self._ordered = (np.array([p.frequency for p in points]), np.array([p.max_output_force for p in points]),
+                          [p.regime.period for p in points])
         transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
-        return place_of([p.frequency for p in points], [p.max_output_force for p in points],
-                        [p.regime.period for p in points], run.scene.f, run.max_output_force, transmission)
+        return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 
     def finished(self, direction: str) -> None:
         """All points of a direction are there."""

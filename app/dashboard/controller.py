@@ -19,7 +19,7 @@ from ..serve.channel import Channel
 from ..serve.compiler import COMPILER
 from ..serve.document_lock import with_document_lock
 from ..serve.meters import METERS
-from ..serve.socket_tuning import disable_nagle, gather_writes
+from ..serve.socket_tuning import disable_nagle
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.hooks import Actions, Page, all_actions
 from ..session.live import LiveRun
@@ -207,7 +207,6 @@ class Controller:
 
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
-        gather_writes(self._document)
         self.views.set_compact(bool(message.get("narrow")))
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.choose({"value": message.get("theme")})

@@ -10,7 +10,7 @@ import param
 from panel.custom import JSComponent
 
 from ..pictures.theme import Theme
-from .panel_shortcuts import WithCommonProperties, WithoutBusyIndicator, WithoutDesign, WithPlainChanges
+from .panel_shortcuts import WithCommonProperties, WithoutBusyIndicator, WithoutChildren, WithoutDesign, WithPlainChanges
 
 _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
 
@@ -20,7 +20,8 @@ def text(name: str) -> str:
     return _FILES[name].read_text(encoding="utf-8")
 
 
-class Component(WithPlainChanges, WithCommonProperties, WithoutDesign, WithoutBusyIndicator, JSComponent):
+class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, WithoutDesign, WithoutBusyIndicator,
+                JSComponent):
     """A part of the page. `state` is sent to the browser and kept; messages go both ways and are not kept.
 
     What the visitor does comes as messages, because Panel delays property changes by 50 ms and messages not at all.

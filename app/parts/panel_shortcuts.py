@@ -80,6 +80,25 @@ class WithCommonProperties:
         return found
 
 
+#: Classes of parts that have no part inside, as Panel found with their first instance.
+_CHILDLESS: set[type] = set()
+
+
+class WithoutChildren:
+    """A Panel component whose class is asked once whether it has other components inside, not each instance.
+
+    Panel looks at all 40 parameters of each. Where a release asks in another way, it is asked again.
+    """
+
+    def _get_children(self, *arguments: Any) -> Any:
+        if type(self) in _CHILDLESS:
+            return {}, []
+        found = super()._get_children(*arguments)  # type: ignore[misc]
+        if found == ({}, []):
+            _CHILDLESS.add(type(self))
+        return found
+
+
 class WithoutDesign:
     """A Panel component whose design is asked only when style sheets change: the one thing that it has a say in then.
 

@@ -25,24 +25,25 @@ def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[s
     `place` is where it lies on the curve from rest, None while there is none; `force` is the largest output force in
     words.
     """
+    pushed = pushes(picture.run)
     return {
-        "regime": regime_words(picture, place),
-        "regime_hint": regime_hint(picture),
+        "regime": regime_words(picture, pushed, place),
+        "regime_hint": regime_hint(picture, pushed),
         "start": f"from {picture.start}",
         **run_entries(picture.run, force),
     }
 
 
-def regime_words(picture: Settled, place: Place | None) -> str:
+def regime_words(picture: Settled, pushed: tuple[int, int] | None, place: Place | None) -> str:
     """The regime in words: strong pushes of the driver in how many periods, what the curve has here, the evidence."""
     ready = "" if picture.final else "preview, "
-    counted = place_words(pushes(picture.run), place)
+    counted = place_words(pushed, place)
     return ready + (f"{counted}, " if counted else "") + picture.regime.sentence
 
 
-def regime_hint(picture: Settled) -> str:
+def regime_hint(picture: Settled, pushed: tuple[int, int] | None) -> str:
     """What the ratio and the multiplier in the line mean; empty where it has neither."""
-    pushed, meanings = pushes(picture.run), []
+    meanings = []
     if pushed is not None:
         meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
     if "|μ|" in picture.regime.sentence:

@@ -27,8 +27,8 @@ from tornado.locks import Lock
 
 #: What a number may be in JavaScript without loss.
 _MOST_SAFE = 2**53 - 1
-#: Kinds of numbers that BokehJS has arrays of.
-_ARRAYS = frozenset(("float32", "float64", "int32", "uint8"))
+#: Kinds of numbers that BokehJS has arrays of, by NumPy's letters.
+_ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
 _NUMBERS = itertools.count(1)
 
 
@@ -72,7 +72,7 @@ class _Message:
             return [self.value(one) for one in value]
         if isinstance(value, dict):
             return {"type": "map", "entries": [[self.value(key), self.value(one)] for key, one in value.items()]}
-        if isinstance(value, np.ndarray) and value.shape and value.dtype.name in _ARRAYS:
+        if isinstance(value, np.ndarray) and value.shape and value.dtype.char in _ARRAYS:
             return self._array(value)
         raise _NotPlain
 
@@ -80,7 +80,7 @@ class _Message:
         name = f"a{len(self.arrays)}"
         self.arrays.append((name, np.ascontiguousarray(value).data.cast("B") if value.size else memoryview(b"")))
         return {"type": "ndarray", "array": {"type": "bytes", "data": {"id": name}}, "shape": list(value.shape),
-                "dtype": value.dtype.name, "order": sys.byteorder}
+                "dtype": _ARRAYS[value.dtype.char], "order": sys.byteorder}
 
 
 def _reference(model: Model | None) -> dict[str, str]:
@@ -185,7 +185,8 @@ def gathered(document: Document) -> Iterator[None]:
     """Send what is changed inside as one message. To be used with the document locked."""
     session = getattr(document.session_context, "session", None)
     callbacks = document.callbacks
-    if session is None or callbacks.hold_value is not None or not pn.state.loaded:
+    known = session is not None and hasattr(callbacks, "_held_events")
+    if not known or callbacks.hold_value is not None or not pn.state.loaded:
         yield
         return
     callbacks.hold("combine")
@@ -203,7 +204,8 @@ def _gathering(model: Model) -> Document | None:
     document = model.document
     if document is None or document.callbacks.hold_value is None:
         return None
-    return document
+    known = hasattr(document.callbacks, "_held_events") and hasattr(model, "_property_values")
+    return document if known else None
 
 
 def is_gathered(model: Model) -> bool:
