@@ -277,7 +277,8 @@ class Curve:
             if self._measurement is not None:
                 self.measured(self._measurement)
         change(self.figure.y_range, end=1.15 * high / scale[0])  # room for the names of the peaks
-        change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")  # its heading says that it is the largest
+        # Its heading says that it is the largest.
+        change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}

@@ -177,7 +177,7 @@ class Pictures:
                 if scene != self._session.insisted:
                     check_first_picture(scene)
             self._await_live_kernels(scene, stop)
-            with live.slot.held():
+            with live.slot.held(anew=True):
                 picture = live.advance(samples) if samples else live.step(self._session.speed)
             yield picture
 

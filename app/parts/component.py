@@ -10,7 +10,13 @@ import param
 from panel.custom import JSComponent
 
 from ..pictures.theme import Theme
-from .panel_shortcuts import WithCommonProperties, WithoutBusyIndicator, WithoutChildren, WithoutDesign, WithPlainChanges
+from .panel_shortcuts import (
+    WithCommonProperties,
+    WithoutBusyIndicator,
+    WithoutChildren,
+    WithoutDesign,
+    WithPlainChanges,
+)
 
 _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
 

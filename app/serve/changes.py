@@ -1,8 +1,8 @@
 """Changes of a document on their way to the browser: those of one action leave as one message, in one write.
 
 It is the message that Bokeh would send, written without going through the graph of the document's models. Values that
-are not plain, such as new models, are encoded by Bokeh. Tornado and Bokeh have no public way to what is used here; where
-a release has it no longer, changes leave as Bokeh sends them.
+are not plain, such as new models, are encoded by Bokeh. Tornado and Bokeh have no public way to what is used here;
+where a release has it no longer, changes leave as Bokeh sends them.
 """
 
 from __future__ import annotations
@@ -193,10 +193,9 @@ def gathered(document: Document) -> Iterator[None]:
     try:
         yield
     finally:
-        if getattr(document, "callbacks", None) is callbacks:  # the page is still there
-            events, callbacks._held_events = list(callbacks._held_events), []
-            callbacks.unhold()
-            _send(document, session, events)
+        events, callbacks._held_events = list(callbacks._held_events), []
+        callbacks.unhold()
+        _send(document, session, events)
 
 
 def _gathering(model: Model) -> Document | None:

@@ -27,6 +27,9 @@ from .meters import METERS
 
 log = logging.getLogger("granchain.page")
 
+#: What Bokeh is still writing: the loop itself keeps no task alive.
+_FINISHING: set[asyncio.Future[None]] = set()
+
 
 def session_of(document: Document) -> Any:
     """Bokeh's session of a page, None where there is none, or none that can be locked here."""
@@ -52,7 +55,9 @@ def _with_turn(session: Any, actions: list[Callable[[], None]], turn: Any) -> No
             pending = _act(session, actions)
     finally:
         if pending:
-            asyncio.ensure_future(_finish(pending, release))
+            task = asyncio.ensure_future(_finish(pending, release))
+            _FINISHING.add(task)
+            task.add_done_callback(_FINISHING.discard)
         else:
             with release:
                 pass

@@ -1,4 +1,4 @@
-"""Messages of the page's own parts, taken from the websocket to the part without Bokeh's decoding of a document's change.
+"""Messages of the page's own parts, taken from the websocket to the part without Bokeh's decoding of a change.
 
 All that a visitor does comes this way. What is not plainly such a message goes through Bokeh as before.
 """

@@ -1,7 +1,7 @@
 """How a page's sockets write: at once.
 
-Tornado and Bokeh have no public way to a page's streams. Where a release has none of these attributes, messages leave as
-the library sends them.
+Tornado and Bokeh have no public way to a page's streams. Where a release has none of these attributes, messages leave
+as the library sends them.
 """
 
 from __future__ import annotations
