@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import threading
+import weakref
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 
@@ -53,6 +56,22 @@ class Frames:
         """The largest output force in the picture, jumps included [N]."""
         return float(max(self.output_force.max(), self.output_jumps[:, 1].max(initial=-np.inf)))
 
+    @cached_property
+    def extremes(self) -> Extremes:
+        """The largest values; forces with the top of each jump, displacements with the driver's."""
+        places = np.concatenate([self.drive_displacement[:, None], self.displacement, np.zeros((self.rows, 1))], axis=1)
+        return Extremes(
+            input_force=float(max(self.input_force.max(), self.input_jumps[:, 1].max(initial=0.0))),
+            output_force=self.largest_output,
+            kinetic_energy=float(self.kinetic_energy.max()),
+            displacement=float(np.abs(places).max()),
+            overlap=float(max((places[:, :-1] - places[:, 1:]).max(), 0.0)))
+
+    @cached_property
+    def chain(self) -> np.ndarray:
+        """What the browser draws the chain from, in single precision: see `chain_series`."""
+        return drawn_values(chain_series(self.displacement, self.force, self.kinetic_energy, self.drive_displacement))
+
     @property
     def rows(self) -> int:
         """How many instants there are."""
@@ -83,16 +102,15 @@ class Extremes:
         return ((field.name, getattr(self, field.name)) for field in fields(self))
 
 
-def extremes_of(frames: Frames) -> Extremes:
-    """The largest values of a picture; forces with the top of each jump, displacements with the driver's."""
-    places = np.concatenate([frames.drive_displacement[:, None], frames.displacement,
-                             np.zeros((frames.rows, 1))], axis=1)
-    return Extremes(
-        input_force=float(max(frames.input_force.max(), frames.input_jumps[:, 1].max(initial=0.0))),
-        output_force=frames.largest_output,
-        kinetic_energy=float(frames.kinetic_energy.max()),
-        displacement=float(np.abs(places).max()),
-        overlap=float(max((places[:, :-1] - places[:, 1:]).max(), 0.0)))
+def chain_series(displacement: np.ndarray, force: np.ndarray, energy: np.ndarray,
+                 drive: np.ndarray) -> list[np.ndarray]:
+    """The series of one chain, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chain_series.js."""
+    return [series.ravel() for series in (displacement, force, energy, drive)]
+
+
+def drawn_values(series: Sequence[np.ndarray]) -> np.ndarray:
+    """Series one after the other in one array, because every array is two messages on the websocket."""
+    return np.concatenate(series, dtype=np.float32)
 
 
 _SERIES = tuple(field.name for field in fields(Frames)
@@ -101,6 +119,8 @@ _SERIES = tuple(field.name for field in fields(Frames)
 
 def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """A force train as a line with vertical jumps (J, 2): each adds two points, at 0 and at the force reached."""
+    if not len(jumps):
+        return time, force
     places = np.searchsorted(time, jumps[:, 0])
     feet = np.zeros(len(jumps))
     twice = np.repeat(places, 2)
@@ -143,6 +163,26 @@ def settled_frames(run: Run) -> Frames:
     pushed, passed = (np.concatenate([jumps_of(run, c) + shift for shift in shifts]) for c in (0, run.scene.N))
     return Frames(samples, time, **{name: getattr(run, name)[index] for name in _SERIES},
                   input_jumps=pushed, output_jumps=passed)
+
+
+_PREPARED: weakref.WeakKeyDictionary[Run, weakref.ref[Frames]] = weakref.WeakKeyDictionary()
+_LOCK = threading.Lock()
+
+
+def prepared_frames(run: Run) -> Frames:
+    """The frames of a settled run with all that every visitor's drawing needs, the same for all who show the run.
+
+    They are kept for as long as somebody keeps them. To be called in a thread, before the event loop draws.
+    """
+    with _LOCK:
+        known = _PREPARED.get(run)
+        frames = None if known is None else known()
+    if frames is None:
+        frames = settled_frames(run)
+        _ = frames.extremes, frames.chain
+        with _LOCK:
+            _PREPARED[run] = weakref.ref(frames)
+    return frames
 
 
 class LiveWindow:

@@ -6,6 +6,7 @@ import asyncio
 import gc
 import ipaddress
 import secrets
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -26,6 +27,7 @@ from .serve.bokeh_defaults import remember_defaults
 from .serve.compiler import COMPILER
 from .serve.guard import Rules, guard_handlers, guarded
 from .serve.meters import METERS, Liveness, Metrics
+from .serve.panel_pages import remember_resources
 from .serve.queues import PICTURES, SWEEPS
 from .serve.shared import Shared
 from .serve.turns import TURNS
@@ -33,6 +35,9 @@ from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * MOST_BYTES // 3 + 100_000
+#: For how long a thread of Python may keep the interpreter from the event loop [s]; 5 ms if not said. A move needs it
+#: some ten times. Measured with 60 visitors: 95 % answered within 0.84 s, and within 1.55 s with 5 ms.
+SWITCH = 5e-4
 #: Until a connection that sends nothing is closed [s]; a request's head must have come by then.
 IDLE = 60
 #: Until a request's body must have come [s], and its largest size [bytes]: only forms for signing in have one.
@@ -82,6 +87,8 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
     if hasattr(settings, "perform_error_diagnostics"):  # since 3.9: Panel asks for a missing name at every change
         settings.perform_error_diagnostics.set_value(False)
     remember_defaults()
+    remember_resources()
+    sys.setswitchinterval(SWITCH)
     gc.collect()
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
     server.start()

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from app.dashboard.scales import FILE
-from app.frames import Extremes, extremes_of, samples_for, settled_frames
+from app.frames import Extremes, samples_for, settled_frames
 from app.session.session import slider_range
 from granchain_core import Scene, scene, scene_names, settle
 
@@ -33,7 +33,7 @@ def over_frequencies(chain: Scene, points: int = POINTS) -> Extremes:
     found: Extremes | None = None
     for frequency in np.linspace(*slider_range(chain, "f"), points):
         at = chain.evolve(f=float(frequency))
-        here = extremes_of(settled_frames(settle(at, samples=samples_for(at)).run))
+        here = settled_frames(settle(at, samples=samples_for(at)).run).extremes
         found = here if found is None else found.widened(here)
     assert found is not None, "a range has points"
     return found

@@ -18,6 +18,7 @@ from ..parts.figure_style import OUTPUT, quiet_axis, quiet_plot, together
 from ..pictures.curve import DASHES, curve_columns, curve_tooltips
 from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..pictures.theme import GREY
+from ..serve.changes import change
 from .pinned_curves import PinnedCurves
 
 
@@ -32,6 +33,7 @@ class Curve:
         self._before: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
         self._scale = (1.0, "")
         self._whole = False
+        self._ordered: tuple[np.ndarray, np.ndarray, list[int | None]] | None = None
         self._shown: tuple[float, float | None] = (0.0, None)
         self._place: tuple[object, ...] = ()
         self._now = ColumnDataSource({"frequency": [], "force": []})
@@ -138,6 +140,7 @@ class Curve:
 
     def add(self, direction: str, points: list[CurvePoint], covers: bool) -> None:
         """Add points; once they cover the range the grey curve is removed."""
+        self._ordered = None
         self._points[direction] += [point for point in points if np.isfinite(point.max_output_force)]
         if covers:
             self._before[direction] = []
@@ -181,10 +184,12 @@ class Curve:
         """Where a run lies on the whole curve from rest; None while there is none."""
         if not self._whole:
             return None
-        points = self.points("rest")
+        if self._ordered is None:
+            points = self.points("rest")
+            self._ordered = (np.array([p.frequency for p in points]), np.array([p.max_output_force for p in points]),
+                          [p.regime.period for p in points])
         transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
-        return place_of([p.frequency for p in points], [p.max_output_force for p in points],
-                        [p.regime.period for p in points], run.scene.f, run.max_output_force, transmission)
+        return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 
     def finished(self, direction: str) -> None:
         """All points of a direction are there."""
@@ -206,10 +211,10 @@ class Curve:
         if (shown, self._scale) == self._place:
             return
         self._shown, self._place = shown, (shown, self._scale)
-        self._current.location = frequency
+        change(self._current, location=frequency)
         factor = self._scale[0]
-        self._now.data = {"frequency": [frequency] if force is not None else [],
-                          "force": [force / factor] if force is not None else []}
+        change(self._now, data={"frequency": [frequency] if force is not None else [],
+                                "force": [force / factor] if force is not None else []})
 
     def features(self, features: Sequence[Feature]) -> None:
         """Draw vertical marks at the frequencies that the paper states; it states no forces."""
@@ -260,9 +265,10 @@ class Curve:
             self._pinned.draw(scale[0])
             if self._measurement is not None:
                 self.measured(self._measurement)
-        # Room for the names of the peaks, and for those that the paper states above them.
-        self.figure.y_range.end = (1.3 if self._features.data["top"] else 1.15) * high / scale[0]
-        self.figure.yaxis[0].axis_label = f"output force ({scale[1]}N)"  # its heading says that it is the largest
+            # Room for the names of the peaks, and for those that the paper states above them.
+            change(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
+            # Its heading says that it is the largest.
+            change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}
@@ -280,4 +286,4 @@ class Curve:
                 sources[direction] = self._line(direction, grey=sources is self._old)
         if direction in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            sources[direction].data = curve_columns(ordered, self._scale[0])
+            change(sources[direction], data=curve_columns(ordered, self._scale[0]))

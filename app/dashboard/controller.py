@@ -7,17 +7,18 @@ from functools import partial
 from typing import Any
 
 from bokeh.document import Document
-from panel.io import unlocked
 
 from granchain_core import BadInput, Scene, Settled, State
 
 from ..curve.page import CurveController
 from ..parts.knobs import beside_knobs, knob_state
 from ..pictures.theme import Theme
+from ..serve.changes import gathered
+from ..serve.channel import Channel
 from ..serve.compiler import COMPILER
 from ..serve.document_lock import with_document_lock
 from ..serve.meters import METERS
-from ..serve.socket_tuning import disable_nagle, gather_writes
+from ..serve.socket_tuning import disable_nagle
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.hooks import Actions, Page, all_actions
 from ..session.live import LiveRun
@@ -45,6 +46,7 @@ class Controller:
 
     def __init__(self, document: Document, session: Session, start: State | None = None) -> None:
         self._document = document
+        self._channel = Channel(document)
         self._left = False
         self._first_start = start
         METERS.visitors += 1
@@ -96,7 +98,7 @@ class Controller:
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
         if self._left:
             return
-        with unlocked():  # send all changes caused by one message as one patch
+        with gathered(self._document):
             try:
                 action(*arguments)
             except Exception as error:
@@ -105,12 +107,12 @@ class Controller:
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """Call `action` with the document locked, as soon as that is possible; this may be called from any thread."""
         if not self._left:
-            self._document.add_next_tick_callback(partial(self._guarded, action, *arguments))
+            self._channel.call_soon(partial(self._guarded, action, *arguments))
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
         """Call `action` with the document locked, so many seconds from now."""
         if not self._left:
-            self._document.add_timeout_callback(partial(self._guarded, action, *arguments), round(1e3 * seconds))
+            self._channel.call_later(seconds, partial(self._guarded, action, *arguments))
 
     def say(self, sentence: str) -> None:
         """Show the visitor one sentence until the next valid action; an empty one removes it."""
@@ -204,7 +206,6 @@ class Controller:
 
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
-        gather_writes(self._document)
         self.views.set_compact(bool(message.get("narrow")))
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.choose({"value": message.get("theme")})

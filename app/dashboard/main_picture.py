@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from functools import partial
@@ -14,7 +15,7 @@ import numpy as np
 from granchain_core import Cancelled, OverBudget, Run, Scene, Settled, State, settling
 from granchain_core.warm import FIXED_STEP
 
-from ..frames import samples_for
+from ..frames import Frames, prepared_frames, samples_for
 from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
 from ..serve.meters import METERS
 from ..serve.pacing import FramePacer
@@ -84,6 +85,8 @@ class Pictures:
         self._newest: Settled | LivePicture | None = None
         self._shown: Settled | LivePicture | None = None
         self._asked: float | None = None
+        #: Frames of the last pictures, so that they are prepared once.
+        self._frames: deque[Frames] = deque(maxlen=2)
 
     @property
     def busy(self) -> bool:
@@ -138,7 +141,8 @@ class Pictures:
             check_first_picture(scene)
         self._await_live_kernels(scene, stop)
         origin = start or self._session.previous_state(scene)
-        self._host.next_tick(self._begun_from, origin)
+        if origin is not self._session.started_from:
+            self._host.next_tick(self._begun_from, origin)
         key = None if origin is not None or scene == self._session.insisted else scene
         most = math.inf if scene == self._session.insisted else WHOLE_PICTURE
         with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, origin, most), stop,
@@ -173,13 +177,15 @@ class Pictures:
                 if scene != self._session.insisted:
                     check_first_picture(scene)
             self._await_live_kernels(scene, stop)
-            with live.slot.held():
+            with live.slot.held(anew=True):
                 picture = live.advance(samples) if samples else live.step(self._session.speed)
             yield picture
 
     def _found(self, picture: object) -> None:
         """Keep a new picture for the event loop; it replaces one that a busy loop has not looked at yet."""
         assert isinstance(picture, (Settled, LivePicture))
+        if isinstance(picture, Settled):
+            self._frames.append(prepared_frames(picture.run))
         with self._lock:
             first, self._newest = self._newest is None, picture
         if first:

@@ -15,7 +15,7 @@ from functools import cache
 from granchain_core import Scene
 from granchain_core.scene import ASSETS
 
-from ..frames import Extremes, Frames, extremes_of
+from ..frames import Extremes, Frames
 from ..session.session import Session
 
 FILE = ASSETS / "scales.toml"
@@ -47,7 +47,7 @@ class Scales:
 
     def of(self, frames: Frames, scene: Scene) -> Extremes:
         """The largest values that a picture of `scene` is drawn to."""
-        here = extremes_of(frames)
+        here = frames.extremes
         if self._scene != scene.name:
             self._scene, self._largest = scene.name, _of_scenes()[scene.name]
         if self.fit:

@@ -5,30 +5,29 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from panel.io import unlocked
 
 from granchain_core import Scene, Settled
 
 from ..format import prefixed
-from ..frames import Frames, extremes_of, round_up, settled_frames
+from ..frames import Frames, prepared_frames, round_up
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
+from ..serve.changes import change
 from ..session.live import LivePicture
 from .layout import Views
 
 
 def show_settled(views: Views, number: int, picture: Settled) -> None:
     """Show a settled picture: whole periods, which the browser replays."""
-    frames = settled_frames(picture.run)
+    frames = prepared_frames(picture.run)
     factor, letter = prefixed(float(frames.time[-1]))
-    with unlocked():
-        views.trains.left.yaxis.axis_label = f"time ({letter}s){_periods_shown(frames, picture.run.scene)}"
-        _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s",
-              (picture.run.max_input_force, picture.run.max_output_force), final=picture.final)
-        views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
-        views.shown = picture
-        views.status_line.update_state(**settled_entries(
-            picture, views.curve.place(picture.run), views.trains.output_words(picture.run.max_output_force)))
+    views.trains.name_time(f"time ({letter}s){_periods_shown(frames, picture.run.scene)}")
+    _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s",
+          (picture.run.max_input_force, picture.run.max_output_force), final=picture.final)
+    views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
+    views.shown = picture
+    views.status_line.update_state(**settled_entries(
+        picture, views.curve.place(picture.run), views.trains.output_words(picture.run.max_output_force)))
 
 
 def show_regime(views: Views) -> None:
@@ -46,14 +45,13 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
     unit, since = "drive periods", f"drive period {picture.periods:.0f}"
     if not run.scene.is_driven:
         unit, since = "1/f", f"{1e3 * picture.periods / run.scene.f:.0f} ms after the start"
-    with unlocked():
-        views.trains.left.yaxis.axis_label = f"time ({unit} before now)"
-        here = extremes_of(frames)
-        _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force),
-              live=True, running=running)
-        views.curve.now(run.scene.knobs["f"], frames.largest_output)
-        views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
-                                       **run_entries(run, views.trains.output_words(run.max_output_force)))
+    views.trains.name_time(f"time ({unit} before now)")
+    here = frames.extremes
+    _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force),
+          live=True, running=running)
+    views.curve.now(run.scene.knobs["f"], frames.largest_output)
+    views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
+                                   **run_entries(run, views.trains.output_words(run.max_output_force)))
 
 
 def _periods_shown(frames: Frames, scene: Scene) -> str:
@@ -64,7 +62,7 @@ def _periods_shown(frames: Frames, scene: Scene) -> str:
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
           largest: tuple[float, float], live: bool = False, running: bool = False, final: bool = False) -> None:
-    views.time.update(start=float(time[-1]), end=float(time[0]))
+    change(views.time, start=float(time[-1]), end=float(time[0]))
     high = views.scales.of(frames, scene)
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
     views.trains.update(frames, time, high)

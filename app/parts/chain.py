@@ -10,7 +10,7 @@ import numpy as np
 from granchain_core import Scene
 
 from ..format import prefixed
-from ..frames import Extremes, Frames
+from ..frames import Extremes, Frames, chain_series, drawn_values
 from ..scripts import module
 from ..session.share import EXTRAS, encode
 from .component import Component, text
@@ -39,7 +39,6 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, f
     are the largest input and output force in words, and their units. No better picture of these knobs follows a
     `final` one.
     """
-    rows = slice(-1, None) if running else slice(None)
     return {
         "type": "frames",
         "number": number,
@@ -59,11 +58,14 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, f
         "scale": None if fit else {"largest": scale.displacement, "overlap": scale.overlap,
                                    "force": max(scale.input_force, scale.output_force)},
         "sent": time.time(),
-        # One array, because every array is two messages on the websocket.
-        "values": np.concatenate(chain_series(frames.displacement[rows], frames.force[rows],
-                                              frames.kinetic_energy[rows], frames.drive_displacement[rows]),
-                                 dtype=np.float32),
+        "values": _present(frames) if running else frames.chain,
     }
+
+
+def _present(frames: Frames) -> np.ndarray:
+    """The last row alone."""
+    return drawn_values(chain_series(frames.displacement[-1:], frames.force[-1:], frames.kinetic_energy[-1:],
+                                     frames.drive_displacement[-1:]))
 
 
 def energy_labels(high: float) -> list[str]:
@@ -78,9 +80,3 @@ def energy_labels(high: float) -> list[str]:
 def drawn_chain(scene: Scene) -> dict[str, Any]:
     """What chain_drawing.js draws of a chain besides its motion."""
     return {"beads": scene.N, "radii": [bead.radius for bead in scene.beads], "foundation": scene.k > 0.0}
-
-
-def chain_series(displacement: np.ndarray, force: np.ndarray, energy: np.ndarray,
-                 drive: np.ndarray) -> list[np.ndarray]:
-    """The series of one chain, (T, N), (T, N + 1), (T, N) and (T,), in the order of `unpack` in chain_series.js."""
-    return [series.ravel() for series in (displacement, force, energy, drive)]

@@ -10,7 +10,13 @@ import param
 from panel.custom import JSComponent
 
 from ..pictures.theme import Theme
-from .panel_shortcuts import WithCommonProperties, WithoutBusyIndicator, WithoutDesign
+from .panel_shortcuts import (
+    WithCommonProperties,
+    WithoutBusyIndicator,
+    WithoutChildren,
+    WithoutDesign,
+    WithPlainChanges,
+)
 
 _FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
 
@@ -20,7 +26,8 @@ def text(name: str) -> str:
     return _FILES[name].read_text(encoding="utf-8")
 
 
-class Component(WithCommonProperties, WithoutDesign, WithoutBusyIndicator, JSComponent):
+class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, WithoutDesign, WithoutBusyIndicator,
+                JSComponent):
     """A part of the page. `state` is sent to the browser and kept; messages go both ways and are not kept.
 
     What the visitor does comes as messages, because Panel delays property changes by 50 ms and messages not at all.
@@ -36,17 +43,24 @@ class Component(WithCommonProperties, WithoutDesign, WithoutBusyIndicator, JSCom
 
     def send(self, **message: Any) -> None:
         """Send a message to this part in the browser."""
-        self._send_msg(message)
+        if not self.told(message):
+            self._send_msg(message)
 
     def apply_theme(self, theme: Theme) -> None:
         """Draw the figures in another theme; a part without figures needs only its style sheet."""
 
     def update_state(self, **changes: Any) -> None:
         """Change some entries of `state`."""
-        merged = {**self.state, **changes}
-        if merged != self.state:
-            self.state = merged
+        before = self.state
+        if any(name not in before or before[name] != value for name, value in changes.items()):
+            merged = {**before, **changes}
+            if not self.changed("state", merged):
+                self.state = merged
 
-    def _handle_msg(self, data: Any) -> None:
+    def heard(self, data: Any) -> None:
+        """Take a message of this part in the browser."""
         if self._received is not None and isinstance(data, dict):
             self._received(data)
+
+    def _handle_msg(self, data: Any) -> None:
+        self.heard(data)

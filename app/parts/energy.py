@@ -8,6 +8,7 @@ from bokeh.models import ColumnDataSource, HoverTool, Image, Plot, Range1d, Sing
 from ..format import prefixed
 from ..frames import Frames
 from ..pictures.energies import bead_interval, energy_hover, energy_mapper
+from ..serve.changes import change
 from .figure_style import GAP, quiet_plot
 
 
@@ -23,7 +24,8 @@ class EnergyMap:
     def _build(self, time: Range1d) -> Plot:
         plot = quiet_plot((GAP, GAP), (12, 6), ("above", None), (), name="kinetic energy", y_range=time,
                           x_range=Range1d(0.5, 11.5))
-        plot.xaxis[0].ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)
+        self._axis = plot.xaxis[0]
+        self._axis.ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)
         image = plot.add_glyph(self._source, Image(image="image", x="x", y="y", dw="dw", dh="dh",
                                                    color_mapper=self._mapper))
         self._hover = HoverTool(renderers=[image], tooltips=energy_hover("", ""))
@@ -33,22 +35,22 @@ class EnergyMap:
     def set_compact(self, narrow: bool) -> None:
         """Number fewer beads where there is little room."""
         self._narrow = narrow
-        self.figure.xaxis[0].axis_label = "bead" if narrow else "bead, numbered as above"
-        self.figure.xaxis[0].ticker.interval = bead_interval(self._beads, 6 if narrow else 12)
+        change(self._axis, axis_label="bead" if narrow else "bead, numbered as above")
+        change(self._axis.ticker, interval=bead_interval(self._beads, 6 if narrow else 12))
 
     def update(self, frames: Frames, time: np.ndarray, unit: str, high: float) -> None:
         """Show `frames`, whose rows are at `time` (in `unit`), in colours that end at `high` [J]."""
         factor, letter = prefixed(high)
         step = float(time[1] - time[0])
-        self._source.data = {
+        change(self._source, data={
             "image": [np.asarray(frames.kinetic_energy / factor, dtype=np.float32)],
             "x": [0.5],
             "y": [float(time[0]) - step / 2],
             "dw": [frames.beads],
             "dh": [step * frames.rows],
-        }
-        self._mapper.high = high / factor
-        self.figure.x_range.end = frames.beads + 0.5
+        })
+        change(self._mapper, high=high / factor)
+        change(self.figure.x_range, end=frames.beads + 0.5)
         self._beads = frames.beads
         self.set_compact(self._narrow)
-        self._hover.tooltips = energy_hover(unit, f"{letter}J")
+        change(self._hover, tooltips=energy_hover(unit, f"{letter}J"))

@@ -1,4 +1,4 @@
-"""What a part of the page leaves out of Panel's work: properties, design and busy indicator, each a mixin.
+"""What a part of the page leaves out of Panel's work: properties, design, busy indicator and changes, each a mixin.
 
 They override private methods of Panel; where a release has other ones, Panel's own way is taken.
 """
@@ -14,10 +14,17 @@ from bokeh.model import Model, collect_models
 from bokeh.models import ImportedStyleSheet
 from panel.reactive import Syncable
 
+from ..serve.changes import change, is_gathered, tell
+
 try:
     from panel.io.state import set_curdoc
 except ImportError:  # it is not in Panel's documentation
     set_curdoc = None  # type: ignore[assignment]
+
+try:
+    from panel.models.esm import ESMEvent
+except ImportError:  # nor is this
+    ESMEvent = None  # type: ignore[assignment,misc]
 
 
 class _Common(NamedTuple):
@@ -73,6 +80,25 @@ class WithCommonProperties:
         return found
 
 
+#: Classes of parts that have no part inside, as Panel found with their first instance.
+_CHILDLESS: set[type] = set()
+
+
+class WithoutChildren:
+    """A Panel component whose class is asked once whether it has other components inside, not each instance.
+
+    Panel looks at all 40 parameters of each. Where a release asks in another way, it is asked again.
+    """
+
+    def _get_children(self, *arguments: Any) -> Any:
+        if type(self) in _CHILDLESS:
+            return {}, []
+        found = super()._get_children(*arguments)  # type: ignore[misc]
+        if found == ({}, []):
+            _CHILDLESS.add(type(self))
+        return found
+
+
 class WithoutDesign:
     """A Panel component whose design is asked only when style sheets change: the one thing that it has a say in then.
 
@@ -102,3 +128,31 @@ class WithoutBusyIndicator:
             return
         with set_curdoc(doc):
             handle(event)
+
+
+class WithPlainChanges:
+    """A Panel component that is shown once, whose messages and plain values go straight to its model.
+
+    Panel takes each through Param's watchers, its own queues and a search of the documents in which a component is
+    shown. `told` and `changed` return False where that way has to be taken: before the page is connected, or with a
+    release that keeps models or values elsewhere.
+    """
+
+    def _shown(self) -> Model | None:
+        models = list(getattr(self, "_models", {}).values())
+        return models[0][0] if len(models) == 1 else None
+
+    def told(self, message: dict[str, Any]) -> bool:
+        """Send a message to the part in the browser, if that can be done here."""
+        model = self._shown()
+        return model is not None and ESMEvent is not None and tell(model, ESMEvent(model=model, data=message))
+
+    def changed(self, name: str, value: Any) -> bool:
+        """Give a property of the part another value here and in the browser, if that can be done here."""
+        data = getattr(self._shown(), "data", None)
+        values = getattr(getattr(self, "_param__private", None), "values", None)
+        if not isinstance(data, Model) or not isinstance(values, dict) or not is_gathered(data):
+            return False
+        values[name] = value
+        change(data, **{name: value})
+        return True

@@ -25,27 +25,27 @@ def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[s
     `place` is where it lies on the curve from rest, None while there is none; `force` is the largest output force in
     words.
     """
-    regime = picture.regime.sentence
+    regime, pushed = picture.regime.sentence, pushes(picture.run)
     name = regime.split(",")[0]  # without the evidence
     return {
-        "regime": regime_words(picture, place, regime),
-        "regime_shorter": [regime_words(picture, place, name), regime_words(picture, Place(""), name)],
-        "regime_hint": regime_hint(picture),
+        "regime": regime_words(picture, pushed, place, regime),
+        "regime_shorter": [regime_words(picture, pushed, place, name), regime_words(picture, pushed, Place(""), name)],
+        "regime_hint": regime_hint(picture, pushed),
         "start": f"from {picture.start}",
         **run_entries(picture.run, force),
     }
 
 
-def regime_words(picture: Settled, place: Place | None, regime: str) -> str:
+def regime_words(picture: Settled, pushed: tuple[int, int] | None, place: Place | None, regime: str) -> str:
     """The motion in words: strong pushes of the driver in how many periods, what the curve has here, and its regime."""
     ready = "" if picture.final else "preview, "
-    counted = place_words(pushes(picture.run), place)
+    counted = place_words(pushed, place)
     return ready + (f"{counted}, " if counted else "") + regime
 
 
-def regime_hint(picture: Settled) -> str:
+def regime_hint(picture: Settled, pushed: tuple[int, int] | None) -> str:
     """What the ratio and the multiplier in the line mean; empty where it has neither."""
-    pushed, meanings = pushes(picture.run), []
+    meanings = []
     if pushed is not None:
         meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
     if "|μ|" in picture.regime.sentence:

@@ -17,6 +17,7 @@ from ..format import in_words, prefixed
 from ..frames import Extremes, Frames, round_up
 from ..pictures.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, Look, columns, force_columns
 from ..pictures.theme import GREY
+from ..serve.changes import change
 from .figure_style import GAP, LEFT, quiet_axis, quiet_plot
 from .measured_trains import MeasuredTrains
 from .pinned_trains import PinnedTrains
@@ -49,6 +50,8 @@ class Trains:
         self._factors = (1.0, 1.0)
         self.left = self._left_figure(time)
         self.right = self._right_figure(time)
+        self._axes = [*self.left.xaxis, *self.right.xaxis]
+        self._time_axis = self.left.yaxis[0]
         self._pinned = PinnedTrains(self.left, self.right)
         self._measured = MeasuredTrains(self.left, self.right, GREY)
 
@@ -89,19 +92,23 @@ class Trains:
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
         out, out_letter = prefixed(max(map(abs, output_range)))
-        self._source.data = columns(time, drive=(frames.drive_displacement, drive),
-                                    elastic=(frames.output_force_elastic, out))
-        self._input.data = force_columns(time, frames.input_force, push, frames.input_jumps, scale)
-        self._output.data = force_columns(time, frames.output_force, out, frames.output_jumps, scale)
+        change(self._source, data=columns(time, drive=(frames.drive_displacement, drive),
+                                          elastic=(frames.output_force_elastic, out)))
+        change(self._input, data=force_columns(time, frames.input_force, push, frames.input_jumps, scale))
+        change(self._output, data=force_columns(time, frames.output_force, out, frames.output_jumps, scale))
         shown = 0.0 if frames.time[-1] == 0.0 else float(frames.time[-1])
         self._pinned.update(shown, scale, push, out)
         self._measured.update(shown, scale, push, out, drive)
         edge = 1.15 * drive_high / drive
-        self.left.extra_x_ranges["drive"].update(start=-edge, end=edge)
-        self.left.x_range.update(start=input_range[0] / push, end=input_range[1] / push)
-        self.right.x_range.update(start=output_range[0] / out, end=output_range[1] / out)
+        change(self.left.extra_x_ranges["drive"], start=-edge, end=edge)
+        change(self.left.x_range, start=input_range[0] / push, end=input_range[1] / push)
+        change(self.right.x_range, start=output_range[0] / out, end=output_range[1] / out)
         self._units, self._factors = (f"{drive_letter}m", f"{push_letter}N", f"{out_letter}N"), (push, out)
         self._write_titles()
+
+    def name_time(self, title: str) -> None:
+        """The title of the axis of time."""
+        change(self._time_axis, axis_label=title)
 
     def peak_words(self, largest: tuple[float, float]) -> list[tuple[str, str]]:
         """The largest input and output force [N] of the picture in words, and the units of their axes."""
@@ -128,14 +135,13 @@ class Trains:
     def set_compact(self, narrow: bool) -> None:
         """Fewer ticks and shorter titles where there is little room."""
         self._narrow = narrow
-        for axis in (*self.left.xaxis, *self.right.xaxis):
+        for axis in self._axes:
             axis.ticker.desired_num_ticks = 2 if narrow else 3
         self._write_titles()
 
     def _write_titles(self) -> None:
-        axes = (*self.left.xaxis, *self.right.xaxis)
-        for axis, look, unit in zip(axes, _AXES, self._units, strict=True):
-            axis.axis_label = look.label(unit, self._narrow)
+        for axis, look, unit in zip(self._axes, _AXES, self._units, strict=True):
+            change(axis, axis_label=look.label(unit, self._narrow))
 
     def thicken(self, factor: float) -> None:
         """Wider lines for the projector."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 import logging
 import secrets
 import time
+from collections.abc import Awaitable
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import Any
@@ -22,6 +23,7 @@ from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 from .compressed import CompressedFiles
 from .message_rules import Refused, check
 from .meters import METERS
+from .part_messages import take
 
 log = logging.getLogger("granchain.requests")
 
@@ -147,10 +149,10 @@ class GuardedSocket(Guard):
         if not self.rules.connects(session):
             raise HTTPError(403, "a second connection to one session")
 
-    async def on_message(self, fragment: str | bytes) -> None:
+    def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
         """Pass whole messages on, unless there are too many or one is not of a page; that closes the connection."""
         if self._refused:  # what was under way when the connection was closed
-            return
+            return None
         now = time.monotonic()
         self._tokens = min(FRAMES_AT_ONCE, self._tokens + (now - self._at) * FRAMES_A_SECOND) - 1.0
         self._at = now
@@ -161,14 +163,16 @@ class GuardedSocket(Guard):
                 raise Refused("binary data")
             self._frames = (*self._frames, fragment)
             if len(self._frames) < 3:
-                return
-            header, metadata, content = self._frames
-            self._frames = ()
-            check(header, content)
+                return None
+            frames, self._frames = self._frames, ()
+            asked = check(frames[0], frames[2])
         except Refused as reason:
             self._refuse(str(reason))
-            return
-        for frame in (header, metadata, content):
+            return None
+        return None if take(getattr(self, "connection", None), asked) else self._to_bokeh(frames)
+
+    async def _to_bokeh(self, frames: tuple[str, ...]) -> None:
+        for frame in frames:
             await super().on_message(frame)  # type: ignore[misc]
 
     def _refuse(self, reason: str) -> None:

@@ -24,8 +24,8 @@ class Refused(Exception):
     """A message that no page of ours sends; the text says why."""
 
 
-def check(header: str, content: str) -> None:
-    """Raise `Refused` for a message that is not let through."""
+def check(header: str, content: str) -> dict[str, Any]:
+    """The content of a message; raise `Refused` for one that is not let through."""
     asked = _object("header", header)
     if not isinstance(asked.get("msgid"), str) or asked.get("msgtype") not in KINDS:
         raise Refused("unknown kind of message")
@@ -33,7 +33,7 @@ def check(header: str, content: str) -> None:
         raise Refused("binary data")
     given = _object("content", content)
     if asked["msgtype"] == "PULL-DOC-REQ":
-        return
+        return given
     events = given.get("events")
     if not isinstance(events, list) or not events:
         raise Refused("no events")
@@ -42,6 +42,7 @@ def check(header: str, content: str) -> None:
             raise Refused("unknown kind of event")
         for value in event.values():
             _check_value(value, DEEPEST)
+    return given
 
 
 def _object(what: str, text: str) -> dict[str, Any]:

@@ -8,6 +8,7 @@ queues of its own, because a picture must never wait for it.
 from __future__ import annotations
 
 import heapq
+import logging
 import os
 import sys
 import threading
@@ -24,32 +25,33 @@ from .turns import CpuTime, SchedulerSlot
 
 Result = TypeVar("Result")
 
+log = logging.getLogger("granchain")
+
 
 class Queue:
     """Work of one kind, first come, first served, on at most so many threads, which begin when they are needed.
 
     The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. On Linux
     those of a `patient` queue, with the threads that they begin, run when no picture needs the processor.
+
+    Each piece of work has its thread from the beginning, or waits because there is none: a thread that has been given
+    something and has not begun yet must not count as free, or what comes then waits for as long as that takes.
     """
 
     def __init__(self, name: str, workers: int, patient: bool = False) -> None:
         self.name = name
         self._workers = workers
         self._patient = patient
-        self._waiting: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
-        self._idle = 0
+        self._free = 0  # threads that nothing has been given to
+        self.waiting = 0  # work that waits for a thread
         self._lock = threading.Lock()
-
-    @property
-    def waiting(self) -> int:
-        """How much work waits for a thread."""
-        return self._waiting.qsize()
 
     @property
     def busy(self) -> int:
         """How many threads are at work."""
-        return len(self._threads) - self._idle
+        return len(self._threads) - self._free
 
     def submit(self, work: Callable[..., Result], *arguments: object) -> Future[Result]:
         """Call `work` as soon as a thread is free; the future has what it returns or raises."""
@@ -62,25 +64,29 @@ class Queue:
                 future.set_exception(error)
 
         with self._lock:
-            self._waiting.put(do)
-            if self._waiting.qsize() > self._idle and len(self._threads) < self._workers:
+            self._given.put(do)
+            if self._free:
+                self._free -= 1
+            elif len(self._threads) < self._workers:
                 thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {len(self._threads)}")
                 self._threads.append(thread)
-                self._idle += 1
                 thread.start()
+            else:
+                self.waiting += 1
         return future
 
     def _serve(self) -> None:
         if self._patient and sys.platform == "linux":  # elsewhere it would be the whole process
             os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _PATIENT)
         while True:
-            work = self._waiting.get()
-            with self._lock:
-                self._idle -= 1
+            work = self._given.get()
             work()
             del work  # a thread that waits keeps nothing of the visitor it served last
             with self._lock:
-                self._idle += 1
+                if self.waiting:
+                    self.waiting -= 1
+                else:
+                    self._free += 1
 
 
 #: Niceness of threads that let pictures go first.
@@ -228,5 +234,12 @@ class LatestWins:
                 METERS.cancelled += 1
                 continue
             except Exception as error:
-                if not self._closed:
-                    self._fail(error)
+                self._report(error)
+
+    def _report(self, error: Exception) -> None:
+        """Tell of a failure; where that fails, too, the next computation must still begin."""
+        try:
+            if not self._closed:
+                self._fail(error)
+        except Exception:
+            log.exception("a failure could not be told to its page")

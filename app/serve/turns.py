@@ -1,7 +1,9 @@
 """Fair turns: of the visitors whose pictures wait, the one that has used least time computes next.
 
 Kernels run without the interpreter's lock, so as many computations as there are cores go on at once. Each gives its
-turn up at its pauses, some hundredths of a second apart, if a visitor waits that has used less.
+turn up at its pauses, some hundredths of a second apart, if a visitor waits that has used less. A computation that has
+just begun, which is what a visitor sees first, goes before all that only make a picture better; one that has waited for
+half a second has the same right.
 """
 
 from __future__ import annotations
@@ -17,6 +19,11 @@ from typing import TypeVar
 from granchain_core.stop import Stop
 
 Result = TypeVar("Result")
+
+#: Processor time for which a computation has just begun [s]: that of a first picture of some ten beads.
+_BEGINNING = 0.03
+#: After so long a wait a computation has the same right as one that has just begun [s].
+_LONGEST_WAIT = 0.5
 
 #: Time in which half of what a visitor has used is forgotten [s].
 _HALF_LIFE = 5.0
@@ -62,15 +69,19 @@ class SharedCpuTime(CpuTime):
 class _Wait:
     """One thread that waits for its turn."""
 
-    def __init__(self, cpu_time: CpuTime) -> None:
-        self.cpu_time, self.granted = cpu_time, threading.Event()
+    def __init__(self, cpu_time: CpuTime, begins: bool, since: float) -> None:
+        self.cpu_time, self.begins, self.since, self.granted = cpu_time, begins, since, threading.Event()
+
+    def rank(self, now: float) -> tuple[bool, float]:
+        """Who has the lowest is next."""
+        return not self.begins and now - self.since < _LONGEST_WAIT, self.cpu_time.used
 
 
 class FairScheduler:
     """Who computes now: at most `at_once`; of those that wait, who has used least is next."""
 
-    def __init__(self, at_once: int) -> None:
-        self._at_once = at_once
+    def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
+        self._at_once, self._clock = at_once, clock
         self._lock = threading.Lock()
         self._running: dict[object, float] = {}
         self._waiting: list[_Wait] = []
@@ -80,9 +91,12 @@ class FairScheduler:
         """How many wait for their turn."""
         return len(self._waiting)
 
-    def begin(self, cpu_time: CpuTime, stop: Stop) -> object:
-        """Wait for a turn, or until the stop flag is set; returns what `end` needs."""
-        mine = _Wait(cpu_time)
+    def begin(self, cpu_time: CpuTime, stop: Stop, begins: bool = True) -> object:
+        """Wait for a turn, or until the stop flag is set; returns what `end` needs.
+
+        `begins` says whether the computation has just begun.
+        """
+        mine = _Wait(cpu_time, begins, self._clock())
         with self._lock:
             self._waiting.append(mine)
             self._grant()
@@ -100,21 +114,22 @@ class FairScheduler:
             self._running.pop(turn, None)
             self._grant()
 
-    def should_yield(self, cpu_time: CpuTime) -> bool:
-        """Whether another waits that has used less."""
+    def should_yield(self, cpu_time: CpuTime, begins: bool = True) -> bool:
+        """Whether another waits that has used less, or has just begun while this one has not."""
         if not self._waiting:
             return False
         with self._lock:
-            mine = cpu_time.used
-            return any(other.cpu_time.used < mine for other in self._waiting)
+            now, mine = self._clock(), (not begins, cpu_time.used)
+            return any(other.rank(now) < mine for other in self._waiting)
 
     def _grant(self) -> None:
         """With the lock held: give free turns to those who have used least."""
-        late = time.monotonic() - _LONGEST_TURN
+        now = self._clock()
+        late = now - _LONGEST_TURN
         while self._waiting and sum(began > late for began in self._running.values()) < self._at_once:
-            best = min(self._waiting, key=lambda one: one.cpu_time.used)
+            best = min(self._waiting, key=lambda one: one.rank(now))
             self._waiting.remove(best)
-            self._running[best] = time.monotonic()
+            self._running[best] = now
             best.granted.set()
 
 
@@ -140,27 +155,34 @@ class Flag(Stop):
 class SchedulerSlot(Flag):
     """The stop flag of a picture's computation, which takes turns with others while it computes."""
 
-    __slots__ = ("_began", "_scheduler", "_turn", "cpu_time")
+    __slots__ = ("_began", "_scheduler", "_spent", "_turn", "cpu_time")
 
     def __init__(self, cpu_time: CpuTime, scheduler: FairScheduler = TURNS) -> None:
         super().__init__()
         self.cpu_time = cpu_time
         self._scheduler = scheduler
         self._turn: object = None
-        self._began = 0.0
+        self._began = self._spent = 0.0
+
+    @property
+    def begins(self) -> bool:
+        """Whether the computation has just begun."""
+        return self._spent < _BEGINNING
 
     def pause(self) -> None:
         """Between two parts of the computation: let a visitor go first who has used less."""
         if self._turn is None:
             return
         self._charge()
-        if self._scheduler.should_yield(self.cpu_time):
+        if self._scheduler.should_yield(self.cpu_time, self.begins):
             self._leave()
             self._enter()
 
     @contextmanager
-    def held(self) -> Iterator[None]:
-        """While a turn is held; wait for it first."""
+    def held(self, anew: bool = False) -> Iterator[None]:
+        """While a turn is held; wait for it first. `anew` where another computation begins with this flag."""
+        if anew:
+            self._spent = 0.0
         self._enter()
         try:
             yield
@@ -193,7 +215,7 @@ class SchedulerSlot(Flag):
             yield result
 
     def _enter(self) -> None:
-        self._turn = self._scheduler.begin(self.cpu_time, self)
+        self._turn = self._scheduler.begin(self.cpu_time, self, self.begins)
         self._began = time.thread_time()
 
     def _leave(self) -> None:
@@ -203,4 +225,5 @@ class SchedulerSlot(Flag):
     def _charge(self) -> None:
         now = time.thread_time()
         self.cpu_time.charge(now - self._began)
+        self._spent += now - self._began
         self._began = now

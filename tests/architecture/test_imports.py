@@ -144,10 +144,13 @@ def private_uses(module: str) -> Iterator[str]:
 #: the libraries' public way, and says how; without `_tornado` the server does not start.
 PRIVATE = {
     "app.serve.document_lock": {"_pending_writes"},
-    "app.serve.socket_tuning": {"_subscribed_connections", "_socket", "_handle_write"},
+    "app.serve.socket_tuning": {"_subscribed_connections", "_socket"},
+    "app.serve.changes": {"_subscribed_connections", "_socket", "_held_events", "_property_values"},
+    "app.serve.channel": {"_lock", "_pending_writes"},
     "app.serve.bokeh_defaults": {"_get_default"},
     "app.serve.guard": {"_tornado"},
-    "app.parts.panel_shortcuts": {"_get_properties", "_update_properties", "_process_event", "_process_bokeh_event"},
+    "app.parts.panel_shortcuts": {"_get_properties", "_update_properties", "_process_event", "_process_bokeh_event",
+                                  "_models", "_param__private", "_get_children"},
 }
 
 

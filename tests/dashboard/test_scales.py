@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 
 from app.dashboard.scales import FILE, Scales
-from app.frames import extremes_of, samples_for, settled_frames
+from app.frames import samples_for, settled_frames
 from app.parts.chain import energy_labels, frames_message
 from app.session.session import Session
 from granchain_core import Scene, scene, scene_names, settle
@@ -38,7 +38,7 @@ def test_a_fitted_picture_is_drawn_to_its_own_values() -> None:
     scales = Scales(Session(scale="fit"))
     frames = frames_at(QUIET)
     own = scales.of(frames, QUIET)
-    assert own == extremes_of(frames)
+    assert own == frames.extremes
     assert own.kinetic_energy < 0.05 * Scales(Session()).of(frames, QUIET).kinetic_energy
     message = frames_message(1, frames, QUIET, own, True, [], False, False, True)
     assert message["scale"] is None
@@ -62,4 +62,4 @@ def test_the_middle_of_the_colour_bar_is_a_quarter_of_its_end() -> None:
 def test_an_overlap_counts_driver_and_wall() -> None:
     frames = frames_at(LOUD)
     pressed = replace(frames, drive_displacement=frames.displacement[:, 0] + 1e-3)
-    assert extremes_of(pressed).overlap == pytest.approx(1e-3)
+    assert pressed.extremes.overlap == pytest.approx(1e-3)

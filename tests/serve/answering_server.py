@@ -16,7 +16,7 @@ from tornado.ioloop import IOLoop
 
 from app.serve import socket_tuning
 from app.serve.document_lock import has_document_lock, with_document_lock
-from app.serve.socket_tuning import disable_nagle, gather_writes
+from app.serve.socket_tuning import disable_nagle
 
 
 class Served:
@@ -52,7 +52,6 @@ class Served:
         assert self.document is not None
         self.found = {"locked": has_document_lock(self.document), "streams": socket_tuning._streams(self.document)}
         disable_nagle(self.document)
-        gather_writes(self.document)
         self.answer.text = f"{text}, yes"
 
     def stop(self) -> None:

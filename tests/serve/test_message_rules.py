@@ -79,7 +79,8 @@ def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken()
 
     async def send() -> None:
         for frame in (*good, *bad, *good):
-            await one.on_message(frame)
+            if (passed := one.on_message(frame)) is not None:
+                await passed
 
     asyncio.run(send())
     assert one.taken == list(good) and one.closed == 1008

@@ -61,6 +61,44 @@ def test_of_those_who_wait_the_one_that_has_used_least_is_next() -> None:
     assert order == ["little", "some", "much"]
 
 
+def order_of(turns: FairScheduler, waits: list[tuple[str, float, bool]], ready: object) -> list[str]:
+    """In which order those who wait get their turns: name, time used, whether the computation has just begun."""
+    order: list[str] = []
+    first, threads = turns.begin(CpuTime(), Stop()), []
+    for number, (name, used, begins) in enumerate(waits, 1):
+        account = CpuTime()
+        account.charge(used)
+
+        def wait(name: str = name, account: CpuTime = account, begins: bool = begins) -> None:
+            turn = turns.begin(account, Stop(), begins)
+            order.append(name)
+            turns.end(turn)
+
+        threads.append(threading.Thread(target=wait))
+        threads[-1].start()
+        until(lambda number=number: turns.waiting == number)
+    ready()  # type: ignore[operator]
+    turns.end(first)
+    for thread in threads:
+        thread.join(20)
+    return order
+
+
+def test_what_has_just_begun_goes_before_what_only_makes_a_picture_better() -> None:
+    """Among each, who has used less."""
+    waits = [("better", 0.0, False), ("first, much", 3.0, True), ("first, little", 1.0, True), ("better, much", 5.0, False)]
+    assert order_of(FairScheduler(1, lambda: 0.0), waits, lambda: None) == ["first, little", "first, much", "better", "better, much"]
+
+
+def test_who_has_waited_for_half_a_second_waits_for_no_beginner() -> None:
+    now = [0.0]
+
+    def later() -> None:
+        now[0] = 0.6
+
+    assert order_of(FairScheduler(1, lambda: now[0]), [("better", 0.0, False), ("first", 1.0, True)], later) == ["better", "first"]
+
+
 def test_at_a_pause_the_turn_goes_to_who_has_used_less() -> None:
     turns, done = FairScheduler(1), []
     mine = CpuTime()

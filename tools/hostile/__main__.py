@@ -23,12 +23,13 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=20.0, help="a command line may take")
+    parser.add_argument("--address", help="messages go to a running dashboard, such as http://127.0.0.1:5006")
     options = parser.parse_args()
     if options.what == "commands":
         return min(1, commands.run(options.count, options.seed, options.seconds))
     from . import messages  # with the page: command lines do not need it
 
-    with tempfile.TemporaryDirectory() as folder, Started(None, Path(folder) / "log") as server:
+    with tempfile.TemporaryDirectory() as folder, Started(options.address, Path(folder) / "log") as server:
         return min(1, asyncio.run(messages.run(server, options.count, options.seed)))
 
 

@@ -42,21 +42,24 @@ async def run(server: Started, count: int, minutes: float, bomb: bool, same: boo
         asyncio.get_running_loop().create_task(_insist(one))
     memory = figures(server.number)[0] if server.process else float("nan")
     viewers = [Viewer(server.address) for _ in range(count)]
-    began = time.perf_counter()
+    began, loop = time.perf_counter(), server.loop_time if server.process else float("nan")
     await asyncio.gather(*(one.open() for one in viewers))
     all_open = time.perf_counter() - began
     answers.openings = [one.opened_in for one in viewers]
+    opening = (server.loop_time - loop) / count if server.process else float("nan")
     await asyncio.sleep(3.0)
     load, used = os.getloadavg()[0], server.processor_time if server.process else 0.0
+    loop = server.loop_time if server.process else float("nan")
     end = time.perf_counter() + 60.0 * minutes
     await asyncio.gather(*(_moves(one, end, random.Random(seed if same else f"{seed} {number}"), answers, same)
                            for number, one in enumerate(viewers)))
     used = (server.processor_time - used) / (60.0 * minutes) if server.process else float("nan")
+    move = (server.loop_time - loop) / max(1, len(answers.times)) if server.process else float("nan")
     after = figures(server.number)[0] if server.process else float("nan")
     print("viewers | bomb | p50 ms | p95 ms | answered | after a second | opening p50 s | slowest opening s | all open s "
-          "| processors used | memory before MB | with all MB | load before")
-    print(f"{count} | {'yes' if bomb else 'no'} | {answers.row} | {all_open:.1f} | {used:.2f} | {memory:.0f} | {after:.0f} "
-          f"| {load:.1f}", flush=True)
+          "| processors used | loop ms a move | loop ms an opening | memory before MB | with all MB | load before")
+    print(f"{count} | {'yes' if bomb else 'no'} | {answers.row} | {all_open:.1f} | {used:.2f} | {1e3 * move:.1f} "
+          f"| {1e3 * opening:.0f} | {memory:.0f} | {after:.0f} | {load:.1f}", flush=True)
     await asyncio.gather(*(one.leave() for one in [*viewers, *bombs]))
 
 

@@ -57,6 +57,12 @@ class Started:
         fields = Path(f"/proc/{self.number}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
+    @property
+    def loop_time(self) -> float:
+        """Processor time of the thread with the event loop so far [s], on Linux."""
+        words = Path(f"/proc/{self.number}/task/{self.number}/schedstat").read_text().split()
+        return int(words[0]) / 1e9
+
 
 def _free_port() -> int:
     with socket.socket() as probe:

@@ -11,7 +11,8 @@ import numpy as np
 from granchain_core import Scene, scene
 
 from ...format import prefixed
-from ...parts.chain import chain_series, drawn_chain
+from ...frames import chain_series
+from ...parts.chain import drawn_chain
 from ...parts.component import text
 from ...parts.figure_part import FigurePart, page_and_small
 from ...pictures.energies import ENERGY_COLOURS

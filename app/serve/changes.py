@@ -1,0 +1,248 @@
+"""Changes of a document on their way to the browser: those of one action leave as one message, in one write.
+
+It is the message that Bokeh would send, written without going through the graph of the document's models. Values that
+are not plain, such as new models, are encoded by Bokeh. Tornado and Bokeh have no public way to what is used here;
+where a release has it no longer, changes leave as Bokeh sends them.
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import struct
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+import panel as pn
+from bokeh.document import Document
+from bokeh.document.events import ColumnDataChangedEvent, DocumentPatchedEvent, MessageSentEvent, ModelChangedEvent
+from bokeh.events import ModelEvent
+from bokeh.model import Model
+from tornado.iostream import IOStream, StreamClosedError
+from tornado.locks import Lock
+
+#: What a number may be in JavaScript without loss.
+_MOST_SAFE = 2**53 - 1
+#: Kinds of numbers that BokehJS has arrays of, by NumPy's letters.
+_ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
+_NUMBERS = itertools.count(1)
+
+
+class _NotPlain(Exception):
+    """A value that Bokeh has to encode."""
+
+
+class _Message:
+    """One message being written: its events as plain values, and its arrays."""
+
+    def __init__(self) -> None:
+        self.arrays: list[tuple[str, memoryview]] = []
+
+    def event(self, event: DocumentPatchedEvent) -> dict[str, Any]:
+        """What Bokeh's `to_serializable` makes of it."""
+        if isinstance(event, MessageSentEvent) and isinstance(event.msg_data, ModelEvent):
+            sent = event.msg_data
+            values = [["model", _reference(sent.model)], ["data", self.value(getattr(sent, "data", None))]]
+            return {"kind": "MessageSent", "msg_type": event.msg_type, "msg_data": {
+                "type": "event", "name": sent.event_name, "values": {"type": "map", "entries": values}}}
+        if isinstance(event, ColumnDataChangedEvent) and event.cols is None:
+            data = getattr(event.model, event.attr) if event.data is None else event.data
+            return {"kind": "ColumnDataChanged", "model": _reference(event.model), "attr": event.attr,
+                    "data": self.value(data), "cols": None}
+        if isinstance(event, ModelChangedEvent):
+            return {"kind": "ModelChanged", "model": _reference(event.model), "attr": event.attr,
+                    "new": self.value(event.new)}
+        raise _NotPlain
+
+    def value(self, value: Any) -> Any:
+        """A plain value as Bokeh writes it in JSON."""
+        if value is None or isinstance(value, (str, bool)):
+            return value
+        if isinstance(value, float):  # NumPy's double is one
+            if math.isfinite(value):
+                return float(value)
+            return {"type": "number", "value": "nan" if math.isnan(value) else f"{value:+}"}
+        if isinstance(value, int) and abs(value) <= _MOST_SAFE:
+            return int(value)
+        if isinstance(value, (list, tuple)):
+            return [self.value(one) for one in value]
+        if isinstance(value, dict):
+            return {"type": "map", "entries": [[self.value(key), self.value(one)] for key, one in value.items()]}
+        if isinstance(value, np.ndarray) and value.shape and value.dtype.char in _ARRAYS:
+            return self._array(value)
+        raise _NotPlain
+
+    def _array(self, value: np.ndarray) -> dict[str, Any]:
+        name = f"a{len(self.arrays)}"
+        self.arrays.append((name, np.ascontiguousarray(value).data.cast("B") if value.size else memoryview(b"")))
+        return {"type": "ndarray", "array": {"type": "bytes", "data": {"id": name}}, "shape": list(value.shape),
+                "dtype": _ARRAYS[value.dtype.char], "order": sys.byteorder}
+
+
+def _reference(model: Model | None) -> dict[str, str]:
+    if model is None:
+        raise _NotPlain
+    return {"id": model.id}
+
+
+def _frame(payload: bytes | memoryview, binary: bool = False) -> Iterator[bytes | memoryview]:
+    """A websocket frame of a server (RFC 6455): whole, not masked, not compressed."""
+    kind, length = 0x82 if binary else 0x81, len(payload)
+    if length < 126:
+        yield struct.pack("!BB", kind, length)
+    elif length < 65536:
+        yield struct.pack("!BBH", kind, 126, length)
+    else:
+        yield struct.pack("!BBQ", kind, 127, length)
+    yield payload
+
+
+def written(events: list[DocumentPatchedEvent]) -> bytes | None:
+    """The frames of a message with these events; None if Bokeh has to encode one of them."""
+    message = _Message()
+    try:
+        content = {"events": [message.event(event) for event in events]}
+    except _NotPlain:
+        return None
+    header: dict[str, Any] = {"msgid": f"s{next(_NUMBERS)}", "msgtype": "PATCH-DOC"}
+    if message.arrays:
+        header["num_buffers"] = len(message.arrays)
+    parts: list[bytes | memoryview] = []
+    for one in (header, {}, content):
+        parts.extend(_frame(json.dumps(one, separators=(",", ":")).encode()))
+    for name, data in message.arrays:
+        parts.extend(_frame(json.dumps({"id": name}).encode()))
+        parts.extend(_frame(data, binary=True))
+    return b"".join(parts)
+
+
+def _encoded(document: Document, events: list[DocumentPatchedEvent], connection: Any) -> bytes:
+    """The same by Bokeh, which sends along models that the browser does not have yet."""
+    message = connection.protocol.create("PATCH-DOC", events)
+    parts: list[bytes | memoryview] = []
+    for text in (message.header_json, message.metadata_json, message.content_json):
+        parts.extend(_frame(text.encode()))
+    for buffer in message.buffers:
+        parts.extend(_frame(json.dumps(buffer.ref).encode()))
+        parts.extend(_frame(bytes(buffer.to_bytes()), binary=True))
+    return b"".join(parts)
+
+
+class _Socket:
+    """A page's websocket, as far as this release has what is needed."""
+
+    def __init__(self, connection: Any) -> None:
+        self.connection = connection
+        socket = getattr(connection, "_socket", None)
+        self._lock = getattr(socket, "write_lock", None)
+        self._there = getattr(socket, "ws_connection", None)
+        self._stream = getattr(self._there, "stream", None)
+
+    @property
+    def usable(self) -> bool:
+        """Whether whole frames can be written."""
+        return isinstance(self._stream, IOStream) and isinstance(self._lock, Lock)
+
+    def write(self, data: bytes) -> None:
+        """Write whole messages; behind one of Bokeh's that is being written."""
+        stream, lock = self._stream, self._lock
+        assert isinstance(stream, IOStream) and isinstance(lock, Lock)
+
+        def put(turn: Any) -> None:
+            with turn.result():
+                if not stream.closed():
+                    try:
+                        stream.write(data)
+                    except StreamClosedError:
+                        return
+
+        turn: Any = lock.acquire()
+        if turn.done():
+            put(turn)
+        else:
+            turn.add_done_callback(put)
+
+
+def _send(document: Document, session: Any, events: list[Any]) -> None:
+    """Send held events: what the browser is to know as one message, the rest by Bokeh."""
+    patches = [event for event in events if isinstance(event, DocumentPatchedEvent)]
+    sockets = [_Socket(one) for one in getattr(session, "_subscribed_connections", ())]
+    if patches and sockets and all(one.usable for one in sockets):
+        data = written(patches)
+        for one in sockets:
+            one.write(_encoded(document, patches, one.connection) if data is None else data)
+        events = [event for event in events if not isinstance(event, DocumentPatchedEvent)]
+    for event in events:
+        document.callbacks.trigger_on_change(event)
+
+
+@contextmanager
+def gathered(document: Document) -> Iterator[None]:
+    """Send what is changed inside as one message. To be used with the document locked."""
+    session = getattr(document.session_context, "session", None)
+    callbacks = document.callbacks
+    known = session is not None and hasattr(callbacks, "_held_events")
+    if not known or callbacks.hold_value is not None or not pn.state.loaded:
+        yield
+        return
+    callbacks.hold("combine")
+    try:
+        yield
+    finally:
+        events, callbacks._held_events = list(callbacks._held_events), []
+        callbacks.unhold()
+        _send(document, session, events)
+
+
+def _gathering(model: Model) -> Document | None:
+    """The document whose changes are being gathered, if the model is in one."""
+    document = model.document
+    if document is None or document.callbacks.hold_value is None:
+        return None
+    known = hasattr(document.callbacks, "_held_events") and hasattr(model, "_property_values")
+    return document if known else None
+
+
+def is_gathered(model: Model) -> bool:
+    """Whether changes of the model are being gathered."""
+    return _gathering(model) is not None
+
+
+def change(model: Model, **values: Any) -> None:
+    """Change properties of a model, to values that are right: Bokeh neither checks nor converts them.
+
+    An equal value is no change. Where nothing is gathered, this is the model's own `update`.
+    """
+    document = _gathering(model)
+    if document is None:
+        model.update(**values)
+        return
+    known, events = model._property_values, document.callbacks._held_events
+    for name, value in values.items():
+        if name != "data" and name in known and known[name] == value:
+            continue
+        known[name] = value
+        _hold(events, ModelChangedEvent(document, model, name, value) if name != "data"
+              else ColumnDataChangedEvent(document, model, name, value))
+
+
+def _hold(events: list[Any], event: Any) -> None:
+    """Keep an event in place of an earlier one of the same property, which nobody needs any more."""
+    for place, one in enumerate(events):
+        if type(one) is type(event) and one.model is event.model and one.attr == event.attr:
+            events[place] = event
+            return
+    events.append(event)
+
+
+def tell(model: Model, event: ModelEvent) -> bool:
+    """Send an event to a model's view in the browser with what is gathered; False where nothing is."""
+    document = _gathering(model)
+    if document is None:
+        return False
+    document.callbacks._held_events.append(MessageSentEvent(document, "bokeh_event", event))
+    return True

@@ -1,0 +1,122 @@
+"""One visitor's document and the event loop: actions run with the document locked, several in one go.
+
+Bokeh's own callbacks are made, wrapped, kept, announced and removed one by one, which takes longer than most actions.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from bokeh.document import Document
+from tornado.ioloop import IOLoop
+from tornado.locks import Lock
+
+try:
+    from panel.io.state import set_curdoc
+except ImportError:  # it is not in Panel's documentation
+    set_curdoc = None  # type: ignore[assignment]
+
+from .changes import gathered
+from .meters import METERS
+
+log = logging.getLogger("granchain.page")
+
+#: What Bokeh is still writing: the loop itself keeps no task alive.
+_FINISHING: set[asyncio.Future[None]] = set()
+
+
+def session_of(document: Document) -> Any:
+    """Bokeh's session of a page, None where there is none, or none that can be locked here."""
+    session = getattr(getattr(document, "session_context", None), "session", None)
+    known = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
+    return session if known and hasattr(session, "_pending_writes") else None
+
+
+def run_locked(session: Any, actions: list[Callable[[], None]]) -> None:
+    """Run the actions as soon as the session's document is locked: at once, if nothing else has it."""
+    turn: Any = session._lock.acquire()
+    if turn.done():
+        _with_turn(session, actions, turn)
+    else:
+        turn.add_done_callback(partial(_with_turn, session, actions))
+
+
+def _with_turn(session: Any, actions: list[Callable[[], None]], turn: Any) -> None:
+    release = turn.result()
+    pending: list[Any] = []
+    try:
+        if not session.destroyed:
+            pending = _act(session, actions)
+    finally:
+        if pending:
+            task = asyncio.ensure_future(_finish(pending, release))
+            _FINISHING.add(task)
+            task.add_done_callback(_FINISHING.discard)
+        else:
+            with release:
+                pass
+
+
+def _act(session: Any, actions: list[Callable[[], None]]) -> list[Any]:
+    """With the lock held: run them; what Bokeh has still to write afterwards."""
+    session._pending_writes = []
+    try:
+        with set_curdoc(session.document), gathered(session.document):
+            for action in actions:
+                try:
+                    action()
+                except Exception:
+                    METERS.errors += 1
+                    log.exception("an action failed")
+    finally:
+        pending, session._pending_writes = session._pending_writes, None
+    return list(pending)
+
+
+async def _finish(pending: list[Any], release: Any) -> None:
+    with release:
+        for one in pending:
+            await one
+
+
+class Channel:
+    """Calls actions with a document locked. Where a release cannot be locked so, Bokeh calls them."""
+
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._loop = IOLoop.current(instance=False)
+        self._lock = threading.Lock()
+        self._waiting: deque[Callable[[], None]] = deque()
+        self._due = False
+
+    def call_soon(self, action: Callable[[], None]) -> None:
+        """Call `action` in the next turn of the event loop; from any thread."""
+        if self._loop is None or session_of(self._document) is None:
+            self._document.add_next_tick_callback(action)
+            return
+        with self._lock:
+            self._waiting.append(action)
+            due, self._due = self._due, True
+        if not due:
+            self._loop.asyncio_loop.call_soon_threadsafe(self._run)  # type: ignore[attr-defined]
+
+    def call_later(self, seconds: float, action: Callable[[], None]) -> None:
+        """Call `action` so many seconds from now; on the event loop."""
+        if self._loop is None or session_of(self._document) is None:
+            self._document.add_timeout_callback(action, round(1e3 * seconds))
+        else:
+            self._loop.asyncio_loop.call_later(seconds, self.call_soon, action)  # type: ignore[attr-defined]
+
+    def _run(self) -> None:
+        with self._lock:
+            actions, self._due = list(self._waiting), False
+            self._waiting.clear()
+        session = session_of(self._document)
+        if session is not None:
+            run_locked(session, actions)

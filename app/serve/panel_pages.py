@@ -1,0 +1,46 @@
+"""What Panel works out anew for every page and finds the same each time: scripts and style sheets."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import panel.io.server as pages
+from bokeh.model import Model
+from bokeh.models import ImportedStyleSheet
+from panel.io.resources import patch_stylesheet
+
+
+def remember_resources() -> None:
+    """Ask Panel once for the scripts that a page loads, and once per kind of part where its style sheets are.
+
+    It goes through all models of a page for both, a tenth of an opening. All pages of this server have the same parts.
+    Where a release works them out elsewhere, it is asked each time.
+    """
+    bundle: Callable[..., Any] | None = getattr(pages, "bundle_resources", None)
+    patch: Callable[[Model, str], None] | None = getattr(pages, "patch_model_css", None)
+    if bundle is None or patch is None or hasattr(bundle, "known"):
+        return
+    known: dict[tuple[Any, ...], tuple[str, ...]] = {}
+    plain: set[tuple[type[Model], str]] = set()
+
+    def bundled(roots: Any, resources: Any) -> tuple[str, ...]:
+        key = (resources.mode, resources.root_url, getattr(resources, "absolute", None), pages.state.rel_path,
+               frozenset(type(root) for root in roots))
+        if key not in known:
+            known[key] = tuple(bundle(roots, resources))
+        return known[key]
+
+    def patched(root: Model, dist_url: str) -> None:
+        kind = type(root), str(getattr(root, "class_name", ""))
+        own = [sheet for sheet in getattr(root, "stylesheets", ()) if isinstance(sheet, ImportedStyleSheet)]
+        if kind not in plain:
+            if set(root.select({"type": ImportedStyleSheet})) == set(own):
+                plain.add(kind)
+            patch(root, dist_url)
+        for sheet in own:
+            patch_stylesheet(sheet, dist_url)
+
+    bundled.known = known  # type: ignore[attr-defined]
+    pages.bundle_resources = bundled  # type: ignore[assignment]
+    pages.patch_model_css = patched
