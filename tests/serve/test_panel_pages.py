@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import panel.io.resources as resources
 import panel.io.server as pages
 import pytest
 from test_security import Listening
@@ -14,9 +15,9 @@ from app.server import Access
 
 @pytest.fixture
 def own_way(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Panel's own functions are there again afterwards."""
+    """Panel's own functions are there, whatever server another test has started, and what was there is afterwards."""
     for name in ("bundle_resources", "patch_model_css"):
-        monkeypatch.setattr(pages, name, getattr(pages, name))
+        monkeypatch.setattr(pages, name, getattr(resources, name))
 
 
 def page_of(one: Listening) -> str:
