@@ -1,9 +1,16 @@
-"""A first run waits for the compiler: a person at a terminal is told what the wait is, once."""
+"""A first run waits for the compiler: a person at a terminal is told what the wait is, and a second core helps."""
 
 from __future__ import annotations
 
 import functools
+import multiprocessing
+import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from granchain_core import Scene
+from granchain_core.child_processes import end_with_parent, starting
 
 WORDS = ("Compiling the kernels for this set of effects: 10 to 60 s, once per machine. "
          "`granchain warm` does it ahead of time.")
@@ -28,3 +35,45 @@ def announce_compiling() -> None:
             pass
 
     event.register("numba:compile", Listener())
+
+
+@contextmanager
+def compiling_beside(chosen: Scene, *pieces: str) -> Iterator[None]:
+    """Where Numba begins to compile in this block, compile these pieces (granchain_core/warm.py) in another process.
+
+    They are what the block needs later; when it does, it waits for them or loads them. With one core, nothing is done.
+    """
+    if (os.cpu_count() or 1) < 2:
+        yield
+        return
+    from numba.core import event
+
+    class Listener(event.Listener):
+        process: multiprocessing.context.SpawnProcess | None = None
+
+        def on_start(self, event: event.Event) -> None:
+            if self.process is None:
+                self.process = multiprocessing.get_context("spawn").Process(
+                    target=_compile, args=(os.getpid(), chosen, pieces), daemon=True, name="compiler")
+                with starting():
+                    self.process.start()
+
+        def on_end(self, event: event.Event) -> None:
+            pass
+
+    listener = Listener()
+    event.register("numba:compile", listener)
+    try:
+        yield
+    finally:
+        event.unregister("numba:compile", listener)
+        if listener.process is not None:
+            listener.process.terminate()
+
+
+def _compile(parent: int, chosen: Scene, pieces: tuple[str, ...]) -> None:
+    end_with_parent(parent)
+    from granchain_core.warm import compile_piece
+
+    for piece in pieces:
+        compile_piece(chosen, piece)
