@@ -1,4 +1,4 @@
-"""The ways a request can fail, each carrying one sentence a student understands."""
+"""Failures of a request, each with one sentence for the user."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What kind of motion it is, with the evidence: periodic n, quasi-periodic, chaotic, or unsettled."""
+"""The regime of a motion with its evidence: period n, quasi-periodic, chaotic, or unsettled."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a chain is at one instant, in SI."""
+"""The state of a chain at one instant, in SI."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The one way to end a computation before it is done."""
+"""`Stop`: ends a computation before it is done."""
 
 from __future__ import annotations
 

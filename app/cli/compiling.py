@@ -1,4 +1,4 @@
-"""A first run waits for the compiler: a person at a terminal is told what the wait is, once."""
+"""A message on the terminal, shown once, that the first run waits for the compiler."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The controller of the page: it receives messages from the parts and sends them pictures and sentences."""
+"""The controller of one dashboard: passes browser messages to their actions, and is the host of all pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The visitor's own measurement: read in the background, asked about where it is unclear, compared with the curve."""
+"""The visitor's own measurement: read in the background, with questions if unclear, and compared with the curve."""
 
 from __future__ import annotations
 

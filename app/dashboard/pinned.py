@@ -1,4 +1,4 @@
-"""Pinned pictures: lines that stay in the force trains and on the curve, and their numbers beside the present ones."""
+"""Pinned motions: their lines in the force trains and on the curve, and their numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The table of pages: layout, controller, the overlays of page.html and the tabs are made from it."""
+"""The table of pages, from which layout, controller, overlays and tabs are made."""
 
 from __future__ import annotations
 

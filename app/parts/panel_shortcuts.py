@@ -1,4 +1,4 @@
-"""What a part of the page leaves out of Panel's work: properties, design and busy indicator, each a mixin.
+"""Shortcuts past work of Panel that our components do not need: properties, design and busy indicator.
 
 They override private methods of Panel; where a release has other ones, Panel's own way is taken.
 """

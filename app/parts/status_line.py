@@ -1,4 +1,4 @@
-"""The status line, which is always there: regime, force at the wall, error reached, computing time, method, effects."""
+"""The status line: regime, force at the wall, error reached, computing time, method, effects."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a page's sockets write: at once, and together what is written in one turn of the event loop.
+"""Socket writes: without delay, and all writes of one turn of the event loop together.
 
 Tornado and Bokeh have no public way to a page's streams. Each attribute saves some milliseconds; where a release has it
 no longer, messages leave as the library sends them.

@@ -1,4 +1,4 @@
-"""What one visitor may ask of the machine: the time of a picture and of a curve, estimated before they are computed."""
+"""Limits on one visitor's requests: the estimated time of a picture and of a curve."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks of what a message from a browser contains; nothing in it is trusted unchecked."""
+"""Checks of browser messages, whose contents are never trusted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pass bands of a precompressed chain: the frequencies of its small waves.
+"""Pass bands of a precompressed chain: the frequencies at which small waves propagate.
 
 Every contact is a spring k_c = dF/dδ = (3/2) K_c^{2/3} F0^{1/3} about the compressed rest. Equal beads have one band,
 from 0, or √(k/m)/2π on a foundation, to the cut-off f_c = (1/π) √(k_c/m); dimers have an acoustic and an optical one

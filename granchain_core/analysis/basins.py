@@ -1,4 +1,4 @@
-"""Basins of attraction in a plane of starts: to which steady state each start leads.
+"""Basins of attraction: the steady state that each start in a plane leads to.
 
 A start is the chain at rest but for two coordinates at drive phase 0, each the displacement or the velocity of a bead.
 The space of starts has 2N dimensions; of it a plane shows a slice, in which a basin may be missing or in pieces.

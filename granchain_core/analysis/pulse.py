@@ -1,4 +1,4 @@
-"""The first pulse that runs along a chain: when it passes each contact, its force, its speed and its width.
+"""The first pulse along a chain: its time, force, speed and width at each contact.
 
 A chain of equal beads without precompression carries a solitary wave whose shape does not depend on its strength. With
 K = m = 1 and the distance of two beads as the unit of length its speed is V = c F^{1/6} for the largest force F, in

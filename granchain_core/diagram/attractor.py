@@ -1,4 +1,4 @@
-"""Steady states that coexist, with the starts that lead to each, as results."""
+"""Coexisting steady states as results, with the starts that lead to each."""
 
 from __future__ import annotations
 

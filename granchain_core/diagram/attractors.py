@@ -1,4 +1,4 @@
-"""All steady states of one setting that are found from rest, from both sweeps and from random states.
+"""The search for all steady states of one setting: from rest, from sweeps up and down, and from random states.
 
 All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable
 orbit, where a slow departure looks like a steady state, is displaced and run further.

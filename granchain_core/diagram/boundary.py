@@ -1,4 +1,4 @@
-"""Curves in the plane of two knobs on which an orbit loses its stability: folds, period doublings, Neimark–Sacker.
+"""Stability boundaries in the plane of two knobs: curves of folds, period doublings and Neimark–Sacker points.
 
 On such a curve the orbit's critical multiplier meets its condition:
 

@@ -1,4 +1,4 @@
-"""Which column of a file is which quantity in which unit: from titles where they settle it, from answers, or asked."""
+"""The quantity and unit of each column of a file: from its titles, a reader's convention or the user's answers."""
 
 from __future__ import annotations
 

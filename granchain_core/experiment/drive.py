@@ -1,4 +1,4 @@
-"""The shaker's response as a drive: amplitudes over the frequency from a file or a formula."""
+"""The drive amplitude over the frequency, from a file of shaker amplitudes or a formula."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the bytes of a text file to its fields with their lines: encoding, line ends, separator, comments.
+"""From the bytes of a text file to numbered rows of fields: encoding, line ends, separator, comments.
 
 Nothing is decided about numbers but whether a field looks like one.
 """

@@ -1,4 +1,4 @@
-"""`fit`: the parameters of a scene from a measurement, their intervals, and whether the model can describe it."""
+"""`fit`: parameters of a scene from a measurement, their intervals, and whether the model can describe it."""
 
 from __future__ import annotations
 

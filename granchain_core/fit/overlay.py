@@ -1,4 +1,4 @@
-"""A measured series over a periodic motion of the model: how far it is moved in time, and what is left between them.
+"""A measured series over a periodic motion of the model: the shift in time, and the remaining difference.
 
 Equation   late = argmin_s Σ_t (F_model(t + s) − F_measured(t))²,   rms_i = √⟨(F_model,i(t + late) − F_measured,i(t))²⟩
 Note       The start of a recording is not known, so it is moved to where the squares of all its forces are least; the

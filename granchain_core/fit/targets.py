@@ -1,4 +1,4 @@
-"""What a model is compared with: a curve, a series, or the frequencies of peaks and valleys; each gives residuals.
+"""Targets of a fit and their residuals: a curve, a series, or the frequencies of peaks and valleys.
 
 A residual is a difference over its standard deviation. A motion that is not periodic has no steady maximum and no
 train that comes back: there the model predicts a distribution only, so the variance is enlarged by the model's own, and

@@ -1,4 +1,4 @@
-"""A kernel's status as a sentence: which bead, when, and in which step the computation failed."""
+"""A kernel's failure in a sentence: which bead, when, and in which step."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`observe`: model (3) of Zhang et al. 2016, the chain without driver, pushed by a measured force on its first bead.
+"""`observe`: model (3) of Zhang et al. 2016, a chain without driver whose first bead is pushed by a measured force.
 
     m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
 

@@ -1,4 +1,4 @@
-"""The chain that runs on while its knobs are moved."""
+"""A chain that keeps running while its knobs are moved."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Many scenes at once: each in a thread of its own, as many as there are cores, with one result for each."""
+"""`run_many`: many scenes on all cores, with one result for each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A scene: the description of a chain with its effects, its equation, its identity, and changes of its knobs."""
+"""`Scene`: a chain's description with its effects, equation and identity, and `evolve` to change knobs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scenes by name, read from assets/scenes/*.toml: a parent and only the differences; and scenes in a user's file."""
+"""Scenes by name from assets/scenes/*.toml, each a parent and its differences; and scenes from a user's file."""
 
 from __future__ import annotations
 

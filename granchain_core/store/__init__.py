@@ -1,4 +1,4 @@
-"""Results as HDF5 that other programs open with labelled axes."""
+"""Results as HDF5 files with labelled axes, which other programs can open."""
 
 from .branches import load_branch, save_branch
 from .curves import load_curve, save_curve

@@ -1,4 +1,4 @@
-"""The four questions of the Analysis page: what a visitor may choose, what is computed, and how it is drawn."""
+"""The four questions of the Analysis page: their fields, what is computed, and how it is drawn."""
 
 from __future__ import annotations
 

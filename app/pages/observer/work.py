@@ -1,4 +1,4 @@
-"""A chain and its observer as the Observer page shows them: period after period, with what the multiplier predicts."""
+"""Chain and observer of the Observer page, period by period, with the rate that the multiplier predicts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The stories of one visitor: which one is told, and the motion of its step. They are drawn in their tab."""
+"""The Stories tab of one visitor: the story and its step, and the step's motion."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Branches of periodic orbits: followed in one knob through folds, stable or not, with their special points.
+"""Branches of periodic orbits as results: orbits over a knob, stable or not, with their special points.
 
     branch = continue_branch(scene("sec2"), "f", 340.0, 60.0)
 

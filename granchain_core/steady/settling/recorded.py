@@ -1,4 +1,4 @@
-"""Records of settling: pictures of the motion on its way, and the refined periodic orbit with its error.
+"""Pictures of a settling chain: the motion so far, and finally its refined periodic orbit with an error.
 
 Motions that are not periodic are recorded by the fixed-step method, without a claim on their error.
 """
