@@ -8,7 +8,7 @@ from .errors import Cancelled
 
 
 class Stop:
-    """Asks a computation in another thread to end; it then raises `Cancelled`, or returns what there is.
+    """Asks a computation in another thread to end; it then raises `Cancelled`, or returns what is finished.
 
     Attributes
     ----------

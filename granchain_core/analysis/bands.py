@@ -20,18 +20,18 @@ from ..scene.description import hertz_stiffness
 
 
 def bands(scene: Scene) -> list[tuple[float, float]]:
-    """Pass bands of small waves in an endless chain of a scene's beads.
+    """Pass bands of small waves in an infinite chain of a scene's beads.
 
     Parameters
     ----------
     scene : Scene
-        A chain with a preload; a striker and an impurity, which are single beads, are left out.
+        A chain with a preload; striker and impurity, which are single beads, are ignored.
 
     Returns
     -------
     list of (float, float)
-        Lowest and highest frequency of each band [Hz], ascending: as many as the pattern has beads. The last one's end
-        is the cut-off.
+        Lowest and highest frequency of each band [Hz], ascending, a band for each bead of the pattern. The upper edge
+        of the last band is the cut-off.
 
     Raises
     ------

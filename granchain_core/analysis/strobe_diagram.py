@@ -137,7 +137,7 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
     keep : int
         Strobes at each value, 1 to 10,000.
     stop : Stop, optional
-        Once it is set the diagram ends; what is computed stays.
+        When set, the diagram ends with the values that are finished.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
 

@@ -93,7 +93,7 @@ class Attractor:
 
 
 class Attractors(list[Attractor], Labelled):
-    """The steady states that were found: a list, that of most starts first.
+    """The list of steady states that were found; the one that most starts lead to comes first.
 
     Attributes
     ----------

@@ -57,14 +57,14 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     seed : int
         Of the random states; the same seed gives the same answer.
     stop : Stop, optional
-        Once it is set the search ends with what has been found, or with `Cancelled` before anything is.
+        When set, the search ends with what it has found, or raises `Cancelled` if that is nothing.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
 
     Returns
     -------
     Attractors
-        A list of `Attractor`, each steady state once, that of most starts first.
+        A list of `Attractor`, each steady state once; the one that most starts lead to comes first.
 
     Raises
     ------

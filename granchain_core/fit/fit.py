@@ -31,7 +31,7 @@ MOST_FREE, _AGAIN = 30, 4
 
 @dataclass(frozen=True, eq=False)
 class Fit(Labelled):
-    """What a fit found.
+    """The result of a fit.
 
     Attributes
     ----------
@@ -46,13 +46,13 @@ class Fit(Labelled):
     profiles : tuple of Profile
         For each parameter its profile and its 95 % interval; empty if none was asked for.
     misfit : float
-        The least −2 ln likelihood, but for a constant: χ² and the logarithms of the variances.
+        The least −2 ln likelihood up to a constant: χ² plus the logarithms of enlarged variances.
     data : int
         Data and priors compared.
     freedom : int
         Data and priors less parameters.
     probability : float or None
-        Of a χ² as large if the model were true; None where the data's errors are not known.
+        Probability of a χ² at least as large if the model were true; None where the data's errors are not known.
     verdict : str
         "can", "cannot" or "not known".
     sentence : str
@@ -166,7 +166,8 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
     free : sequence of Free
         Parameters with bounds and, if there are any, priors.
     design : int
-        Places over the bounds that are tried first; 0 for 32, 64 or 128 for up to 2, 3 or more parameters.
+        Number of points within the bounds that are tried first; 0 means 32, 64 or 128 for up to 2, 3 or more
+        parameters.
     intervals : bool
         Whether profile likelihoods and their 95 % intervals are computed.
     stop : Stop, optional

@@ -117,7 +117,7 @@ class Driven(Motion):
 
 def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop | None = None,
           progress: Callable[[float], None] | None = None) -> Driven:
-    """The motion of a chain whose driver moves as a signal says.
+    """The motion of a chain whose driver follows a signal.
 
     Parameters
     ----------
