@@ -25,7 +25,7 @@ export function render({ model }) {
   const places = new ChapterLabels((f) => model.send_msg({ do: "set", name: "f", value: f }));
   const name = () => {
     key.replaceChildren(
-      ...(model.state.driven ? [] : ["Nothing drives this chain: there is no resonance curve."]),
+      ...(model.state.driven ? [] : ["This chain has no drive, so there is no resonance curve."]),
       ...model.state.kinds.map((one) => {
         const symbol = element("b", { textContent: one.symbol });
         symbol.style.color = one.colour;

@@ -92,7 +92,7 @@ class Controller:
         with_document_lock(self._document, partial(self._guarded, action, message))
 
     def _unknown(self, message: dict[str, Any]) -> None:
-        self.say(f"The page sent a request {message['name']} that is not known here; reload the page.")
+        self.say(f"The server does not know the request {message['name']}; reload the page.")
 
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
         if self._left:

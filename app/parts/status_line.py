@@ -46,7 +46,7 @@ def regime_hint(picture: Settled) -> str:
     if pushed is not None:
         meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
     if "|μ|" in picture.regime.sentence:
-        meanings.append("|μ|: what is left of a small disturbance after one orbit; below 1 the orbit is stable.")
+        meanings.append("|μ|: factor by which a small disturbance changes in one orbit; below 1 the orbit is stable.")
     return " ".join(meanings)
 
 

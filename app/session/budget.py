@@ -39,8 +39,8 @@ class TooLong(BadInput):
     """The steady state was not found within the time of one picture."""
 
     def __init__(self) -> None:
-        super().__init__(f"After {WHOLE_PICTURE:g} s of computing this chain has not settled; the picture shows how "
-                         "far it has come.")
+        super().__init__(f"After {WHOLE_PICTURE:g} s of computing this chain has not settled; the picture shows the "
+                         "motion so far.")
 
 
 @functools.lru_cache(maxsize=64)

@@ -48,7 +48,7 @@ def bands(scene: Scene) -> list[tuple[float, float]]:
         raise BadInput("Without a preload no small wave can travel, so there are no bands; set F0 above 0, for example "
                        "F0=10.")
     if scene.taper != 1.0:
-        raise BadInput("A tapered chain has no cell that repeats, so it has no bands; the nearest valid value is "
+        raise BadInput("A tapered chain is not periodic, so it has no bands; the nearest valid value is "
                        "taper = 1.")
     count = math.lcm(len(scene.pattern), 1 if scene.dimer == 1.0 else 2)
     host = replace(scene, striker=1.0, impurity=1.0, impurities=())

@@ -137,7 +137,8 @@ def _axis(scene: Scene, name: str, values: Iterable[float]) -> tuple[tuple[int, 
     """Place of a coordinate in a state (2, N), and its values."""
     found = re.fullmatch(r"([uv])([1-9][0-9]{0,4})", name, re.ASCII)
     if found is None or int(found[2]) > scene.N:
-        raise BadInput(f"Coordinate {name[:40]!r} is none; there are u1 to u{scene.N} [m] and v1 to v{scene.N} [m/s].")
+        raise BadInput(f"Coordinate {name[:40]!r} does not exist; there are u1 to u{scene.N} [m] and v1 to v{scene.N} "
+                       "[m/s].")
     numbers = np.asarray(list(values), dtype=float)
     if not np.isfinite(numbers).all():
         raise BadInput(f"The values of {name} must be finite numbers.")

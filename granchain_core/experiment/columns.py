@@ -143,7 +143,7 @@ def answered(asked: Asked, answers: Answers) -> Chosen:
             if number > len(asked.guesses):
                 raise BadInput(f"There is no column {number}; the file has {len(asked.guesses)}.")
             if any(place == number - 1 for there in found.values() for place, _ in there):
-                raise BadInput(f"Column {number} is given two quantities; give it one.")
+                raise BadInput(f"Column {number} is assigned to two quantities; name one.")
             found.setdefault(quantity, []).append((number - 1, unit))
     return found
 

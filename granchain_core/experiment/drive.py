@@ -30,5 +30,5 @@ def read_amplitude(text: str, answers: Answers | None = None) -> Amplitude:
     assert isinstance(shaker, Shaker)
     if (shaker.velocity <= 0.0).any():
         raise BadInput(f"{Path(text).name}: the amplitude at {shaker.frequency[shaker.velocity <= 0.0][0]:g} Hz is 0; "
-                       "a drive needs more.")
+                       "a drive needs an amplitude above 0.")
     return Amplitude.table(shaker.frequency, shaker.displacement, shaker.source)

@@ -92,7 +92,7 @@ def _decoded(content: bytes) -> tuple[str, str]:
     control = re.search(r"[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f]", text[0][:2_100_000])
     if control:
         line = len(re.split(r"\r\n|\r|\n", text[0][: control.start()]))
-        raise BadInput(f"Line {line}: there is a byte {ord(control[0])} that no text has; the file is not a table.")
+        raise BadInput(f"Line {line}: the byte {ord(control[0])} does not occur in text; the file is not a table.")
     return text
 
 

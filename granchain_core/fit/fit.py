@@ -264,7 +264,7 @@ def _sentence(problem: Problem, evaluation: Evaluation, best: np.ndarray, counte
               probability: float | None, verdict: str) -> str:
     """The verdict with its evidence."""
     if verdict == "not known":
-        return ("Whether the model can describe the data is not known: their errors are not. Intervals hold if it can."
+        return ("The errors of the data are not known, so there is no verdict. Intervals hold if the model fits."
                 if not problem.target.sigma_known else "There are as many parameters as data: any model would fit.")
     numbers = f"χ² = {problem.chi_squared(best):.4g} for {counted} degrees of freedom, probability {probability:.2g}"
     edge = [one.name for one, x in zip(problem.free, best, strict=True) if min(x, 1.0 - x) < 1e-3]

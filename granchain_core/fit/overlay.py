@@ -40,7 +40,7 @@ class Overlay:
         if self.rms is None:
             return "The present motion does not repeat: the series is drawn from its own start, and no misfit is given."
         left = " and ".join(f"{rms:.3g} N for the {name.replace('_', ' ')}" for name, rms in self.rms.items())
-        return f"Moved in time to the least sum of squares; rms difference from the model {left}."
+        return f"Shifted in time to the least sum of squares; rms difference from the model {left}."
 
 
 def overlay(series: Series, run: Run) -> Overlay | None:

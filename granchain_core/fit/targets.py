@@ -69,7 +69,7 @@ class CurveTarget:
     def __post_init__(self) -> None:
         if self.measured.error is not None and self.error is None and not (self.measured.error > 0.0).all():
             at = float(self.measured.frequency[self.measured.error <= 0.0][0])
-            raise BadInput(f"The measured error at {at:g} Hz is 0; no force is known exactly, so give all an error.")
+            raise BadInput(f"The measured error at {at:g} Hz is 0; no force is known exactly, so give each an error.")
         if not self.measured.force.max() > 0.0:
             raise BadInput("All measured forces are 0; there is nothing to fit.")
 
