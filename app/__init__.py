@@ -1,1 +1,1 @@
-"""The granchain command line and dashboard. Nothing in `granchain_core` knows them."""
+"""The granchain command line and dashboard; nothing in `granchain_core` imports them."""

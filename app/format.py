@@ -1,4 +1,4 @@
-"""Numbers in words: with an SI prefix, errors to one significant figure, durations to three."""
+"""Numbers as text for a person: SI prefixes, errors to one significant figure, durations to three."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The rows in time that one picture shows: whole periods of a settled run, or the last periods of a live one."""
+"""The time samples that a picture shows: whole periods of a settled motion, or the last periods of a live one."""
 
 from __future__ import annotations
 

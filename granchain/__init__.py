@@ -1,4 +1,4 @@
-"""`import granchain` is `import granchain_core`, the same public names, and beside them pictures and the dashboard.
+"""The public names of `granchain_core`, and `figure` and `dashboard`.
 
     import granchain
     result = granchain.run(granchain.scene("sec2").evolve(f=340.0))

@@ -1,4 +1,4 @@
-"""Pictures of results, drawn by the code that the dashboard draws with."""
+"""Figures of results, as the dashboard draws them."""
 
 from __future__ import annotations
 

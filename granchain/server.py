@@ -1,4 +1,4 @@
-"""The dashboard beside a notebook: `granchain serve` in a process of its own, shown in a cell."""
+"""The dashboard in a notebook: `granchain serve` in a separate process, shown in a cell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is finished of a long computation, on disk: killed, it loses only what was not written yet.
+"""Checkpoints: finished pieces of a long computation on disk, so that a kill loses only unwritten ones.
 
 A folder beside the result, FILE.blocks, holds a head, which says what is computed, and blocks of finished pieces. Every
 file is written under a temporary name, synced and renamed, and carries the SHA-256 of its content: a block that is not

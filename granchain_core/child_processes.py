@@ -1,4 +1,4 @@
-"""Processes that end with the one that started them, in whatever way it ends.
+"""Child processes that end with their parent, however it ends.
 
 A process pool's workers wait for work that never comes when their parent is killed. Those started here watch it. They
 ignore Ctrl-C, which a terminal sends to them as well: their parent decides.

@@ -1,4 +1,4 @@
-"""The ways a request can fail, each carrying one sentence a student understands."""
+"""Failures of a request, each with one sentence for the user."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ class BadInput(ValueError):
     """A value from outside that cannot be used: the message says what, where, the allowed range and the nearest valid
     one.
 
-    Line ends and control characters of the value are written as escapes: it is one sentence, and a terminal would obey
-    them.
+    Line breaks and control characters of the value are escaped, so that the message stays one line and does not control
+    a terminal.
 
     Examples
     --------

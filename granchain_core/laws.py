@@ -1,4 +1,4 @@
-"""The damping laws a scene can name, each once: the slot that is compiled, and its name in words.
+"""The damping laws: the name of each in scenes and in words, and its slot class.
 
 Exponents stand beside the compiled code (kernels/effects/dissipation.py); the list of choices, the scale of D, the
 equation on screen, the names of effects and the reference solutions read this table.

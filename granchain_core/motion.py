@@ -1,4 +1,4 @@
-"""The motion of a chain over time, as runs, observations and driven motions have it, and the forces at its two ends."""
+"""A motion over time with the forces at both ends, the base of runs, observations and driven motions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every knob once: symbol, unit, range, LaTeX and meaning.
+"""The table of knobs: symbol, unit, range, LaTeX and meaning of each.
 
 Sliders, command line, share links, HDF5 attributes and the docs all read this table, so a fact about a
 parameter stands in one place.

@@ -1,4 +1,4 @@
-"""What kind of motion it is, with the evidence: periodic n, quasi-periodic, chaotic, or unsettled."""
+"""The regime of a motion with its evidence: period n, quasi-periodic, chaotic, or unsettled."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Regime:
     multiplier : float or None
         Largest |μ| of the n-period map, where it was computed.
     followed : bool
-        The motion was still on its way, and the orbit that it approaches was found by Newton's method or extrapolation.
+        Whether the motion was still approaching its orbit, which was then found by Newton's method or extrapolation.
     approaches : int or None
         Period of an orbit that an unsettled motion approaches.
     driven : bool

@@ -1,4 +1,4 @@
-"""What a run gives back, in SI."""
+"""The result of a run, in SI."""
 
 from __future__ import annotations
 

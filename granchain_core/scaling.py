@@ -1,4 +1,4 @@
-"""From a scene in SI to scaled arrays and one slot per effect: the only bridge between the two.
+"""From a scene in SI to scaled arrays and one slot per effect; nothing else converts between the two.
 
 Scales (Zhang et al. 2016, section 2): length A0, time 1/φ with φ² = K√A0/m, force K A0^{3/2}, m and K those of
 bead 1. Displacements are kept, never positions; the drive phase is never a product of a large time.

@@ -1,4 +1,4 @@
-"""Work handed to the workers of a Dask scheduler: maps, curves, batches and fits that are too large for one machine.
+"""Work on a Dask scheduler: maps, curves, batches and fits that are too large for one machine.
 
 A scheduler is a client of `distributed`, as `connect` gives it. Workers need the same version of granchain. Where one
 ends, the scheduler gives its work to another; what is computed does not depend on who computes it.

@@ -1,4 +1,4 @@
-"""Where a chain is at one instant, in SI."""
+"""The state of a chain at one instant, in SI."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from .scene import Scene
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where a chain is: its state at one instant.
+    """The state of a chain at one instant.
 
     Attributes
     ----------

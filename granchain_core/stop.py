@@ -1,4 +1,4 @@
-"""The one way to end a computation before it is done."""
+"""`Stop`: ends a computation before it is done."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from .errors import Cancelled
 
 
 class Stop:
-    """Asks a computation in another thread to end; it then raises `Cancelled`, or returns what there is.
+    """Asks a computation in another thread to end; it then raises `Cancelled`, or returns what is finished.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The one way from a text to a number: command line, links, fields of the page and CSV files all read numbers here.
+"""Reading numbers from text, the same for command line, links, fields of the page and CSV files.
 
 Python's own `float` and `int` take more than a person means (`1_000`, `١٠`, `１`, `nan`), and `int` raises an error of
 its own for 5,000 digits.

@@ -1,4 +1,4 @@
-"""The table of what can be compiled ahead of time, so that no visitor waits for a compiler.
+"""The table of what can be compiled ahead of time.
 
 A *structure* is the set of effects a scene has; moving a slider never changes it, adding a foundation or another
 dissipation law does, and the kernels of a new structure are compiled once per machine. They come in pieces, each of

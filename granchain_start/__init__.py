@@ -1,4 +1,4 @@
-"""What the command `granchain` runs: the package `app` of the tree, which is installed as `granchain_app`.
+"""The entry point of the command `granchain`: finds the package `app`, which is installed as `granchain_app`.
 
 A package called `app` would collide with everybody's. Nothing else is imported here: app/cli begins with what signals
 do.

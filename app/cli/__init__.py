@@ -1,4 +1,4 @@
-"""The command line: serve, scenes, warm, run, curve, orbit, branch, observe, fit, map, figure, cite, accuracy, check.
+"""The command line of granchain; each command is a module of its name, and commands.py has the list.
 
 Names, JSON keys and exit statuses are what others script against: 0 done, 2 bad input, 3 the numbers failed,
 130 cancelled by Ctrl-C, 143 by SIGTERM.

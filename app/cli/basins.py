@@ -1,4 +1,4 @@
-"""`granchain basins`: to which steady state each start of a plane leads."""
+"""`granchain basins`: the steady state that each start in a plane leads to."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Finding the command that the words ask for, doing it, and turning its failures into a sentence and an exit status.
+"""The table of commands; parsing and running one, and turning failures into a sentence and an exit status.
 
 With --json exactly one object goes to stdout: the result or, if the computation failed or was over budget, its outcome,
 a sentence and what is known. Progress goes to stderr.

@@ -1,4 +1,4 @@
-"""What all commands share: the scene that the options describe, words for a person, numbers for a script."""
+"""What all commands share: the scene from the options, messages on stderr, JSON on stdout."""
 
 from __future__ import annotations
 

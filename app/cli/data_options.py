@@ -1,4 +1,4 @@
-"""Options about a measured file: what its columns hold, where the file itself does not say it."""
+"""Options that say what the columns of a measured file hold, if the file itself does not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`granchain run --drive`: a chain whose driver moves otherwise than harmonically."""
+"""`granchain run --drive`: a chain whose driver moves other than harmonically."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a process ends by Ctrl-C (SIGINT, status 130) or SIGTERM (143): at any instant, in three seconds, in a sentence.
+"""Ending a process by Ctrl-C (SIGINT, status 130) or SIGTERM (143): at any time, within three seconds, with a sentence.
 
 Python would raise `KeyboardInterrupt` wherever the main thread happens to be: in an import, in a callback that swallows
 it, or only after a compiler has come back. Here a thread waits for the signals instead. While nothing is to be kept it

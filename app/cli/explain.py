@@ -1,4 +1,4 @@
-"""What --explain prints: the effects in a scene's kernel, those that are absent, the method and why, the machine."""
+"""The output of --explain: effects compiled in, absent effects, the method with its reason, the machine."""
 
 from __future__ import annotations
 

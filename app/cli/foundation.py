@@ -1,4 +1,4 @@
-"""Sentences about kappa = k/(K√A0), which changes with A0, for someone who sets or moves A0 on the command line."""
+"""Sentences about kappa = k/(K√A0), which changes with A0, for a command line that sets either."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`--out FILE --resume`: what an interrupted command has finished is in the folder FILE.blocks, and is not lost."""
+"""`--out FILE --resume`: checkpoints of an interrupted command in the folder FILE.blocks."""
 
 from __future__ import annotations
 

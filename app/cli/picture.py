@@ -1,4 +1,4 @@
-"""`--picture FILE.html`: the page's figure of a result, in a file that needs nothing else."""
+"""`--picture FILE.html`: the dashboard's figure of a result in a self-contained file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`granchain virtual`: what the sensors of a rig would record of a scene, as a CSV file that says so."""
+"""`granchain virtual`: what a rig's sensors would record of a scene, as a CSV file marked as virtual."""
 
 from __future__ import annotations
 

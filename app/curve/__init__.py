@@ -1,1 +1,1 @@
-"""The resonance curve and its sweeps: always on the screen, so it has no row in the table of pages and no tab."""
+"""The resonance curve and its sweeps: always on the screen, so no page and no tab."""

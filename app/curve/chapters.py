@@ -1,4 +1,4 @@
-"""The peaks, valleys and the stop band of the curve from rest by name, each a place to go to.
+"""Buttons for the peaks, valleys and the stop band of the curve from rest.
 
 A name rests on what is computed there. The extrema are those that stand out from both neighbours by 20 %
 (`steady/curve/resonance.py`). At each the chain is settled once more and its driver's pushes are counted. A peak is

@@ -58,7 +58,7 @@ export function render({ model }) {
   const places = new ChapterLabels((f) => model.send_msg({ do: "set", name: "f", value: f }));
   const name = () => {
     key.replaceChildren(
-      ...(model.state.driven ? keyOf(model.state.kinds) : ["Nothing drives this chain: there is no resonance curve."]),
+      ...(model.state.driven ? keyOf(model.state.kinds) : ["This chain has no drive, so there is no resonance curve."]),
     );
     places.show(model.state.chapters, model.state.stated);
   };

@@ -1,4 +1,4 @@
-"""The resonance curves of the page: which are wanted, when they are computed, and their way to the figure."""
+"""The resonance curves of one dashboard: which are shown, when they are computed, and how they reach the figure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the resonance curve shows of pinned motions: their places, and their curves behind the present one."""
+"""Pinned motions on the resonance curve: their points, and their curves behind the present one."""
 
 from __future__ import annotations
 

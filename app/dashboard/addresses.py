@@ -1,4 +1,4 @@
-"""What an address says is on the screen, taken over by a session: at a visit, and for every step back or forward."""
+"""Setting a session from an address: at a visit, and at every step back or forward."""
 
 from __future__ import annotations
 

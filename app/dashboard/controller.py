@@ -1,4 +1,4 @@
-"""The controller of the page: it receives messages from the parts and sends them pictures and sentences."""
+"""The controller of one dashboard: passes browser messages to their actions, and is the host of all pages."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Controller:
         with_document_lock(self._document, partial(self._guarded, action, message))
 
     def _unknown(self, message: dict[str, Any]) -> None:
-        self.say(f"The page sent a request {message['name']} that is not known here; reload the page.")
+        self.say(f"The server does not know the request {message['name']}; reload the page.")
 
     def _guarded(self, action: Callable[..., None], *arguments: Any) -> None:
         if self._left:

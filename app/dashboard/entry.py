@@ -1,4 +1,4 @@
-"""The page: what a visitor gets, wired to a session of its own."""
+"""The entry point of a visit: builds the document and its session."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All views of the page together, and the document they stand in."""
+"""All views of the dashboard, and the document that contains them."""
 
 from __future__ import annotations
 

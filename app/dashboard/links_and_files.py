@@ -75,11 +75,11 @@ class LinksAndFiles:
             if session.mode == "live":
                 raise BadInput(_PASSES)
             if session.picture is None or not session.picture.final or run.scene != session.scene:
-                raise BadInput("The picture is still being computed; save it when the line below no longer says "
+                raise BadInput("The picture is still being computed; save it when the status line no longer says "
                                "“preview”.")
         curves = self._curves.complete(session.scene)
         if what == "curve" and not curves:
-            raise BadInput("No resonance curve is complete yet; wait until its bar is gone.")
+            raise BadInput("No resonance curve is complete yet; wait until its progress bar disappears.")
         return Screen(run, session.started_from, curves, session.link)
 
     def _write(self, end: str, content: Callable[[], bytes]) -> None:

@@ -1,4 +1,4 @@
-"""The pictures of one dashboard: computed for the knobs as they are, sent at the pace of the browser."""
+"""The main picture: computed for the present knobs, sent at the pace of the browser."""
 
 from __future__ import annotations
 

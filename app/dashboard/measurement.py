@@ -1,4 +1,4 @@
-"""The visitor's own measurement: read in the background, asked about where it is unclear, compared with the curve."""
+"""The visitor's own measurement: read in the background, with questions if unclear, and compared with the curve."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ class Measurement:
         """What the visitor chose: columns as [quantity, number, unit], and words."""
         columns = message.get("columns", [])
         if not isinstance(columns, list) or not all(isinstance(one, list) and len(one) == 3 for one in columns):
-            raise BadInput("The choice of columns has not the form that the page sends; choose the file again.")
+            raise BadInput("The choice of columns could not be read; choose the file again.")
         words = [f"{str(quantity)[:20]}={str(number)[:6]}:{str(unit)[:30]}" for quantity, number, unit in columns]
         given = answers_of(words, _word(message, "decimal"), None, _word(message, "dataset"))
         before = self._answers

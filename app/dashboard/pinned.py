@@ -1,4 +1,4 @@
-"""Pinned pictures: lines that stay in the force trains and on the curve, and their numbers beside the present ones."""
+"""Pinned motions: their lines in the force trains and on the curve, and their numbers."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Pinned:
             raise BadInput(f"{len(NAMES)} pictures are pinned already; remove one of them in the tab “numbers” first.")
         picture = session.picture
         if picture.run.scene != session.scene:  # where it begins is not known yet
-            raise BadInput("The picture of these knobs is still being computed; pin it when it is there.")
+            raise BadInput("The picture of these knobs is still being computed; pin it when it is shown.")
         pin = Pin(session.scene, session.started_from)
         if picture.final:
             self._runs[_key(pin)] = picture.run

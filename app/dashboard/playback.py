@@ -1,4 +1,4 @@
-"""The controls of time: settled or live mode, start, speed, play or pause, and one period forward."""
+"""Playback: settled or live mode, start, speed, play or pause, one period forward."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The scales that pictures are drawn to: one for all pictures of a scene, or fitted to each.
+"""Scales of the pictures: one for all pictures of a scene, or fitted to each.
 
 *same*: the scale of a scene holds the largest values of its pictures over the whole range of f, from rest, at the
 knobs of its preset (`assets/scales.toml`, computed by `tools/scales.py`). It stays while knobs move: strong motion

@@ -1,4 +1,4 @@
-"""What the visitor is told in sentences, and the refused picture that may be computed all the same."""
+"""Sentences to the visitor, and the button that computes a refused picture anyway."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Putting a picture on the screen: one batch of changes to data sources, and one message to the chain."""
+"""Showing a picture: one batch of changes to data sources, and one message to the chain."""
 
 from __future__ import annotations
 

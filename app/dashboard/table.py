@@ -1,4 +1,4 @@
-"""The table of pages: layout, controller, the overlays of page.html and the tabs are made from it."""
+"""The table of pages, from which layout, controller, overlays and tabs are made."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     PageSpec("analysis", "analysis", AnalysisPage, Analysis,
         "Spectrum, strobes over a knob, basins and Lyapunov exponents of the present scene."),
     PageSpec("observer", "observer", ObserverPage, Observer,
-        "A copy of the chain that feels its input force and nothing else.", works_hidden=False),
+        "A copy of the chain that is driven only by its input force.", works_hidden=False),
     PageSpec("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),
     PageSpec("paper", "paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,

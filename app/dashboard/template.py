@@ -1,4 +1,4 @@
-"""The page as a document: every part a root in the template page.html, at a third of the cost of Panel's templates."""
+"""The HTML document of the dashboard, assembled at a third of the cost of Panel's templates."""
 
 from __future__ import annotations
 

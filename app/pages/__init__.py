@@ -1,1 +1,1 @@
-"""One folder for each page beside the main one: its Python, JavaScript and style together."""
+"""The pages behind the tabs, a folder each: Python, JavaScript and style together."""

@@ -1,1 +1,1 @@
-"""The parts every page shows: chain, knobs, force trains, energy map, status line."""
+"""The parts that are always on the screen: chain, knobs, force trains, energy map, status line."""

@@ -1,4 +1,4 @@
-"""The base of every part of the page that is drawn by our own JavaScript."""
+"""The base class of components that our own JavaScript draws."""
 
 from __future__ import annotations
 

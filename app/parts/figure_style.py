@@ -1,4 +1,4 @@
-"""What the time pictures and the curve have in common: quiet Bokeh plots with exact borders."""
+"""The style of the plots over time and of the curve: plain Bokeh plots with exact borders."""
 
 from __future__ import annotations
 

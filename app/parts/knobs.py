@@ -21,8 +21,8 @@ _NEUTRAL = {one.name: one.default for one in fields(Scene)
             if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike", "end")}
 #: What a knob is without a drive: its label and its meaning.
 _UNDRIVEN = {
-    "f": ("1 / time shown", "Nothing drives this chain: 1/f is the time that is shown."),
-    "A0": ("unit of length", "Nothing drives this chain: A₀ is only the unit in which lengths are computed."),
+    "f": ("1 / time shown", "This chain has no drive: 1/f is only the time that is shown."),
+    "A0": ("unit of length", "This chain has no drive: A₀ is only the unit of length in the computation."),
 }
 
 

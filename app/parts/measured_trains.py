@@ -1,4 +1,4 @@
-"""A measured series over the force trains and the drive: thin dashed lines in front, in a colour of their own."""
+"""A measured series over the force trains and the drive: thin dashed lines in a separate colour."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Base class of components with figures of results, each of which is a message of its own."""
+"""Base class of components whose figure is sent whole, as one message with all its points."""
 
 from __future__ import annotations
 

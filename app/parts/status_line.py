@@ -1,4 +1,4 @@
-"""The status line, which is always there: regime, force at the wall, error reached, computing time, method, effects."""
+"""The status line: regime, force at the wall, error reached, computing time, method, effects."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def regime_hint(picture: Settled, pushed: tuple[int, int] | None) -> str:
     if pushed is not None:
         meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
     if "|μ|" in picture.regime.sentence:
-        meanings.append("|μ|: what is left of a small disturbance after one orbit; below 1 the orbit is stable.")
+        meanings.append("|μ|: factor by which a small disturbance changes in one orbit; below 1 the orbit is stable.")
     return " ".join(meanings)
 
 

@@ -1,4 +1,4 @@
-"""Any result as a figure: what `granchain.figure` calls."""
+"""The figure of any result, which `granchain.figure` returns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Axes whose unit reads well."""
+"""Axes with a readable SI prefix."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Basins in a plane of starts: each start coloured by the steady state to which it leads."""
+"""Basins of attraction in a plane of starts, coloured by steady state."""
 
 from __future__ import annotations
 

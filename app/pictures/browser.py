@@ -1,4 +1,4 @@
-"""A figure as PNG or SVG: drawn by BokehJS in a Chromium without a window, as Bokeh's own export does.
+"""A figure as PNG or SVG, drawn by BokehJS in headless Chromium.
 
 Bokeh's `export_png` and `export_svg` need Selenium and a driver beside the browser. Chromium alone is enough: it takes
 a picture of a page (`--screenshot`) and prints a page as it has become (`--dump-dom`), here with what BokehJS's

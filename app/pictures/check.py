@@ -1,4 +1,4 @@
-"""The picture of a hard case: what granchain computes and what a naive solver draws, over the same axes."""
+"""The picture of a hard case: granchain's result and a naive solver's on the same axes."""
 
 from __future__ import annotations
 

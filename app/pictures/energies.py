@@ -1,4 +1,4 @@
-"""The colours of kinetic energy: one list for the page, its chain, files and notebooks, and the bar that tells it."""
+"""The colour scale of kinetic energy, the same for the page, files and notebooks, and its colour bar."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lines beside the energies of a motion, as the page and every file draw them: titles, looks, columns of data.
+"""The force and drive lines of a motion, the same for the page and for files: titles, colours, columns of data.
 
 On the left the input force over the lower axis and the drive over the upper one, on the right the output force and its
 elastic part.

@@ -1,4 +1,4 @@
-"""Multipliers in the complex plane: inside the unit circle filled, outside larger and open, and where they were."""
+"""Multipliers in the complex plane: filled inside the unit circle, larger and open outside, with their trail."""
 
 from __future__ import annotations
 

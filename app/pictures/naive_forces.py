@@ -1,4 +1,4 @@
-"""What naive steps would have drawn: the output force dashed over the accurate one, and their difference below."""
+"""Forces of naive methods: dashed over the accurate output force, and their difference below."""
 
 from __future__ import annotations
 

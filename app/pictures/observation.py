@@ -1,4 +1,4 @@
-"""What an observer of a measured force does: the force that enters, the one that arrives, and the measured one."""
+"""An observation: the measured input force, the computed output force, and the measured one if there is one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How a regime is marked wherever points of several are drawn: the curve, the map, the legend."""
+"""Marks of the regimes, the same in curve, map and legend."""
 
 from __future__ import annotations
 

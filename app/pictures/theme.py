@@ -1,4 +1,4 @@
-"""Colours and widths of the themes, and how a figure gets them while it is made."""
+"""Themes: their colours and line widths, and how they are applied to a figure."""
 
 from __future__ import annotations
 

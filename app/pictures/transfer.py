@@ -20,7 +20,7 @@ def transfer(found: Transfer, theme: Theme) -> LayoutDOM:
     Raises `BadInput` where the input force has none.
     """
     if not len(found.frequency):
-        raise BadInput("No line of the input force counts, so there is no transfer.")
+        raise BadInput("The input force has no lines, so there is no transfer.")
     hertz, letter = prefixed(float(found.frequency.max()))
     source = ColumnDataSource({"frequency": found.frequency / hertz, "gain": found.gain, "phase": found.phase},
                               name="lines")

@@ -1,1 +1,1 @@
-"""What serving needs: document lock, sockets, guards, logs, meters, pace, turns, shared results, compiling ahead."""
+"""The server's machinery: document lock, sockets, guards, logs, meters, pace, turns, shared results, compiling."""

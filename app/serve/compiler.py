@@ -1,4 +1,4 @@
-"""Compiling outside the server process: a visitor who must wait is told so, and nobody else is held up.
+"""Compiling outside the server process, so that only the visitor who needs it waits.
 
 Numba holds the interpreter while it compiles, so kernels that are not cached yet are compiled in processes of
 their own; this one then loads them from the cache.

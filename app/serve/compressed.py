@@ -1,4 +1,4 @@
-"""Files for the browser, compressed once for all visitors: a page's scripts are 3.4 MB, and 1 MB compressed.
+"""Compressed scripts and styles, each compressed once: 1 MB for a page instead of 3.4 MB.
 
 In a lecture hall a hundred laptops fetch them over one wireless network. Tornado would compress them anew for each.
 """

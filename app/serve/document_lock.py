@@ -1,4 +1,4 @@
-"""Whether a document may be changed now, and what waits until it may."""
+"""The document lock: whether a document may be changed now, and calls that wait until it may."""
 
 from __future__ import annotations
 

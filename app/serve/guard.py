@@ -114,7 +114,7 @@ class Guard(RequestHandler):
         """A line for the visitor; what happened is in the log under the same id."""
         self.set_header("Content-Type", "text/plain; charset=UTF-8")
         sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
-                503: "As many visitors are here as this server can answer; please try again in a minute.",
+                503: "This server has as many visitors as it can serve; please try again in a minute.",
                 500: "Something went wrong inside granchain."}
         self.finish(f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n")
 

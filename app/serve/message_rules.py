@@ -1,4 +1,4 @@
-"""Which websocket messages reach Bokeh: those that BokehJS sends for a page of ours, by their form alone.
+"""Rules for websocket messages: only those that BokehJS sends for our page reach Bokeh.
 
 Bokeh decodes more than its browser side sends: compressed bytes, which a few kilobytes make gigabytes of, arrays of any
 shape, new models of any kind, a whole new document. A message is three texts, header, metadata and content; it is let

@@ -1,4 +1,4 @@
-"""What the server counts, and `/liveness` and `/metrics`, where it is read."""
+"""Counters of the server, and the addresses `/liveness` and `/metrics` that show them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sending pictures at the pace of the browser: at most two are on their way; the next waits for an acknowledgement."""
+"""Sending pictures at the pace of the browser: at most two are in transit until one is acknowledged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Results that several visitors ask for: computed once while they wait, and kept for the next, in bounded memory.
+"""Shared results: computed once for all visitors who wait, and cached in bounded memory.
 
 A class whose pages all stand at the same knobs costs as much as one visitor. A computation ends when the last visitor
 who waits for it has moved on or left.

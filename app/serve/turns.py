@@ -1,4 +1,4 @@
-"""Fair turns: of the visitors whose pictures wait, the one that has used least time computes next.
+"""Fair scheduling: the next picture computed is that of the waiting visitor who has used least time.
 
 Kernels run without the interpreter's lock, so as many computations as there are cores go on at once. Each gives its
 turn up at its pauses, some hundredths of a second apart, if a visitor waits that has used less. A computation that has

@@ -1,4 +1,4 @@
-"""The method and setting with which the main page computes now, and their place among measured rows."""
+"""The method and setting that the main page uses now, and their place among the measured rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is being computed for one visitor at this moment, and what is not."""
+"""The list of what is being computed for one visitor."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What one visitor may ask of the machine: the time of a picture and of a curve, estimated before they are computed."""
+"""Limits on one visitor's requests: the estimated time of a picture and of a curve."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ class TooLong(BadInput):
     """The steady state was not found within the time of one picture."""
 
     def __init__(self) -> None:
-        super().__init__(f"After {WHOLE_PICTURE:g} s of computing this chain has not settled; the picture shows how "
-                         "far it has come.")
+        super().__init__(f"After {WHOLE_PICTURE:g} s of computing this chain has not settled; the picture shows the "
+                         "motion so far.")
 
 
 @functools.lru_cache(maxsize=64)

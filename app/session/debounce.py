@@ -1,4 +1,4 @@
-"""Work that begins when nothing has moved for a while."""
+"""Debouncing: work that starts when nothing has moved for a while."""
 
 from __future__ import annotations
 

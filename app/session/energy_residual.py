@@ -1,4 +1,4 @@
-"""The energy account of the picture shown: its motion computed again, with work and loss integrated alongside."""
+"""The energy residual of the picture: its motion computed again with work and loss."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is on the screen as tables, and as a program that computes it again."""
+"""Exports: the picture's data as tables, and a program that computes them again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The hooks through which the dashboard informs each page, and what it asks of a page."""
+"""The hooks through which the dashboard informs its pages."""
 
 from __future__ import annotations
 

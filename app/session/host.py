@@ -1,4 +1,4 @@
-"""What a page may ask of its dashboard. `Controller` implements it; tests have their own."""
+"""The interface of the dashboard that pages use; `Controller` implements it, and tests have their own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The live run, which continues while knobs move; each step waits until the browser has painted the last one."""
+"""The live run, which continues while knobs move, one step per painted picture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks of what a message from a browser contains; nothing in it is trusted unchecked."""
+"""Checks of browser messages, whose contents are never trusted."""
 
 from __future__ import annotations
 
@@ -30,5 +30,5 @@ def whole(what: str, value: object, low: int, high: int) -> int:
 def listed(what: str, items: Sequence[Item], place: object) -> Item:
     """Return the item at a place of a list on the page; raise `BadInput` if the list no longer has it."""
     if not is_number(place) or not isinstance(place, int) or not 0 <= place < len(items):
-        raise BadInput(f"That {what} is not on the page any more; choose another.")
+        raise BadInput(f"That {what} is no longer on the page; choose another.")
     return items[place]

@@ -1,4 +1,4 @@
-"""Pinned motions, which stay while the knobs move: as links, and in numbers beside the present one."""
+"""Pinned motions as links, and their numbers beside those of the present motion."""
 
 from __future__ import annotations
 

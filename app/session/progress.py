@@ -1,4 +1,4 @@
-"""How computations stand, in words: the one vocabulary of all pages and of the list of what is computed now."""
+"""Words for the status of computations, the same on all pages."""
 
 from __future__ import annotations
 

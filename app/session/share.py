@@ -1,4 +1,4 @@
-"""Share links: scene name, knobs that differ from its preset, and how it is shown, as one versioned query string.
+"""Share links: scene, knobs that differ from it, and view settings in one versioned query string.
 
 A link stores differences only: a changed preset changes what old links mean (tests/session/test_share.py).
 Each field is checked by itself: a bad one is refused with a sentence, and the others are still used.

@@ -31,7 +31,7 @@ def read_start(text: str, scene: Scene) -> State:
         content = base64.b64decode(text + "=" * (-len(text) % 4), altchars=b"-_", validate=True)
         values = np.frombuffer(content, dtype="<f8").astype(float)
     except (binascii.Error, ValueError):
-        raise BadInput("The state in which the motion began is damaged in the link; it begins at rest.") from None
+        raise BadInput("The initial state in the link is damaged; the motion begins at rest.") from None
     if len(values) != 2 * scene.N + 1:
         raise BadInput(f"The link begins the motion in a state of {(len(values) - 1) // 2} beads, but the chain has "
                        f"{scene.N}; it begins at rest.")
@@ -39,5 +39,5 @@ def read_start(text: str, scene: Scene) -> State:
     # Beyond a bead's size and the speed of sound in steel no contact law means anything.
     sane = np.isfinite(values).all() and 0.0 <= phase < 1.0 and np.abs(places).max() < 1.0
     if not sane or np.abs(speeds).max() > 6000.0:
-        raise BadInput("The state in which the motion began is no state of a chain; it begins at rest.")
+        raise BadInput("The initial state in the link is impossible for a chain; the motion begins at rest.")
     return State(places, speeds, float(phase))

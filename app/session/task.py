@@ -1,4 +1,4 @@
-"""A page's background work: starting it, cancelling it, and the one place for its failures."""
+"""A page's background work: starting, cancelling, and handling its failures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The terms that explain themselves on the page, with their definitions from docs/glossary.md."""
+"""Definitions of terms shown on the page, from docs/glossary.md."""
 
 from __future__ import annotations
 

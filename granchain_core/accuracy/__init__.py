@@ -1,4 +1,4 @@
-"""What accuracy costs: error against time for every method, on this machine, now; and what each effect costs."""
+"""Work-precision measurements on this machine: error against time for every method, and the cost of each effect."""
 
 from .compared_methods import MeasuredMethod, compared_methods
 from .naive import Lesson, Naive

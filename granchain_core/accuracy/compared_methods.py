@@ -1,4 +1,4 @@
-"""The methods and settings that are measured: the whole table of methods, and SciPy's solvers beside it."""
+"""The methods and settings that are measured: all of the table of methods, and SciPy's solvers."""
 
 from __future__ import annotations
 

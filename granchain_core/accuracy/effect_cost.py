@@ -1,4 +1,4 @@
-"""The cost of one effect in a step: the same chain's kernel with it and without it, timed alternately.
+"""The cost of one effect per step: kernels with and without it, timed alternately.
 
 There are two costs. The effect's *code* is timed with plain RK4, whose every step does the same arithmetic. The method
 rk4-split also splits steps where contacts open or close, so an effect that changes the motion (a preload that keeps

@@ -1,4 +1,4 @@
-"""A stop flag with a time limit: one slow setting must not delay all the others."""
+"""A stop flag with a time limit, so that one slow setting does not delay the others."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Naive results: the output force in (u, v) with plain steps, beside the accurate one.
+"""The output force by naive methods: plain steps in (u, v), for comparison with the accurate force.
 
 The lesson of the accuracy page: the picture looks like a result, and nothing in it shows that it is wrong.
 """

@@ -99,7 +99,7 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
         inner, rows = _period(motion, SOLVERS[solver], tolerance, inner, samples, located)
         out[p * samples + 1 : (p + 1) * samples + 1] = rows
         if not np.isfinite(inner).all():  # LSODA calls that a success
-            raise NumbersFailed(f"SciPy's {solver} lost the motion in drive period {p + 1}: its state is no longer "
+            raise NumbersFailed(f"SciPy's {solver} failed in drive period {p + 1}: its state is no longer "
                                 f"finite, at tolerance {tolerance:g}.", "not-finite")
     counts = Counts()
     counts.array[EVALUATIONS] = motion.evaluations

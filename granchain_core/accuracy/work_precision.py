@@ -147,7 +147,7 @@ def cheapest(rows: list[Row], error: float) -> Row | None:
 def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[float], None] | None = None,
                    report: Callable[[WorkPrecision], None] | None = None,
                    pause: Callable[[], None] | None = None) -> WorkPrecision:
-    """What accuracy costs: error against time for every method on one scene, measured here and now.
+    """Work-precision data of one scene: error against time for every method, measured on this machine.
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""What a motion is like: its spectrum, its Lyapunov spectrum and dimension, its strobes over a knob, its basins."""
+"""Analysis of a motion: spectrum, Lyapunov spectrum and dimension, strobes over a knob, basins, pulses, pass bands."""

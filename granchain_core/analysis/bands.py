@@ -1,4 +1,4 @@
-"""Pass bands of a precompressed chain: the frequencies of its small waves.
+"""Pass bands of a precompressed chain: the frequencies at which small waves propagate.
 
 Every contact is a spring k_c = dF/dδ = (3/2) K_c^{2/3} F0^{1/3} about the compressed rest. Equal beads have one band,
 from 0, or √(k/m)/2π on a foundation, to the cut-off f_c = (1/π) √(k_c/m); dimers have an acoustic and an optical one
@@ -20,18 +20,18 @@ from ..scene.description import hertz_stiffness
 
 
 def bands(scene: Scene) -> list[tuple[float, float]]:
-    """Pass bands of small waves in an endless chain of a scene's beads.
+    """Pass bands of small waves in an infinite chain of a scene's beads.
 
     Parameters
     ----------
     scene : Scene
-        A chain with a preload; a striker and an impurity, which are single beads, are left out.
+        A chain with a preload; striker and impurity, which are single beads, are ignored.
 
     Returns
     -------
     list of (float, float)
-        Lowest and highest frequency of each band [Hz], ascending: as many as the pattern has beads. The last one's end
-        is the cut-off.
+        Lowest and highest frequency of each band [Hz], ascending, a band for each bead of the pattern. The upper edge
+        of the last band is the cut-off.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def bands(scene: Scene) -> list[tuple[float, float]]:
         raise BadInput("Without a preload no small wave can travel, so there are no bands; set F0 above 0, for example "
                        "F0=10.")
     if scene.taper != 1.0:
-        raise BadInput("A tapered chain has no cell that repeats, so it has no bands; the nearest valid value is "
+        raise BadInput("A tapered chain is not periodic, so it has no bands; the nearest valid value is "
                        "taper = 1.")
     count = math.lcm(len(scene.pattern), 1 if scene.dimer == 1.0 else 2)
     host = replace(scene, striker=1.0, impurity=1.0, impurities=())

@@ -1,4 +1,4 @@
-"""Basins of attraction in a plane of starts: to which steady state each start leads.
+"""Basins of attraction: the steady state that each start in a plane leads to.
 
 A start is the chain at rest but for two coordinates at drive phase 0, each the displacement or the velocity of a bead.
 The space of starts has 2N dimensions; of it a plane shows a slice, in which a basin may be missing or in pieces.
@@ -27,7 +27,7 @@ MOST_CELLS = 250_000
 
 @dataclass(frozen=True, eq=False)
 class Basins(Labelled):
-    """Where the starts of a plane lead.
+    """Basins of attraction in a plane of starts.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Basins(Labelled):
     attractors : list of Attractor
         The steady states that were found, the one with the most starts first.
     number : numpy.ndarray of int, shape (len(y), len(x))
-        Place in `attractors`; −1 where the computation failed or the computation was stopped.
+        Index in `attractors` of each start; −1 where the computation failed or was stopped.
 
     Examples
     --------
@@ -83,7 +83,7 @@ class Basins(Labelled):
 
 def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]], stop: Stop | None = None,
            progress: Callable[[float], None] | None = None) -> Basins:
-    """To which steady state each start of a plane leads.
+    """The basins of attraction in a plane of starts: the steady state that each start leads to.
 
     Parameters
     ----------
@@ -92,14 +92,14 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
     x, y : tuple of (str, iterable of float)
         A coordinate, "u1" … "uN" [m] or "v1" … "vN" [m/s], and its values. All others are 0 at the start.
     stop : Stop, optional
-        Once it is set the computation ends with what is there; other starts are −1.
+        When set, the computation ends with what is finished; the other starts are −1.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
 
     Returns
     -------
     Basins
-        Attractors, and the place of each start's among them.
+        The attractors, and the index of each start's attractor.
 
     Raises
     ------
@@ -137,7 +137,8 @@ def _axis(scene: Scene, name: str, values: Iterable[float]) -> tuple[tuple[int, 
     """Place of a coordinate in a state (2, N), and its values."""
     found = re.fullmatch(r"([uv])([1-9][0-9]{0,4})", name, re.ASCII)
     if found is None or int(found[2]) > scene.N:
-        raise BadInput(f"Coordinate {name[:40]!r} is none; there are u1 to u{scene.N} [m] and v1 to v{scene.N} [m/s].")
+        raise BadInput(f"Coordinate {name[:40]!r} does not exist; there are u1 to u{scene.N} [m] and v1 to v{scene.N} "
+                       "[m/s].")
     numbers = np.asarray(list(values), dtype=float)
     if not np.isfinite(numbers).all():
         raise BadInput(f"The values of {name} must be finite numbers.")

@@ -49,11 +49,11 @@ class LyapunovSpectrum(Labelled):
     exponents, errors : numpy.ndarray, shape (2N,)
         Per drive period, largest first, and their standard errors: of the means of 20 blocks taken as independent.
     dimension : float or None
-        Kaplan–Yorke dimension of the section's attractor from the exponents as they are.
+        Kaplan–Yorke dimension of the section's attractor, from the exponents without their errors.
     dimension_range : tuple of float or None
         The dimension with all exponents one standard error lower, and higher.
     resolved : int
-        How many of them are known; the others are at most what is given.
+        Number of exponents that are resolved; the others are upper bounds.
     periods : int
         Drive periods over which they are means.
     mean_trace : float

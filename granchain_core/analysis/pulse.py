@@ -1,4 +1,4 @@
-"""The first pulse that runs along a chain: when it passes each contact, its force, its speed and its width.
+"""The first pulse along a chain: its time, force, speed and width at each contact.
 
 A chain of equal beads without precompression carries a solitary wave whose shape does not depend on its strength. With
 K = m = 1 and the distance of two beads as the unit of length its speed is V = c F^{1/6} for the largest force F, in
@@ -112,18 +112,18 @@ class Pulse(Labelled):
 
 
 def pulse(run: Run) -> Pulse:
-    """The first pulse of a motion: its way from contact to contact.
+    """The first pulse of a motion, contact by contact.
 
     Parameters
     ----------
     run : Run
-        A motion from its start, in which a contact closes for the pulse and opens behind it; some fifty samples for
-        the time in which the pulse passes a bead.
+        A motion from its start, in which each contact closes when the pulse arrives and opens behind it, with about
+        fifty samples in the time that the pulse takes from bead to bead.
 
     Returns
     -------
     Pulse
-        Times and heights by a parabola through the largest sample and its neighbours.
+        Times and largest forces, from a parabola through the largest sample and its neighbours.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The strobe diagram: a bead's states once per drive period, over a knob; in the field, the bifurcation diagram.
+"""The bifurcation diagram: a bead's states once per drive period (strobes) over a knob.
 
 At each value of the knob the chain settles (regime, with its evidence), and its next strobes are kept: n points of an
 orbit of period n, a closed curve seen from the side, or the many points of chaos. Where sweeps up and down differ,
@@ -137,7 +137,7 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
     keep : int
         Strobes at each value, 1 to 10,000.
     stop : Stop, optional
-        Once it is set the diagram ends; what is computed stays.
+        When set, the diagram ends with the values that are finished.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
 

@@ -1,4 +1,4 @@
-"""Steady states that coexist, with the starts that lead to each, as results."""
+"""Coexisting steady states as results, with the starts that lead to each."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ class Attractor:
 
 
 class Attractors(list[Attractor], Labelled):
-    """The steady states that were found: a list, that of most starts first.
+    """The list of steady states that were found; the one that most starts lead to comes first.
 
     Attributes
     ----------

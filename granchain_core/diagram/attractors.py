@@ -1,4 +1,4 @@
-"""All steady states of one setting that are found from rest, from both sweeps and from random states.
+"""The search for all steady states of one setting: from rest, from sweeps up and down, and from random states.
 
 All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable
 orbit, where a slow departure looks like a steady state, is displaced and run further.
@@ -57,14 +57,14 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     seed : int
         Of the random states; the same seed gives the same answer.
     stop : Stop, optional
-        Once it is set the search ends with what has been found, or with `Cancelled` before anything is.
+        When set, the search ends with what it has found, or raises `Cancelled` if that is nothing.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
 
     Returns
     -------
     Attractors
-        A list of `Attractor`, each steady state once, that of most starts first.
+        A list of `Attractor`, each steady state once; the one that most starts lead to comes first.
 
     Raises
     ------

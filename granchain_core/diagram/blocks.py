@@ -1,4 +1,4 @@
-"""Finished cells of a diagram on disk (checkpoints.py), as tables of 128 cells."""
+"""Checkpoints of a map (checkpoints.py): finished cells on disk, as tables of 128."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The boundaries that a diagram shows, found where neighbouring cells differ and followed through its rows.
+"""Stability boundaries in a map: found between neighbouring cells and continued through its rows.
 
 A pair of neighbouring cells determines what is searched between them: periods n and 2n a period doubling, a periodic
 and a quasi-periodic cell a Neimark–Sacker point, anything else the fold at which an orbit ends. The orbit of the

@@ -1,4 +1,4 @@
-"""Curves in the plane of two knobs on which an orbit loses its stability: folds, period doublings, Neimark–Sacker.
+"""Stability boundaries in the plane of two knobs: curves of folds, period doublings and Neimark–Sacker points.
 
 On such a curve the orbit's critical multiplier meets its condition:
 
@@ -187,7 +187,7 @@ def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y
     except (np.linalg.LinAlgError, BadInput) as problem:
         raise NumbersFailed(f"The branch could not be followed: {problem}.", "no-convergence") from None
     raise NumbersFailed(f"No {kind.replace('_', ' ')} was found on this branch near {branch.knob} = "
-                        f"{guess[-1] * branch.unit:g}; give an orbit nearer to it.", "no-point")
+                        f"{guess[-1] * branch.unit:g}; start from an orbit nearer to it.", "no-point")
 
 
 def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,

@@ -97,7 +97,7 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
     x, y : tuple of (str, iterable of float)
         A knob ("f", "A0", "D", "k", "kappa", "F0", "wall", "dimer", …) and its ascending values in SI.
     stop : Stop, optional
-        Read between cells; once it is set the diagram ends, and cells that are not computed have regime −1.
+        Read between cells. When set, the diagram ends, and cells that are not computed have regime −1.
     progress : callable, optional
         Called with the diagram so far and the fraction that is done, after every cell.
     workers : int, optional

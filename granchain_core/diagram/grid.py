@@ -76,7 +76,7 @@ class Grid:
         if len(names) == 1:
             raise BadInput(f"Both axes are {self.x.knob}; give two distinct knobs.")
         if names == {"k", "kappa"}:
-            raise BadInput("k and kappa say the same thing: give one of them an axis, not both.")
+            raise BadInput("k and kappa are the same quantity: give one of them an axis, not both.")
         if self.size > MOST_CELLS:
             raise BadInput(f"{len(self.x.values)} × {len(self.y.values)} = {self.size} cells are more than "
                            f"{MOST_CELLS}; take fewer points on an axis.")

@@ -1,4 +1,4 @@
-"""Which results are one and the same steady state.
+"""Comparing results: whether two of them are the same steady state.
 
 Periodic results are the same if all their stroboscopic states agree for some shift by whole periods, so that the n
 copies of a period-n orbit count once; first within the errors claimed for them, then, when each has been brought onto

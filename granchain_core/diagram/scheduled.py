@@ -1,4 +1,4 @@
-"""Blocks of a diagram handed to a Dask scheduler, for maps that are too large for one machine."""
+"""Blocks of a map computed by a Dask scheduler, for maps that are too large for one machine."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was measured: the features the paper's text states, and a user's own data."""
+"""Measurements: the features that the paper's text states, and the user's own data."""
 
 from .columns import Convention
 from .compare import Difference, compared

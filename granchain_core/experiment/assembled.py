@@ -1,4 +1,4 @@
-"""Columns in SI become a measured curve, the shaker's amplitudes or a time series, checked row by row."""
+"""From columns in SI to a measured curve, shaker amplitudes or a time series, checked row by row."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which column of a file is which quantity in which unit: from titles where they settle it, from answers, or asked."""
+"""The quantity and unit of each column of a file: from its titles, a reader's convention or the user's answers."""
 
 from __future__ import annotations
 
@@ -143,7 +143,7 @@ def answered(asked: Asked, answers: Answers) -> Chosen:
             if number > len(asked.guesses):
                 raise BadInput(f"There is no column {number}; the file has {len(asked.guesses)}.")
             if any(place == number - 1 for there in found.values() for place, _ in there):
-                raise BadInput(f"Column {number} is given two quantities; give it one.")
+                raise BadInput(f"Column {number} is assigned to two quantities; name one.")
             found.setdefault(quantity, []).append((number - 1, unit))
     return found
 

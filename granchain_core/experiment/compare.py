@@ -1,4 +1,4 @@
-"""Compare a measured curve with a computed one: differences in newtons and, if known, in units of the errors."""
+"""The difference between a measured and a computed curve, in newtons and, if known, in units of the errors."""
 
 from __future__ import annotations
 

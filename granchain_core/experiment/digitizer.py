@@ -1,4 +1,4 @@
-"""Projects of WebPlotDigitizer: JSON of versions 3 and 4, alone or in a TAR archive, and its tables of datasets.
+"""Files of WebPlotDigitizer: projects of versions 3 and 4 (JSON, alone or in a TAR archive), and tables of datasets.
 
 Version 4: {"version": [4, 2], "axesColl": [{"name", "type"}], "datasetColl": [{"name", "axesName", "data": [{"value":
 [x, y]}]}]}. Version 3 has {"wpd": {"axesType", "dataSeries": [{"name", "data"}]}}. The format is described in

@@ -1,4 +1,4 @@
-"""The shaker's response as a drive: amplitudes over the frequency from a file or a formula."""
+"""The drive amplitude over the frequency, from a file of shaker amplitudes or a formula."""
 
 from __future__ import annotations
 
@@ -30,5 +30,5 @@ def read_amplitude(text: str, answers: Answers | None = None) -> Amplitude:
     assert isinstance(shaker, Shaker)
     if (shaker.velocity <= 0.0).any():
         raise BadInput(f"{Path(text).name}: the amplitude at {shaker.frequency[shaker.velocity <= 0.0][0]:g} Hz is 0; "
-                       "a drive needs more.")
+                       "a drive needs an amplitude above 0.")
     return Amplitude.table(shaker.frequency, shaker.displacement, shaker.source)

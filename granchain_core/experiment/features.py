@@ -1,4 +1,4 @@
-"""The features of the measured resonance curve that the paper's text states: frequencies with their kind."""
+"""Features of the measured resonance curve that the paper's text states: their kinds and frequencies."""
 
 from __future__ import annotations
 

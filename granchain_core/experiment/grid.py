@@ -1,4 +1,4 @@
-"""From the bytes of a text file to its fields with their lines: encoding, line ends, separator, comments.
+"""From the bytes of a text file to numbered rows of fields: encoding, line ends, separator, comments.
 
 Nothing is decided about numbers but whether a field looks like one.
 """
@@ -92,7 +92,7 @@ def _decoded(content: bytes) -> tuple[str, str]:
     control = re.search(r"[\x00-\x08\x0e-\x1a\x1c-\x1f\x7f]", text[0][:2_100_000])
     if control:
         line = len(re.split(r"\r\n|\r|\n", text[0][: control.start()]))
-        raise BadInput(f"Line {line}: there is a byte {ord(control[0])} that no text has; the file is not a table.")
+        raise BadInput(f"Line {line}: the byte {ord(control[0])} does not occur in text; the file is not a table.")
     return text
 
 

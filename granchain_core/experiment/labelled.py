@@ -1,4 +1,4 @@
-"""Measurements in HDF5 and netCDF-4: rows of numbers with names and units, read through the border for such files."""
+"""Measurements in HDF5 and netCDF-4 files: rows of numbers with names and units."""
 
 from __future__ import annotations
 

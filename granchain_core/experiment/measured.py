@@ -1,4 +1,4 @@
-"""A measured resonance curve, and how the data of a virtual experiment are told from measured ones."""
+"""A measured resonance curve, and the mark that tells data of a virtual experiment from measured ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numbers in the dialects of spreadsheets: decimal point or comma, thousands apart by the other mark, ' or a space.
+"""Numbers as spreadsheets write them: decimal point or comma, thousands separated by the other mark, ' or a space.
 
 A file has one decimal mark. Which one is certain where only one reading fits every number and no number stands for
 another under the other reading; else it is asked.

@@ -1,4 +1,4 @@
-"""Questions about a file whose columns, units or number format are ambiguous, and the answers."""
+"""Questions about a file whose columns, units or number format are ambiguous, and the user's answers."""
 
 from __future__ import annotations
 

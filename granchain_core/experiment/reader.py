@@ -1,4 +1,4 @@
-"""Read a measured table from a file; ask about ambiguous columns, units and numbers; refuse errors with their line.
+"""The reader of measured tables: it asks about ambiguous columns, units and numbers, and names the line of an error.
 
 CSV and what spreadsheets make of it, projects and tables of WebPlotDigitizer, HDF5 and netCDF-4.
 """

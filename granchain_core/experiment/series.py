@@ -1,4 +1,4 @@
-"""A user's measured time series and shaker amplitudes; which of them a file is, or a curve, reader.py finds out."""
+"""A measured time series, and measured shaker amplitudes, as data classes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A table of text: where its header ends, what its titles and units row say, and its numbers."""
+"""A table of text taken apart: lines before the header, titles, units and numbers."""
 
 from __future__ import annotations
 

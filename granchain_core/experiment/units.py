@@ -1,4 +1,4 @@
-"""Quantities of a measurement, their units in SI, and the names that header words have for them."""
+"""Quantities of a measurement, their units in SI, and the words of headers that name them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A model's parameters from measurements: misfit, search, intervals, and the verdict where the model cannot."""
+"""Fitting a model's parameters to measurements: misfit, search, confidence intervals, verdict."""
 
 from .fit import Fit, fit
 from .parameters import Free

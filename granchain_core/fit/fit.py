@@ -1,4 +1,4 @@
-"""`fit`: the parameters of a scene from a measurement, their intervals, and whether the model can describe it."""
+"""`fit`: parameters of a scene from a measurement, their intervals, and whether the model can describe it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ MOST_FREE, _AGAIN = 30, 4
 
 @dataclass(frozen=True, eq=False)
 class Fit(Labelled):
-    """What a fit found.
+    """The result of a fit.
 
     Attributes
     ----------
@@ -46,13 +46,13 @@ class Fit(Labelled):
     profiles : tuple of Profile
         For each parameter its profile and its 95 % interval; empty if none was asked for.
     misfit : float
-        The least −2 ln likelihood, but for a constant: χ² and the logarithms of the variances.
+        The least −2 ln likelihood up to a constant: χ² plus the logarithms of enlarged variances.
     data : int
         Data and priors compared.
     freedom : int
         Data and priors less parameters.
     probability : float or None
-        Of a χ² as large if the model were true; None where the data's errors are not known.
+        Probability of a χ² at least as large if the model were true; None where the data's errors are not known.
     verdict : str
         "can", "cannot" or "not known".
     sentence : str
@@ -166,7 +166,8 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
     free : sequence of Free
         Parameters with bounds and, if there are any, priors.
     design : int
-        Places over the bounds that are tried first; 0 for 32, 64 or 128 for up to 2, 3 or more parameters.
+        Number of points within the bounds that are tried first; 0 means 32, 64 or 128 for up to 2, 3 or more
+        parameters.
     intervals : bool
         Whether profile likelihoods and their 95 % intervals are computed.
     stop : Stop, optional
@@ -263,7 +264,7 @@ def _sentence(problem: Problem, evaluation: Evaluation, best: np.ndarray, counte
               probability: float | None, verdict: str) -> str:
     """The verdict with its evidence."""
     if verdict == "not known":
-        return ("Whether the model can describe the data is not known: their errors are not. Intervals hold if it can."
+        return ("The errors of the data are not known, so there is no verdict. Intervals hold if the model fits."
                 if not problem.target.sigma_known else "There are as many parameters as data: any model would fit.")
     numbers = f"χ² = {problem.chi_squared(best):.4g} for {counted} degrees of freedom, probability {probability:.2g}"
     edge = [one.name for one, x in zip(problem.free, best, strict=True) if min(x, 1.0 - x) < 1e-3]

@@ -1,4 +1,4 @@
-"""Profile likelihood: for every parameter the least misfit that is left when it is held, and where that is too much."""
+"""Profile likelihood: the least misfit with one parameter fixed, and the 95 % interval that follows from it."""
 
 from __future__ import annotations
 

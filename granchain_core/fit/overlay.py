@@ -1,4 +1,4 @@
-"""A measured series over a periodic motion of the model: how far it is moved in time, and what is left between them.
+"""A measured series over a periodic motion of the model: the shift in time, and the remaining difference.
 
 Equation   late = argmin_s Σ_t (F_model(t + s) − F_measured(t))²,   rms_i = √⟨(F_model,i(t + late) − F_measured,i(t))²⟩
 Note       The start of a recording is not known, so it is moved to where the squares of all its forces are least; the
@@ -40,7 +40,7 @@ class Overlay:
         if self.rms is None:
             return "The present motion does not repeat: the series is drawn from its own start, and no misfit is given."
         left = " and ".join(f"{rms:.3g} N for the {name.replace('_', ' ')}" for name, rms in self.rms.items())
-        return f"Moved in time to the least sum of squares; rms difference from the model {left}."
+        return f"Shifted in time to the least sum of squares; rms difference from the model {left}."
 
 
 def overlay(series: Series, run: Run) -> Overlay | None:

@@ -1,4 +1,4 @@
-"""What is fitted: knobs of a scene with bounds and priors, and the scene that belongs to values of them."""
+"""Free parameters of a fit: knobs with bounds and priors, and the scene for given values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The least misfit over bounds, for residuals that are smooth between regimes and jump where these change.
+"""Minimising a misfit that is smooth within a regime and jumps between regimes.
 
 A Sobol sequence (scipy.stats.qmc) covers the bounds: no slope leads from one regime to the next, so only a look at all
 of them finds the right one. From the best places SciPy's `least_squares` goes down, a trust-region method that keeps to

@@ -1,4 +1,4 @@
-"""A fit as tables: parameters with their intervals, the data with the model, profiles, and all that was tried."""
+"""A fit as tables: parameters with intervals, data with the model, profiles, and all evaluated points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a model is compared with: a curve, a series, or the frequencies of peaks and valleys; each gives residuals.
+"""Targets of a fit and their residuals: a curve, a series, or the frequencies of peaks and valleys.
 
 A residual is a difference over its standard deviation. A motion that is not periodic has no steady maximum and no
 train that comes back: there the model predicts a distribution only, so the variance is enlarged by the model's own, and
@@ -69,7 +69,7 @@ class CurveTarget:
     def __post_init__(self) -> None:
         if self.measured.error is not None and self.error is None and not (self.measured.error > 0.0).all():
             at = float(self.measured.frequency[self.measured.error <= 0.0][0])
-            raise BadInput(f"The measured error at {at:g} Hz is 0; no force is known exactly, so give all an error.")
+            raise BadInput(f"The measured error at {at:g} Hz is 0; no force is known exactly, so give each an error.")
         if not self.measured.force.max() > 0.0:
             raise BadInput("All measured forces are 0; there is nothing to fit.")
 

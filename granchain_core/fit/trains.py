@@ -1,4 +1,4 @@
-"""A model's force train as a sensor sees it: the mean over each sample's interval, with the jumps at their times.
+"""The model's force as a sensor samples it: the mean over each sampling interval, with jumps at their exact times.
 
 A force that jumps between two samples makes a misfit that jumps with the parameters; its mean over an interval moves
 smoothly. A recorder with a filter against aliasing averages over about its sample's interval as well.

@@ -1,4 +1,4 @@
-"""A hard case: measurements and their limits, the oracle they are measured against, and a small picture."""
+"""A hard case: measurements and their limits, the oracle that judges them, and a small picture."""
 
 from __future__ import annotations
 

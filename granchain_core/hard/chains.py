@@ -1,4 +1,4 @@
-"""Chains for the hard cases that scenes cannot describe: without a driver, free at their ends, in scaled units."""
+"""Chains that scenes cannot describe, for the hard cases: without a driver, with free ends, in scaled units."""
 
 from __future__ import annotations
 

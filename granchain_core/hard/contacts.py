@@ -1,4 +1,4 @@
-"""Hard cases of contacts: brief ones, several at once, and collisions whose outcome is known."""
+"""Hard cases of contacts: brief contacts, simultaneous contacts, and collisions with known outcomes."""
 
 from __future__ import annotations
 

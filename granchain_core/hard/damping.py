@@ -1,4 +1,4 @@
-"""Hard cases of damping: dashpots far too strong for explicit steps, and every law's restitution."""
+"""Hard cases of damping: dashpots too strong for explicit steps, and the restitution of every law."""
 
 from __future__ import annotations
 

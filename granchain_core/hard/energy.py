@@ -1,4 +1,4 @@
-"""Hard cases of energy and momentum: nothing is lost where nothing can be, and accounts close."""
+"""Hard cases of energy and momentum: conservation, and energy accounts that close."""
 
 from __future__ import annotations
 

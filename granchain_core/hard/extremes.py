@@ -1,4 +1,4 @@
-"""Hard cases of size: the smallest and largest amplitudes, frequencies, chains, masses and preloads."""
+"""Hard cases of scale: extreme amplitudes, frequencies, chain lengths, masses and preloads."""
 
 from __future__ import annotations
 

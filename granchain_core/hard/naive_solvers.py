@@ -1,4 +1,4 @@
-"""Naive solvers in plain Python, which some pictures compare with ours.
+"""Naive solvers in plain Python, for pictures that compare them with granchain.
 
 They are correct except for what they omit: contacts are tested at the ends of steps, and no event is located.
 """

@@ -1,4 +1,4 @@
-"""Hard cases of the numbers themselves: NaN and infinity anywhere, and subnormal numbers, which are slow."""
+"""Hard cases of floating-point numbers: NaN and infinity anywhere, and slow subnormal numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An independent solver to measure against: SciPy, in (u, v), restarted wherever a contact opens or closes.
+"""An independent solver to compare with: SciPy in (u, v), restarted at every contact event.
 
 It shares no equation, no variable and no line with the kernels: contacts are gated by flags that events flip, forces
 are those of Zhang et al. 2016, eq. (1), in scaled units, and the method may be implicit (Radau) where a dashpot is

@@ -1,4 +1,4 @@
-"""Hard cases of claims on the long run: settled or not, which attractor, and drift."""
+"""Hard cases of the long run: settled or not, which attractor, and drift."""
 
 from __future__ import annotations
 

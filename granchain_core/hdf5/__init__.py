@@ -1,4 +1,4 @@
-"""The one border for HDF5 files: sealed when they are written; nothing in one is trusted when it is read."""
+"""Reading and writing HDF5 files safely: files are sealed, and nothing in a file is trusted."""
 
 from .border import File, opened
 from .seal import VERSIONS, seal

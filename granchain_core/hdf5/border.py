@@ -1,4 +1,4 @@
-"""A file as granchain's readers see it: values of their kind, arrays of their shape, and a sentence for every error."""
+"""Checked access to a file: values of the right kind, arrays of the right shape, and a sentence for every error."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A file read in a process of its own, with limits: what a damaged file does to HDF5 ends there."""
+"""Reading a file in a child process with limits, so that a damaged file cannot harm the program."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is read of an HDF5 file: numbers and words that stand in this very file, each as one contiguous block.
+"""The parts of an HDF5 file that may be read: numbers and text in this file, each in one contiguous block.
 
 HDF5 can lead a reader elsewhere: links to other objects and files, numbers in external files, virtual datasets, filters
 that are loaded as plug-ins, shapes of terabytes that were never written. None of it is followed. Every part of a path

@@ -1,4 +1,4 @@
-"""The seal of a file: SHA-256 of all its bytes in a last line after them, compared before HDF5 sees the file.
+"""The seal of a file: the SHA-256 of its bytes in a last line, checked before HDF5 opens it.
 
 HDF5 keeps its own length and ignores what follows, so h5py, xarray, h5dump and everybody else open a sealed file as
 any other. h5py removes the line when it opens a file for writing. Files with a seal have HDF5's superblock of version

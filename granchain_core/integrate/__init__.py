@@ -1,4 +1,4 @@
-"""Methods and the engine that carries a state through time with one of them."""
+"""Time integration: the table of methods, and the engine that advances a state with one of them."""
 
 from ..state import State
 from .counts import Counts

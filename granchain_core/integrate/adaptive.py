@@ -1,4 +1,4 @@
-"""Methods with error control, which locate contact events and end their steps there."""
+"""Stepping with error control: contact events are located, and steps end there."""
 
 from __future__ import annotations
 

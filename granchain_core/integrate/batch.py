@@ -1,4 +1,4 @@
-"""A batch: scenes become its members, run together, and leave it with their strobes and forces."""
+"""A batch: scenes that are integrated together, one per SIMD lane."""
 
 from __future__ import annotations
 

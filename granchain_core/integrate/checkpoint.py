@@ -1,4 +1,4 @@
-"""Stopping an engine and going on later, bit for bit as if it had never stopped.
+"""Saving and restoring an engine so that an interrupted run continues bit for bit.
 
 A `State` in SI is rounded by the conversion there and back. A checkpoint holds the engine's own numbers: the scaled
 state, its slope, the step the error control would try next, and where in the period the drive is.

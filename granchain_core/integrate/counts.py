@@ -1,4 +1,4 @@
-"""What a motion cost."""
+"""Counters of steps, evaluations and events."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The engine: one scene, one method, one state, carried through whole periods or along a grid of samples."""
+"""The engine: advances one scene with one method by whole periods, or from sample to sample."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A kernel's status as a sentence: which bead, when, and in which step the computation failed."""
+"""A kernel's failure in a sentence: which bead, when, and in which step."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ class Failure:
                                  f"lower the damping or ask for a higher accuracy.", "not-finite", self.bead,
                                  time, self.step, self.cost)
         if self.status == STEP_TOO_SMALL:
-            return NumbersFailed(f"The step of {self.method} shrank to nothing {when}; ask for less accuracy than "
+            return NumbersFailed(f"The step of {self.method} became too small {when}; ask for less accuracy than "
                                  f"{self.scene.accuracy:g} or use method rk4-split.", "step-too-small",
                                  time=time, cost=self.cost)
         if self.status == TOO_MANY_STEPS:
             return NumbersFailed(f"A drive period takes {self.method} millions of steps {when}; raise the frequency f.",
                                  "too-many-steps", time=time, cost=self.cost)
         if self.status == CHATTER:
-            return NumbersFailed(f"Contacts open and close without end {when}; the chain chatters: raise the damping D "
+            return NumbersFailed(f"Contacts open and close endlessly {when}; the chain chatters: raise the damping D "
                                  f"or use method rk4-split.", "chatter", time=time, cost=self.cost)
         raise ValueError(f"{self.status} is not the status of a computation that failed")

@@ -1,4 +1,4 @@
-"""Methods with fixed steps, a whole number of them in a drive period.
+"""Stepping with a fixed step, a whole number of steps per drive period.
 
 Their kernels test for numbers that are not finite once a sample or a period, because the test costs as much as a bead.
 When one is found, the period is repeated from its start and bisected until the step is known; in that step the failure

@@ -1,4 +1,4 @@
-"""Subnormal numbers count as zero while an engine runs; afterwards the thread's setting is restored."""
+"""Flushing subnormal numbers to zero while an engine runs, and restoring the thread's setting afterwards."""
 
 from __future__ import annotations
 

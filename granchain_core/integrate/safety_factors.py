@@ -1,4 +1,4 @@
-"""Safety factors: the stated error of a computation is its difference from a coarser one times one of these.
+"""Safety factors on the difference of two computations, from which the stated error follows.
 
 Two errors of displacements have no factor. That of a settled orbit is the difference over 1 − |μ|; that of a motion
 without a drive, as the page shows it, is at least the method's typical error (both steady/settling/recorded.py).

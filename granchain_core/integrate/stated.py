@@ -1,4 +1,4 @@
-"""The error stated of the finest of several computations of one motion, each finer than the one before."""
+"""The stated error of a motion, from several computations of increasing fineness."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an engine asks of a method, the same for fixed steps and for error control."""
+"""The interface of a method of integration, as the engine uses it."""
 
 from __future__ import annotations
 

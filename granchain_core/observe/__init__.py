@@ -1,4 +1,4 @@
-"""Observers, models (3) and (4): a chain pushed by a measured force, and whether such a chain finds the true state."""
+"""Observers, models (3) and (4) of the paper: a chain pushed by a measured force, and whether it converges."""
 
 from .driven import Driven, drive
 from .figure_11 import Figure11, figure_11

@@ -1,4 +1,4 @@
-"""Drift: an observer that nothing holds moves away as a whole.
+"""Drift of an observer: without a foundation it may move away as a whole.
 
 The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
 wall alone, and only while they touch it. A multiplier outside the unit circle that is real and whose mode is nearly one

@@ -1,4 +1,4 @@
-"""`drive`: a chain whose driver moves as a signal says, from its start to the signal's end, to the accuracy asked for.
+"""`drive`: the motion of a chain whose driver follows a given signal.
 
 The motion is computed with steps that are halved until the stated error is small enough, by the rules of `run`
 (integrate/stated.py); the signal itself is exact (signal.py), so that there is no error of interpolation.
@@ -117,7 +117,7 @@ class Driven(Motion):
 
 def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop | None = None,
           progress: Callable[[float], None] | None = None) -> Driven:
-    """The motion of a chain whose driver moves as a signal says.
+    """The motion of a chain whose driver follows a signal.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Figure 11 of Zhang et al. 2016: multipliers of the coupled system (4) and its two first beads in time.
+"""Figure 11 of Zhang et al. 2016: multipliers of the coupled system (4), and the first bead of both chains over time.
 
 Without foundation, (a) one multiplier lies outside the unit circle, (b) the chain's orbit is stable and (c) the
 observer leaves it; with κ = 0.001, (d) all lie inside and (e, f) both beads move alike. The text does not name the

@@ -1,4 +1,4 @@
-"""`observe`: model (3) of Zhang et al. 2016, the chain without driver, pushed by a measured force on its first bead.
+"""`observe`: model (3) of Zhang et al. 2016, a chain without driver whose first bead is pushed by a measured force.
 
     m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
 
@@ -144,8 +144,8 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
             progress: Callable[[float], None] | None = None) -> Observation:
     """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
 
-    The motion is computed with halved steps until two computations agree, and once from every second sample, which
-    bounds the interpolation error (docs/observers.md).
+    Steps are halved until two computations agree. A further computation from every second sample gives the
+    interpolation error (docs/observers.md).
 
     Parameters
     ----------

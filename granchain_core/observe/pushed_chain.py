@@ -1,4 +1,4 @@
-"""A chain ready for the kernel that goes from sample to sample: scaled, with the pieces and the steps between samples.
+"""A scaled chain with a force or motion given by samples, ready for the kernel that steps from sample to sample.
 
 It is pushed by a measured force, model (3) of Zhang et al. 2016, or by a driver with a given motion.
 """

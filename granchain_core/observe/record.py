@@ -1,4 +1,4 @@
-"""A measured force over time: checked, with its offset and gaps treated as requested, and as a function of time.
+"""A measured force over time: checks, offset, gaps, and interpolation between samples.
 
 Between the samples the force is a monotone cubic (Fritsch & Carlson 1980, slopes of Fritsch & Butland 1984, as in
 scipy's PchipInterpolator): it passes through every sample, nowhere beyond its two neighbours, so that a force that is

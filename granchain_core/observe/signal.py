@@ -1,4 +1,4 @@
-"""Prescribed motions of the driver other than the harmonic one: chirp, burst, two tones, noise, a measured series.
+"""Motions of the driver other than the harmonic one: chirp, burst, two tones, noise, a measured series.
 
 A signal is given at knots. Between them the velocity is a straight line and the displacement a quadratic, and this
 motion is computed exactly. A formula u(t) is given at KNOTS places in a period of its highest frequency. The

@@ -1,4 +1,4 @@
-"""Stability of an observer: its largest multiplier against a knob, and where it crosses 1.
+"""Stability of an observer over a knob: its largest multiplier, and where that crosses 1.
 
 The orbit is followed from value to value, each Newton iteration starting from the orbit before; where that ends, the
 steady state from rest is tried. A crossing is narrowed down by bisection, again on orbits and not on the interpolated

@@ -1,4 +1,4 @@
-"""Whether an observer converges to its chain: model (4) of Zhang et al. 2016, from a start slightly off.
+"""A twin: chain and observer from slightly different starts, and whether they converge (model (4), Zhang et al. 2016).
 
 The distance between observer and chain, in scaled units |(Δu/A0, Δv/(A0 φ))|, changes by the observer's leading
 multiplier every period of the orbit as long as it is small. Here it is followed in time, where nothing is linearised,

@@ -1,4 +1,4 @@
-"""Long chains: Newton's step and the leading multipliers from products of the derivative with single directions.
+"""Orbits of long chains: Newton's step by GMRES and leading multipliers by Arnoldi, without the whole derivative.
 
 The derivative of a chain of a thousand beads has four million entries; its product with one direction costs little
 more than the motion. Disturbances shrink in almost all directions, so a Krylov space of a few dozen dimensions

@@ -1,4 +1,4 @@
-"""Floquet modes: an eigenvector of the monodromy matrix carried along one period as a motion of the chain.
+"""Floquet modes: eigenvectors of the monodromy matrix as motions of the chain over one orbit.
 
 A disturbance δx of an orbit of n drive periods T obeys δx(nT) = M δx(0). With M v = μ v it comes back as μ times
 itself, and in between it is the difference of two neighbouring motions:

@@ -1,4 +1,4 @@
-"""Errors of Floquet multipliers: how far they may be from those of the exact map.
+"""Errors of Floquet multipliers, from a derivative with a looser tolerance.
 
 Equation   Δμ_i = y_i* ΔM x_i / y_i* x_i to first order, with x_i and y_i the right and left eigenvectors of the map's
            derivative M;   stated is the larger of 2 |Δμ_i| and a quarter of |y_i|ᵀ |ΔM| |x_i| / |y_i* x_i|

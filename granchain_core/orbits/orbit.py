@@ -172,7 +172,7 @@ class Orbit(Labelled):
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
                    stop: Stop | None = None) -> Orbit:
-    """A periodic orbit by Newton's method on the stroboscopic map, stable or not. Also called `orbit`.
+    """A periodic orbit, stable or not, by Newton's method; `orbit` and `periodic_orbit` are the same function.
 
     Its Floquet multipliers are the eigenvalues of the map's derivative, computed with the orbit (docs/orbits.md).
 

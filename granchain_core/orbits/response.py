@@ -1,4 +1,4 @@
-"""Classification of a periodic orbit's response by the orbit alone: 1:n resonance, 1:1 anti-resonance, or neither.
+"""The kind of response of a periodic orbit, from the orbit alone: 1:n resonance, anti-resonance, or stop band.
 
 The place of a state on a resonance curve is another matter (steady/curve/resonance.py).
 

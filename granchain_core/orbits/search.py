@@ -1,4 +1,4 @@
-"""Finding an unstable orbit near a motion that does not settle on it.
+"""The search for an unstable orbit near a motion that does not settle on it.
 
 A chaotic or quasi-periodic motion passes near unstable periodic orbits. States that nearly come back after n periods
 are near one of period n (Auerbach et al. 1987); and the orbit that a period doubling or a Neimark–Sacker bifurcation

@@ -1,4 +1,4 @@
-"""The results of the figures, from the presets and by the core's own functions.
+"""`compute`: the result of a figure of the paper, from the presets.
 
 Each function takes a user's data, a stop flag, and a function that is called with the fraction done.
 """

@@ -1,4 +1,4 @@
-"""The peaks and dips of a resonance curve by prominence, and where it stays low."""
+"""Peaks, valleys and the stop band of a resonance curve, by prominence."""
 
 from __future__ import annotations
 

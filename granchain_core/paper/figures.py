@@ -1,4 +1,4 @@
-"""The table of the figures: what each shows, what it takes, and how it is computed."""
+"""The table of figures: what each shows, which data it takes, and how it is computed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A user's files for a figure: which kinds it takes, and at which frequency of the paper a series belongs."""
+"""A user's data for a figure: the kinds it takes, and the frequency to which a series belongs."""
 
 from __future__ import annotations
 

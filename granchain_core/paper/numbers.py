@@ -1,4 +1,4 @@
-"""The numbers in the table of the paper, computed: for every row those that are bold in it, in order."""
+"""The bold numbers in the table of docs/paper.md, computed row by row."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the figures are drawn from. Every result has `rows`, the numbers of its figure as columns of a table."""
+"""Results from which the figures are drawn; `rows` has the numbers of a figure as columns of a table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cost of a run, estimated before it starts, and a refusal that names what would fit.
+"""The budget of a run: its cost estimated in advance, and a refusal that says what would fit.
 
 The number of steps of a fixed-step method is known; that of a method with error control, and the time of a step, are
 measured on `sec2` and `rig` (`StepCost` in integrate/methods.py) and scaled to this machine by the speed of its square

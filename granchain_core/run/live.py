@@ -1,4 +1,4 @@
-"""The chain that runs on while its knobs are moved."""
+"""A chain that keeps running while its knobs are moved."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ _NOT_ASKED = Regime.unsettled(0)
 
 
 class LiveChain:
-    """A chain that runs on while its knobs are moved, by the fixed-step method.
+    """A chain that keeps running while its knobs are moved, by the fixed-step method.
 
-    New values of D, k, the laws and the frequency act from the next sample on; the drive phase continues, so the
-    driver never jumps. A new amplitude waits for the driver's next passage through its middle position, where u_0 is
-    continuous for every A0.
+    New values of D, k, the laws and the frequency take effect at the next sample; the drive phase continues, so the
+    driver never jumps. A new amplitude takes effect when the driver next passes its middle position, where u_0 is the
+    same for every A0.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class LiveChain:
     start : State, optional
         Where it begins; at rest if not given.
     stop : Stop, optional
-        Ends `advance` with `Cancelled` when another thread sets it; the chain cannot be used any more then.
+        When another thread sets it, `advance` raises `Cancelled`; the chain cannot be used after that.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Many scenes at once: each in a thread of its own, as many as there are cores, with one result for each."""
+"""`run_many`: many scenes on all cores, with one result for each."""
 
 from __future__ import annotations
 
@@ -116,8 +116,8 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     scenes : iterable of Scene
         The chains, at most 100,000.
     work : callable
-        `run`, `settle` for the steady states, or another function of a scene, such as `orbit`, whose results are the
-        starts of branches.
+        `run`, `settle` for steady states, or another function of a scene, such as `orbit`, whose results branches can
+        start from.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1, after each scene.
     stop : Stop, optional
@@ -125,15 +125,15 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     workers : int, optional
         Threads; one for each core if not given.
     scheduler : distributed.Client, optional
-        Its workers do the work, a scene at a time.
+        Its workers compute one scene at a time each.
     **options
         What `work` takes for every scene: `periods`, `record`, `samples`, `method`, …
 
     Returns
     -------
     Runs
-        A list of results in the order of the scenes. Where the numbers of one fail, or it would exceed its budget, its
-        result is None and a sentence stands in `failures`; the others go on.
+        A list of results in the order of the scenes. If a scene fails or would exceed its budget, its result is None
+        and `failures` says why; the others continue.
 
     Raises
     ------

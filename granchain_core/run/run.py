@@ -1,4 +1,4 @@
-"""`run`: a chain from its start through discarded and recorded periods, to the accuracy asked for.
+"""`run`: discarded and recorded periods of a motion, to the accuracy asked for.
 
 Every accuracy is reached by comparing two computations, none by trust in a tolerance.
 """

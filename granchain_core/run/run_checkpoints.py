@@ -1,4 +1,4 @@
-"""Checkpoints of a run on disk (checkpoints.py): killed, it goes on with the discarded periods that it has finished.
+"""Checkpoints of a run (checkpoints.py): after a kill it continues with the discarded periods that are finished.
 
 A run computes its motion several times, each time finer. For each computation the newest checkpoint among its discarded
 periods is kept; the recorded periods are computed again, since writing them would take longer.

@@ -80,7 +80,7 @@ class Amplitude:
         if "f" not in knobs:
             raise BadInput("A drive amplitude over the frequency needs a frequency that varies: make f a knob.")
         if "A0" in knobs:
-            raise BadInput("The drive amplitude follows the frequency, so A0 cannot vary by itself; leave one out.")
+            raise BadInput("The drive amplitude follows the frequency, so A0 cannot vary independently; leave one out.")
 
     @property
     def words(self) -> str:

@@ -1,4 +1,4 @@
-"""A scene from a file: its knobs go through the border of the command line, its beads through one of their own."""
+"""Checks of a scene read from a file: its knobs as on the command line, its beads one by one."""
 
 from __future__ import annotations
 

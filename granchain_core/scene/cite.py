@@ -1,4 +1,4 @@
-"""What to cite for a scene: the software, the paper of the model, and the sources of the effects that it has."""
+"""What to cite for a scene: the software, the paper of the model, and the sources of its effects."""
 
 from __future__ import annotations
 

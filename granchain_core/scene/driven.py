@@ -1,4 +1,4 @@
-"""What needs a drive, and the sentence for a scene that has none."""
+"""The refusal of a scene without a drive, for computations that need one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The effects of a scene, each once: its knobs, when it is present, its term in the equation, and its names.
+"""The table of effects: for each its knobs, its presence, its term in the equation, and its names.
 
 `Scene.effects`, the equation on screen, the slots that are filled (scaling.py), the names of compiled kernels
 (warm.py), `--explain`, `granchain cite`, the page's switches and the kernels whose cost is measured are all read from

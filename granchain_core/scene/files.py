@@ -61,7 +61,7 @@ def _check_sections(data: dict[str, Any]) -> None:
     if isinstance(order, bool) or not isinstance(order, (int, float)) or not math.isfinite(order):
         raise BadInput(f"order must be a number, not {str(order)[:40]!r}.")
     if {"k", "kappa"} <= set(data.get("knobs", {})):
-        raise BadInput("[knobs] has k and kappa, which say the same thing: give one of them.")
+        raise BadInput("[knobs] has k and kappa, which are the same quantity: give one of them.")
 
 
 def built(name: str, data: dict[str, Any]) -> Scene:

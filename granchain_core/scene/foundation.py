@@ -1,4 +1,4 @@
-"""What a change of the drive amplitude A₀ does to κ = k/(K√A₀), in words: at constant k, κ changes."""
+"""Sentences about κ = k/(K√A₀): at constant k it changes with the drive amplitude A₀."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The loss-free collision of two spheres by Hertz's theory, K being the contact's stiffness and m* the reduced mass."""
+"""The elastic collision of two spheres by Hertz's theory; K is the contact's stiffness, m* the reduced mass."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A scene: the description of a chain with its effects, its equation, its identity, and changes of its knobs."""
+"""`Scene`: a chain's description with its effects, equation and identity, and `evolve` to change knobs."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class Scene(Description):
             if name not in QUANTITIES:
                 raise unknown_name("knob", name, QUANTITIES)
         if "k" in changes and "kappa" in changes:
-            raise BadInput("k and kappa say the same thing: give one of them, not both.")
+            raise BadInput("k and kappa are the same quantity: give one of them, not both.")
         checked = {name: QUANTITIES[name].check(value) for name, value in changes.items()}
         kappa = checked.pop("kappa", None)
         new = replace(self, **checked)  # type: ignore[arg-type]  # checked above against the table

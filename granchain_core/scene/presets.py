@@ -1,4 +1,4 @@
-"""Scenes by name, read from assets/scenes/*.toml: a parent and only the differences; and scenes in a user's file."""
+"""Scenes by name from assets/scenes/*.toml, each a parent and its differences; and scenes from a user's file."""
 
 from __future__ import annotations
 
@@ -64,8 +64,8 @@ def scene(name: str | os.PathLike[str]) -> Scene:
     Parameters
     ----------
     name : str or path-like
-        One of `scene_names()`: "sec2", "fig3a", "rig", … (files in assets/scenes); or the path of a scene file as a
-        `pathlib.Path`, "mine.toml" being called "mine" (docs/scene-file.md). A text is never taken as a path.
+        One of `scene_names()`: "sec2", "fig3a", "rig", … (files in assets/scenes); or a `pathlib.Path` to a scene file
+        (docs/scene-file.md); the scene in "mine.toml" is called "mine". A string is never taken as a path.
 
     Returns
     -------

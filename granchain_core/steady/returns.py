@@ -1,4 +1,4 @@
-"""Whether a state comes back: relative sizes and changes of scaled states, and the least period of an orbit."""
+"""Returns of a state to itself: relative changes of scaled states, and the least period of an orbit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Branches in HDF5: every orbit, every special point, and the data needed to go on.
+"""Branches in HDF5: every orbit, every special point, and the data needed to continue.
 
 /branch          point, component, bead, contact; knob (the knob's unit), arclength, max_input_force, max_output_force,
                  max_output_force_elastic [N], stable, unstable, residual, arm (point); state, multiplier_real,

@@ -1,4 +1,4 @@
-"""/measured in a result's file: the measurement that lay over it, with its units and where it comes from."""
+"""The group /measured of a result's file: the measurement drawn over it, with units and source."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writing any result."""
+"""`save`: writes any result."""
 
 from __future__ import annotations
 

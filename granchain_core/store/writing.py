@@ -1,4 +1,4 @@
-"""How every file is written: from a result's tables and attributes, and under which name.
+"""Writing a file from a result's tables and attributes, first under a temporary name.
 
 The root carries schema version, scene, method, accuracy asked and reached, versions, machine and time of writing
 (tables/provenance.py). A file is written under a temporary name, sealed with its checksum (hdf5/seal.py), synced and

@@ -1,4 +1,4 @@
-"""Tables as datasets of xarray and as data frames of pandas, which are imported when they are asked for."""
+"""Tables as xarray datasets and pandas data frames; both libraries are imported only on demand."""
 
 from __future__ import annotations
 

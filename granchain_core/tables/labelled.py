@@ -1,4 +1,4 @@
-"""What every result can do: be a dataset, a data frame, or a few lines in a notebook's cell."""
+"""The base class of results: conversion to a dataset or data frame, and a summary in a notebook's cell."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where numbers come from: scene, method, accuracy asked and reached, versions, machine, time."""
+"""Provenance of numbers: scene, method, accuracy asked for and reached, versions, machine, time."""
 
 from __future__ import annotations
 

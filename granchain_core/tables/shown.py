@@ -1,4 +1,4 @@
-"""A result in a few lines: what it is of, what is worth reading first, and what it holds."""
+"""The summary of a result: its scene, its most important numbers, and what it contains."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A table: columns over axes that they share, each with its unit and its meaning."""
+"""A table: columns over common axes, each with its unit and meaning."""
 
 from __future__ import annotations
 

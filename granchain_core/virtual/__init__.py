@@ -1,4 +1,4 @@
-"""A virtual experiment: what the sensors of a rig would record of the model's motion, marked so wherever it goes."""
+"""A virtual experiment: what a rig's sensors would record of the model's motion, always marked as virtual."""
 
 from .recorded import virtual_curve_csv, virtual_series_csv
 from .sensors import Sensors

@@ -1,4 +1,4 @@
-"""What the sensors of a rig make of forces and velocities: inertia of a tip, limited bandwidth, noise.
+"""Models of a rig's sensors: inertia of a tip, limited bandwidth, noise.
 
 Equation   F_in = F_0 + m_tip ü_0: the input sensor sits between the shaker and a tip of mass m_tip that touches bead 1
            |H(f)|² = 1 / (1 + (f/f_c)⁴): Butterworth's low-pass of order 2, for both forces

@@ -58,7 +58,7 @@ def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFix
     (["strobes", *SHORT, "--over", "f=1000:1100:2", "--bead", "3"], "--bead 3 is outside 1 to 2"),
     (["attractors", *SHORT, "--random-states", "-1"], "--random-states -1 is outside 0 to 10000"),
     (["attractors", *SHORT, "--seed", "-1"], "--seed -1 is outside 0 to"), (["attractors", "impact"], "drive = rest"),
-    (["basins", *SHORT, "--x", "u9=0:1:2", "--y", "v1=0:1:2"], "Coordinate 'u9' is none"),
+    (["basins", *SHORT, "--x", "u9=0:1:2", "--y", "v1=0:1:2"], "Coordinate 'u9' does not exist"),
     (["pulse", "impact", "--set", "N=2"], "at least three beads"), (["bands", "sec2"], "Without a preload"),
 ])
 def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:

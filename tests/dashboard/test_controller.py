@@ -38,7 +38,7 @@ def test_only_whole_numbers_of_the_range_pass(wrong: object) -> None:
 
 @pytest.mark.parametrize("wrong", [True, False, None, "0", 0.0, -1, 2])
 def test_only_a_place_of_the_list_is_found(wrong: object) -> None:
-    with pytest.raises(BadInput, match="That orbit is not on the page any more"):
+    with pytest.raises(BadInput, match="That orbit is no longer on the page"):
         listed("orbit", ["first", "second"], wrong)
     assert listed("orbit", ["first", "second"], 1) == "second"
 
@@ -49,7 +49,7 @@ def test_only_a_place_of_the_list_is_found(wrong: object) -> None:
     {"do": "map-load", "number": True}, {"do": "stability-section", "bead": True, "phase": 0}])
 def test_what_is_no_number_gets_its_sentence(dashboard: Dashboard, message: dict[str, Any]) -> None:
     dashboard.received(message)
-    assert "is not a whole number" in dashboard.session.sentence or "not on the page any more" in dashboard.session.sentence
+    assert "is not a whole number" in dashboard.session.sentence or "no longer on the page" in dashboard.session.sentence
 
 
 def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence(dashboard: Dashboard) -> None:

@@ -56,7 +56,7 @@ def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> N
 
 
 @pytest.mark.parametrize(("message", "sentence"), [
-    ({"columns": "f"}, "has not the form"), ({"columns": [["frequency", 1]]}, "has not the form"),
+    ({"columns": "f"}, "could not be read"), ({"columns": [["frequency", 1]]}, "could not be read"),
     ({"columns": [["frequency", True, "Hz"]]}, "not the number of a column"), ({"columns": [["frequency", 1, "N"]]}, "not a unit"),
     ({"columns": [[None, 1, "N"]]}, "Unknown quantity"), ({"columns": [], "decimal": "both"}, "Unknown decimal mark"),
 ])

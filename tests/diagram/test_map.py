@@ -104,7 +104,7 @@ def test_a_stopped_diagram_says_what_is_missing() -> None:
 @pytest.mark.parametrize(("x", "y", "words"), [
     (("f", [300.0]), ("f", [400.0]), "two distinct knobs"),
     (("N", [3.0]), ("f", [400.0]), "Unknown knob for an axis 'N'"),
-    (("k", [3.0]), ("kappa", [0.1]), "k and kappa say the same thing"),
+    (("k", [3.0]), ("kappa", [0.1]), "k and kappa are the same quantity"),
     (("f", [300.0, 200.0]), ("A0", [1e-7]), "must ascend"),
     (("f", [1e9]), ("A0", [1e-7]), "nearest valid value is 1e\\+06"),
     (("f", []), ("A0", [1e-7]), "has no values"),

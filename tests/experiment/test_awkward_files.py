@@ -162,7 +162,7 @@ REFUSED = [
     ("a workbook", b"PK\x03\x04rest", None, "Excel workbook"),
     ("a classic netCDF", b"CDF\x01rest", None, "nccopy"),
     ("a picture", b"\x89PNG\r\n\x1a\n", None, "digitiser"),
-    ("zeros", b"60,1.5\n70,\x002\n", None, "Line 2: there is a byte 0"),
+    ("zeros", b"60,1.5\n70,\x002\n", None, "Line 2: the byte 0 does not occur in text"),
     ("half of a UTF-16", "f [Hz],F [N]\n60,1".encode("utf-16")[:-1], None, "damaged further on"),
     ("other JSON", b'{"a": 1}', None, "no project of WebPlotDigitizer"),
     ("broken JSON", b'{"datasetColl": [', None, "begins as JSON"),
@@ -171,7 +171,7 @@ REFUSED = [
     ("an archive of something else", archived(b"{}", "other.json"), CURVE, "without a wpd.json"),
     ("an open quotation", 'f [Hz],F [N]\n60,"1.5\n', None, "Line 2"),
     ("a column that is not there", "60,1.5\n", answers_of(["f=1:Hz", "F=3:N"]), "There is no column 3"),
-    ("one column for two quantities", "60,1.5\n", answers_of(["f=1:Hz", "F=1:N"]), "Column 1 is given two"),
+    ("one column for two quantities", "60,1.5\n", answers_of(["f=1:Hz", "F=1:N"]), "Column 1 is assigned to two"),
     ("answered with the wrong mark", "f [Hz];F [N]\n60;1,5\n", Answers(decimal="point"), "Line 2: '1,5' is not a number"),
 ]
 

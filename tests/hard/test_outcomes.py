@@ -125,7 +125,7 @@ def test_step_too_small() -> None:
     engine.record(1)
     engine.scaled.slots.chain.stiffness[:] = 1e30
     engine.stepper.work.next_step[0] = 1e-14
-    with pytest.raises(NumbersFailed, match="shrank to nothing") as caught:
+    with pytest.raises(NumbersFailed, match="became too small") as caught:
         engine.record(8)
     assert caught.value.status == "step-too-small"
 
@@ -134,7 +134,7 @@ def test_chatter() -> None:
     """One bead between a slow driver and the wall, undamped: thousands of touches in one drive period."""
     engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=1.0), Setting("dop853", 1.0, 1e-4), 1)
     engine.start(State(np.zeros(1), np.array([0.5])))
-    with pytest.raises(NumbersFailed, match="without end") as caught:
+    with pytest.raises(NumbersFailed, match="endlessly") as caught:
         engine.periods(1)
     assert caught.value.status == "chatter"
 

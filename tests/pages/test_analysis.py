@@ -68,7 +68,7 @@ def test_what_is_offered_can_be_computed(name: str) -> None:
     ("lyapunov", {"periods": "2001"}, "drive periods = 2001"),
     ("strobes", {"knob": "self"}, "knob"),
     ("strobes", {"from": "nan"}, "is not a number"),
-    ("strobes", {"from": "9", "to": "8"}, "must be the smaller one"),
+    ("strobes", {"from": "9", "to": "8"}, "must be the smaller"),
     ("strobes", {"from": "-1", "to": "8"}, "f"),
     ("strobes", {"bead": "3"}, "bead = 3"),
     ("strobes", {"values": "١٢"}, "not a whole number"),

@@ -7,6 +7,6 @@ from granchain_core import scene, settle
 
 
 def test_where_the_energy_goes_is_said_of_a_driven_damped_chain_alone() -> None:
-    lost = "lost, in the mean, to the damping of the contacts"
+    lost = "On average, the damping of the contacts takes all the energy"
     assert lost in summary(settle(scene("sec2")).run)
     assert lost not in summary(settle(scene("impact")).run)

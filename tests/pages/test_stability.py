@@ -57,9 +57,9 @@ def test_a_stable_orbit_is_told_by_what_is_left_of_a_disturbance() -> None:
 
 
 @pytest.mark.parametrize(("leading", "words"), [
-    ((1.8,), "1.80-fold in one period of the orbit (1 drive period, 2.94 ms) and leaves to one side: a multiplier above +1, as past a fold."),
-    ((-1.5,), "changes sides each time: a multiplier below −1, as past a period doubling."),
-    ((1.2j, -1.2j), "turns while it grows: a pair outside the circle, as past a Neimark–Sacker bifurcation."),
+    ((1.8,), "1.80-fold in one period of the orbit (1 drive period, 2.94 ms) and leaves to one side: a multiplier above +1, as beyond a fold."),
+    ((-1.5,), "changes sides in each orbit: a multiplier below −1, as beyond a period doubling."),
+    ((1.2j, -1.2j), "turns while it grows: a complex pair outside the circle, as beyond a Neimark–Sacker bifurcation."),
     ((-1.5, 1.2j, -1.2j), "3 multipliers are outside the circle."),
 ])
 def test_an_unstable_orbit_is_told_by_the_way_it_is_left(leading: tuple[complex, ...], words: str) -> None:

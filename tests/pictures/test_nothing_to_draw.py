@@ -26,7 +26,7 @@ def test_a_force_without_lines_is_refused_and_one_below_its_aliasing_is_drawn() 
 
 def test_a_transfer_without_lines_is_refused() -> None:
     found, none = transfer(settle(CHAIN).run), np.zeros(0)
-    with pytest.raises(BadInput, match="No line of the input force counts"):
+    with pytest.raises(BadInput, match="The input force has no lines"):
         draw_transfer(replace(found, frequency=none, gain=none, phase=none), THEMES["light"])
 
 

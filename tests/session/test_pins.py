@@ -33,9 +33,9 @@ def test_a_chain_that_is_too_long_begins_at_rest() -> None:
 
 @pytest.mark.parametrize(("text", "told"), [
     ("!!", "damaged"), ("AAAA", "damaged"), ("ä", "damaged"), (start_text(State(np.zeros(3), np.zeros(3))), "of 3 beads"),
-    (start_text(replace(START, displacement=np.full(11, np.nan))), "no state of a chain"),
-    (start_text(replace(START, velocity=np.full(11, 1e6))), "no state of a chain"),
-    (start_text(replace(START, phase=1.0)), "no state of a chain")])
+    (start_text(replace(START, displacement=np.full(11, np.nan))), "impossible for a chain"),
+    (start_text(replace(START, velocity=np.full(11, 1e6))), "impossible for a chain"),
+    (start_text(replace(START, phase=1.0)), "impossible for a chain")])
 def test_what_is_no_state_is_refused(text: str, told: str) -> None:
     with pytest.raises(BadInput, match=told):
         read_start(text, SHOWN)

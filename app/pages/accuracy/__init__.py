@@ -1,1 +1,1 @@
-"""What accuracy costs in time."""
+"""The page of accuracy: error against computing time."""

@@ -1,4 +1,4 @@
-"""The Accuracy page of one visitor: when it measures, whether the rows still hold, and what it says of them."""
+"""The Accuracy page of one visitor: when it measures, and whether the rows are still valid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Accuracy page: error against time for every method, the table of methods, what naive steps would have drawn."""
+"""The Accuracy page's view: error against time, the table of methods, and the forces of naive methods."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Analysis page of one visitor: a question about the present scene is computed when it is asked."""
+"""The Analysis page of one visitor: computes the chosen question for the present scene on request."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The four questions of the Analysis page: what a visitor may choose, what is computed, and how it is drawn."""
+"""The four questions of the Analysis page: their fields, what is computed, and how it is drawn."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def _whole(label: str, text: str, low: int, high: int) -> int:
 def _span(label: str, low: str, high: str) -> tuple[float, float]:
     ends = _number(f"{label}, from", low), _number(f"{label}, to", high)
     if not ends[0] < ends[1]:
-        raise BadInput(f"{label}: from {low} to {high} is no range; the first number must be the smaller one.")
+        raise BadInput(f"{label}: from {low} to {high} is no range; the first number must be the smaller.")
     return ends
 
 
@@ -245,10 +245,11 @@ def _basin_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
 QUESTIONS = {one.name: one for one in (
     Question("spectrum", "Which frequencies?", "The lines of a force of the settled motion: where it has energy, and "
              "whether they are multiples of f or of f / n.", _spectrum_fields, _spectrum_plan),
-    Question("strobes", "What over a knob?", "Where a bead is once a drive period, at each value of a knob: one point "
-             "is period 1, n points are period n, many are quasi-periodic or chaotic.", _strobe_fields, _strobe_plan),
-    Question("basins", "Which start leads where?", "Starts in a plane of two coordinates, all others at rest, each in "
-             "the colour of the motion that it settles to.", _basin_fields, _basin_plan),
+    Question("strobes", "What over a knob?", "The position of a bead once per drive period, at each value of a knob: "
+             "one point means period 1, n points period n, many points a quasi-periodic or chaotic motion.",
+             _strobe_fields, _strobe_plan),
+    Question("basins", "Which start leads where?", "Starts in a plane of two coordinates, with all others zero, "
+             "coloured by the motion that each settles to.", _basin_fields, _basin_plan),
     Question("lyapunov", "Is it chaos?", "All Lyapunov exponents per drive period with their standard errors, and the "
              "dimension of the attractor. A positive one is chaos.", _lyapunov_fields, _lyapunov_plan),
 )}

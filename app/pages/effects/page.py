@@ -1,4 +1,4 @@
-"""The Effects panel of one visitor: switches, the kernel's slots, what each effect costs, what is being computed."""
+"""The Effects tab of one visitor: switches, what each effect costs, and the list of running computations."""
 
 from __future__ import annotations
 

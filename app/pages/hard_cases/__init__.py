@@ -1,1 +1,1 @@
-"""The hard cases."""
+"""The page of hard cases."""

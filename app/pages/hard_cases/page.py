@@ -1,4 +1,4 @@
-"""The page "Hard cases" of one visitor: what waits, what is being run, and the results."""
+"""The Hard cases page of one visitor: the queue, the case being run, and the results."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Hard cases in their own process: the oracles are plain Python, which would block the server and cannot be stopped."""
+"""Running hard cases in a separate process: their oracles are plain Python, which would block the server."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""A map of two knobs."""
+"""The map over two knobs."""

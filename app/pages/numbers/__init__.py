@@ -1,1 +1,1 @@
-"""The pictures in words and in tables, for screen readers and for reading off values."""
+"""The pictures as sentences and tables, for screen readers and for reading off values."""

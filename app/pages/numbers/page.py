@@ -1,4 +1,4 @@
-"""The Numbers page of one visitor: a summary of every settled picture, and its tables while somebody looks."""
+"""The Numbers tab of one visitor: a summary of every settled picture, and tables while the tab is looked at."""
 
 from __future__ import annotations
 

@@ -32,7 +32,7 @@ def _where_energy_goes(run: Run) -> str:
     """What becomes of the driver's work in a steady motion: contacts alone lose energy, and the wall does not move."""
     if not (run.scene.is_driven and run.scene.has_dissipation):
         return ""
-    return " What the driver puts in is lost, in the mean, to the damping of the contacts; the wall takes no energy."
+    return " On average, the damping of the contacts takes all the energy from the driver; the wall takes none."
 
 
 def forces_over_time(run: Run) -> list[list[str]]:

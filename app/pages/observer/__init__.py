@@ -1,1 +1,1 @@
-"""An observer fed by a measured force."""
+"""The page of the observer: a copy of the chain that is driven by its input force."""

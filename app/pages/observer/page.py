@@ -1,4 +1,4 @@
-"""The Observer page of one visitor: it computes a drive period each time the browser has shown one."""
+"""The Observer page of one visitor: computes a drive period for each one that the browser has shown."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A chain and its observer as the Observer page shows them: period after period, with what the multiplier predicts."""
+"""Chain and observer of the Observer page, period by period, with the rate that the multiplier predicts."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ class ObserverRun:
         """What the multiplier predicts, in one sentence."""
         mu, factor = self.leading, self.predicted
         if self.in_step:
-            return "The observer agrees with its chain to the last digits; nudge it to watch it catch up again."
+            return "The observer agrees with its chain to rounding; nudge it and watch it converge again."
         if mu is None or factor is None:
             return self.failure or ("The multiplier's prediction appears once the picture has settled to a periodic "
                                     "motion.")

@@ -1,4 +1,4 @@
-"""The page "The paper" of one visitor: a figure is computed when it is chosen, and given up when the page is left."""
+"""The page "The paper" of one visitor: computes a figure when it is chosen, and stops when the page is left."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page "The paper": a choice of figures, the chosen one, its caption and its rows of the table."""
+"""The page "The paper": a list of figures, the chosen one, its caption and its rows of the table."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The Probe page of one visitor: which bead, and whether somebody looks."""
+"""The Probe page of one visitor: the chosen bead, and whether the page is looked at."""
 
 from __future__ import annotations
 

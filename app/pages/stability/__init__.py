@@ -1,1 +1,1 @@
-"""What a disturbance does: multipliers, modes, Poincaré section."""
+"""The page of stability: multipliers, modes, Poincaré section."""

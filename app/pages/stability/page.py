@@ -1,4 +1,4 @@
-"""The Stability page of one visitor: when it computes, whether that still holds, and what it says of it."""
+"""The Stability page of one visitor: when it computes, whether the result is still valid, and its sentences."""
 
 from __future__ import annotations
 

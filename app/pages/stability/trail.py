@@ -1,4 +1,4 @@
-"""The multipliers of the orbits before the present one, which fade away behind it."""
+"""The trail of multipliers: those of the orbits before the present one, fading."""
 
 from __future__ import annotations
 

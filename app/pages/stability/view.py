@@ -90,10 +90,10 @@ def _observed(orbit: Orbit) -> str:
 
 def _leaves(leading: complex) -> str:
     if leading.imag != 0.0:
-        return "turns while it grows: a pair outside the circle, as past a Neimark–Sacker bifurcation"
+        return "turns while it grows: a complex pair outside the circle, as beyond a Neimark–Sacker bifurcation"
     if leading.real > 0.0:
-        return "leaves to one side: a multiplier above +1, as past a fold"
-    return "changes sides each time: a multiplier below −1, as past a period doubling"
+        return "leaves to one side: a multiplier above +1, as beyond a fold"
+    return "changes sides in each orbit: a multiplier below −1, as beyond a period doubling"
 
 
 def no_multipliers(picture: Settled) -> str:
@@ -124,14 +124,14 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
 
     kind = regime.name + (f", period {regime.period}" if regime.period else "")
     row("regime", f"{kind}, {regime.periods_run} periods run from {picture.start}",
-        "What the chain did, and after how many drive periods that was decided.")
+        "The regime, and the number of drive periods after which it was decided.")
     if regime.distance is not None:
         row("distance to the orbit", f"≤ {short_error(regime.distance)}",
             "Bound on the relative distance of the settled picture: its change over one orbit times r/(1 − r), where r "
             "is |μ| if it was computed, else the decay, else ½.")
     if regime.lyapunov is not None:
         row("Lyapunov exponent", f"{regime.lyapunov[0]:+.4f} ± {regime.lyapunov[1]:.4f} per drive period",
-            "Mean rate at which neighbouring motions part, with its standard error over blocks of periods.")
+            "Mean rate at which neighbouring motions separate, with its standard error over blocks of periods.")
     if regime.return_distance is not None:
         row("return of the section", f"{regime.return_distance:.2g}, limit {regime.return_limit or 0.0:.2g}",
             "Median distance from later states of the section to the nearest earlier one, relative to the motion; a "
@@ -147,7 +147,7 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
         "Method, steps and computing time of the settled picture.")
     if section is not None:
         row("section", f"{section.periods} periods at {section.samples} phases, {FIXED_STEP}",
-            "Computed once more from the same start by the fixed-step method.")
+            "Computed again from the same start by the fixed-step method.")
     return rows
 
 

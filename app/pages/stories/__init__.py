@@ -1,1 +1,1 @@
-"""Guided stories: scenes to look at, a question, and the answer in the picture."""
+"""Guided stories: steps with a scene, something to look at, a question and its answer."""

@@ -1,4 +1,4 @@
-"""The stories of one visitor: which one is told, and the motion of its step. They are drawn in their tab."""
+"""The Stories tab of one visitor: the story and its step, and the step's motion."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ class StoriesPage(Page):
     def _open(self, message: dict[str, Any]) -> None:
         story = self._stories.get(str(message.get("name")))
         if story is None:
-            raise BadInput("That story is not here any more; reload the page.")
+            raise BadInput("This story no longer exists; reload the page.")
         number = whole("step", message.get("step"), 1, len(story.steps))
         step = story.steps[number - 1]
         self._host.session.story = f"{story.name}.{number}"

@@ -1,4 +1,4 @@
-"""The knob of a branch: which knobs are continuous, and the coordinate in which one is followed.
+"""The knob of a branch: which knobs are continuous, and the coordinate used for continuation.
 
 A branch is a curve of points z = (x/√(2N), p): x is the scaled state (u, w) at drive phase 0 in the scales of its own
 scene, so that a new amplitude A0, which changes the scales, leaves it of order one; p is a logarithmic or linear

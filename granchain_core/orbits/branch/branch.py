@@ -1,4 +1,4 @@
-"""Branches of periodic orbits: followed in one knob through folds, stable or not, with their special points.
+"""Branches of periodic orbits as results: orbits over a knob, stable or not, with their special points.
 
     branch = continue_branch(scene("sec2"), "f", 340.0, 60.0)
 
@@ -198,10 +198,11 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
                     start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
                     on_point: Callable[[Arm], None] | None = None, stop: Stop | None = None,
                     amplitude: Amplitude | None = None) -> Branch:
-    """Follow a branch of periodic orbits over one knob, by pseudo-arclength. Also called `branch`.
+    """Continue a periodic orbit over one knob by pseudo-arclength; `branch` and `continue_branch` are the same
+    function.
 
-    An arm ends where the knob reaches `end` or comes back to `start`, where the branch closes on itself or merges with
-    one of half the period, or where it cannot be followed; `branch.arms[0].reason` says which (docs/branches.md).
+    An arm ends when the knob reaches `end` or returns to `start`, when the branch closes on itself or merges with one
+    of half the period, or when it cannot be continued; `branch.arms[0].reason` says which (docs/branches.md).
 
     Parameters
     ----------

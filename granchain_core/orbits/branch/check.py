@@ -1,4 +1,4 @@
-"""Invariants of every branch, whatever its chain and knob."""
+"""Checks that every branch must pass, whatever its chain and knob."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The equations of a branch, P(x; p) − x = 0 and one condition on the step, and Newton's method on them.
+"""The equations of continuation, P(x; p) − x = 0 and a condition on the step, solved by Newton's method.
 
 Jacobian   [[(P_x − 1)√(2N), P_p], [nᵀ]] in z = (x/√(2N), p): P_x is the exact derivative of the stroboscopic map, P_p
            a difference of the map in the knob. n is the normal of the plane in which z is sought: the bordered matrix

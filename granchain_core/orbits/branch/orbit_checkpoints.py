@@ -1,4 +1,4 @@
-"""Finished orbits of a branch on disk (checkpoints.py), as JSON: their numbers come back bit by bit.
+"""Checkpoints of a branch (checkpoints.py): finished orbits on disk as JSON, exact to the last bit.
 
 A piece is what one arm has grown by: the number of its first new orbit and special point, these, and how it goes on.
 """

@@ -1,4 +1,4 @@
-"""One orbit of a branch with everything in which it may differ from its neighbours."""
+"""One orbit of a branch, with everything that is compared with its neighbours."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a period doubling to the branch of doubled orbits.
+"""Branch switching: from a period doubling to the branch of twice the period.
 
 At a multiplier −1 with eigenvector v the orbits of twice the period lie at x ± εv + O(ε²), p + O(ε²): Newton's method
 on the doubled map in the plane at distance ε along v finds one, because the trivial solution is not in that plane.

@@ -1,4 +1,4 @@
-"""A walk along a branch: predict along the tangent, correct by Newton's method, find the special points in between.
+"""Continuation of a branch: tangent predictor, Newton corrector, and the search for special points in between.
 
 The step grows while Newton's method needs few iterations and the tangent hardly turns, and shrinks otherwise. A
 failed step is halved; at the smallest step the branch ends, and the last residuals are reported.

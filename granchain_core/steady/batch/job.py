@@ -1,4 +1,4 @@
-"""One member of a batch: when its regime is checked, and what follows from the result."""
+"""A member of a batch: when its regime is checked, and what follows."""
 
 from __future__ import annotations
 

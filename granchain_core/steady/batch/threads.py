@@ -1,4 +1,4 @@
-"""Independent work on all cores: threads that draw items from one iterator and yield their results.
+"""Independent work on all cores: threads take items from one iterator and yield results.
 
 Kernels run without the interpreter's lock, so threads are enough, and a result needs no copy.
 """

@@ -1,4 +1,4 @@
-"""A resonance curve and its points, as results."""
+"""Results of a resonance curve: the curve and its points."""
 
 from __future__ import annotations
 

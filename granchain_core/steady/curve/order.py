@@ -1,4 +1,4 @@
-"""The order in which the points of a curve are computed, and which of them are missing."""
+"""The order in which the points of a curve are computed."""
 
 from __future__ import annotations
 

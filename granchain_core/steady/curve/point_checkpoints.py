@@ -1,4 +1,4 @@
-"""Finished points of a resonance curve on disk (checkpoints.py), as JSON: its numbers come back bit by bit."""
+"""Checkpoints of a curve (checkpoints.py): finished points on disk as JSON, exact to the last bit."""
 
 from __future__ import annotations
 

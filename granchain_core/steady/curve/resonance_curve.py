@@ -50,9 +50,10 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     frequencies : sequence of float
         Drive frequencies [Hz].
     start : str
-        "rest": points come coarse first, from all cores; "up" or "down": the state is carried along in that direction.
+        "rest": every point begins at rest, coarse first, on all cores; "up" or "down": each begins in the state of the
+        one before it.
     stop : Stop, optional
-        Once it is set the curve ends, and a running point is given up.
+        When set, the curve ends and running points are abandoned.
     workers : int, optional
         Threads; one for each core if not given.
 
@@ -168,16 +169,16 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     frequencies : sequence of float
         Drive frequencies [Hz], 1 to 100,000 of them, in any order.
     start : str
-        "rest": every point begins at rest, all cores work; "up" or "down": the state is carried along that way, so
-        that hysteresis shows.
+        "rest": every point begins at rest, on all cores; "up" or "down": each point begins in the state of the one
+        before it, so hysteresis shows.
     stop : Stop, optional
-        Once it is set the curve ends with what there is; a running point is given up.
+        When set, the curve ends with its finished points; running points are abandoned.
     on_point : callable, optional
         Called with each `CurvePoint` as it is finished.
     workers : int, optional
         Threads; one for each core if not given.
     known : sequence of CurvePoint
-        Points of this curve that are there already, as `on_point` gave them.
+        Points of this curve that are already computed, as `on_point` received them.
     amplitude : Amplitude, optional
         The drive amplitude over the frequency; the scene's A0 if not given. The spring k stays as it is.
     scheduler : distributed.Client, optional
@@ -186,7 +187,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     Returns
     -------
     Curve
-        Its points in ascending frequency. A point whose numbers fail says so and does not end the curve.
+        Its points in ascending frequency. If the computation of a point fails, its `failure` says why, and the curve
+        continues.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""How one chain comes to its steady state: settling, and the decisions on its regime."""
+"""Settling one chain: running it to its steady state, and deciding its regime."""

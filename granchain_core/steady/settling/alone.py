@@ -1,4 +1,4 @@
-"""The steady state of one chain, settled by itself: for points of curves and maps that no batch computes or decides."""
+"""Settling a single chain, for points of curves and maps that a batch cannot compute or decide."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Records of settling: pictures of the motion on its way, and the refined periodic orbit with its error.
+"""Pictures of a settling chain: the motion so far, and finally its refined periodic orbit with an error.
 
 Motions that are not periodic are recorded by the fixed-step method, without a claim on their error.
 """
@@ -93,7 +93,7 @@ class Settled(Labelled):
 
 def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
              stop: Stop | None = None) -> Iterator[Settled]:
-    """Pictures on the way to the steady state: a quick preview first, the refined one last.
+    """Successive pictures of a settling chain: a quick preview first, the refined steady state last.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
 
 def settled(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
             stop: Stop | None = None) -> Settled:
-    """The steady state that a chain reaches. Also called `settle`.
+    """The steady state of a chain; `settle` and `settled` are the same function.
 
     The fixed-step method runs until the distance to the orbit is bounded or the regime is decided otherwise; a periodic
     orbit is then computed again with a setting fine enough for the accuracy asked for (docs/design.md, "Settled is a

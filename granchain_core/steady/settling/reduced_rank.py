@@ -1,4 +1,4 @@
-"""Shortening a slow approach to an orbit without leaving its attractor.
+"""Reduced rank extrapolation: shortening a slow transient without leaving the attractor's basin.
 
 Reduced rank extrapolation (kernels/strobes/extrapolation.py) takes out the slowest modes. It is used only where changes
 are already small and shrinking. An extrapolation is accepted only if the change after it is smaller and if it goes no

@@ -1,4 +1,4 @@
-"""The regime of a motion that seems periodic, or that has not settled for a long time, in successive decisions.
+"""Decisions on the regime of a motion that seems periodic, or that has not settled for a long time.
 
 A motion that seems settled is confirmed by the multipliers of its orbit. Otherwise a nearby orbit is
 examined: if the motion approaches it, the orbit is reported; if it departs, the departure is

@@ -1,4 +1,4 @@
-"""Refine an orbit found with the default step: a few more periods with a finer setting, or extrapolation."""
+"""Refining an orbit that was found with the default step: a few more periods with a finer setting, or extrapolation."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Bringing a chain to its steady state, and deciding whether it is there.
+"""Running a chain to its steady state until its regime is decided.
 
 The fixed-step method runs from the start until the distance bound is small (regime.py) or the regime is decided
 otherwise (regime_decisions.py). A periodic orbit is then computed again with finer steps (relax.py); recorded.py
