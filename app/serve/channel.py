@@ -31,11 +31,16 @@ log = logging.getLogger("granchain.page")
 _FINISHING: set[asyncio.Future[None]] = set()
 
 
+def can_lock(session: Any) -> bool:
+    """Whether this is a session of Bokeh's that can be locked here."""
+    there = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
+    return there and hasattr(session, "_pending_writes")
+
+
 def session_of(document: Document) -> Any:
     """Bokeh's session of a page, None where there is none, or none that can be locked here."""
     session = getattr(getattr(document, "session_context", None), "session", None)
-    known = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
-    return session if known and hasattr(session, "_pending_writes") else None
+    return session if can_lock(session) else None
 
 
 def run_locked(session: Any, actions: list[Callable[[], None]]) -> None:
