@@ -33,7 +33,7 @@ def receives(document: Document, model: str, receive: Receive) -> None:
 def take(connection: Any, content: dict[str, Any]) -> bool:
     """Pass a message on to its part, with the document locked; False if it is for Bokeh."""
     session = getattr(connection, "session", None)
-    if not can_lock(session) or session.destroyed:
+    if session is None or not can_lock(session) or session.destroyed:
         return False
     known = _RECEIVERS.get(session.document)
     if known is None:
