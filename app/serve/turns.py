@@ -12,6 +12,7 @@ import math
 import os
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
@@ -22,6 +23,8 @@ Result = TypeVar("Result")
 
 #: Processor time for which a computation has just begun [s]: that of a first picture of some ten beads.
 _BEGINNING = 0.03
+#: Over how many beginnings, and in which time [s], waits are averaged.
+_REMEMBERED, _LATELY = 200, 10.0
 #: After so long a wait a computation has the same right as one that has just begun [s].
 _LONGEST_WAIT = 0.5
 
@@ -85,6 +88,14 @@ class FairScheduler:
         self._lock = threading.Lock()
         self._running: dict[object, float] = {}
         self._waiting: list[_Wait] = []
+        self._waits: deque[tuple[float, float]] = deque(maxlen=_REMEMBERED)
+
+    @property
+    def wait(self) -> float:
+        """How long a computation waited lately before it could begin, on average [s]."""
+        since = self._clock() - _LATELY
+        waits = [wait for at, wait in list(self._waits) if at > since]
+        return sum(waits) / len(waits) if waits else 0.0
 
     @property
     def waiting(self) -> int:
@@ -130,6 +141,8 @@ class FairScheduler:
             best = min(self._waiting, key=lambda one: one.rank(now))
             self._waiting.remove(best)
             self._running[best] = now
+            if best.begins:
+                self._waits.append((now, now - best.since))
             best.granted.set()
 
 
