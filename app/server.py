@@ -121,6 +121,7 @@ def server_at(port: int, address: str, origins: Sequence[str] | None = None, acc
 
 def _count_what_is_shared() -> None:
     """The queues and caches of all visitors, for `/metrics`."""
+    METERS.turn_wait = lambda: TURNS.wait
     METERS.gauges.update(queue=lambda: TURNS.waiting + PICTURES.waiting + SWEEPS.waiting,
                          computing=lambda: PICTURES.busy + SWEEPS.busy)
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}

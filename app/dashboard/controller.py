@@ -127,6 +127,7 @@ class Controller:
         if self._left:
             return
         self._left = True
+        self._channel.close()
         METERS.visitors -= 1
         self.pictures.close()
         self.curves.close()

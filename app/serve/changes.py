@@ -7,6 +7,7 @@ where a release has it no longer, changes leave as Bokeh sends them.
 
 from __future__ import annotations
 
+import base64
 import itertools
 import json
 import math
@@ -29,6 +30,8 @@ from tornado.locks import Lock
 _MOST_SAFE = 2**53 - 1
 #: Kinds of numbers that BokehJS has arrays of, by NumPy's letters.
 _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
+#: Arrays up to this size stand in the text [bytes]: each of the others is two frames more, for both sides.
+_SHORT = 8192
 _NUMBERS = itertools.count(1)
 
 
@@ -77,9 +80,13 @@ class _Message:
         raise _NotPlain
 
     def _array(self, value: np.ndarray) -> dict[str, Any]:
-        name = f"a{len(self.arrays)}"
-        self.arrays.append((name, np.ascontiguousarray(value).data.cast("B") if value.size else memoryview(b"")))
-        return {"type": "ndarray", "array": {"type": "bytes", "data": {"id": name}}, "shape": list(value.shape),
+        data: str | dict[str, str]
+        if value.nbytes <= _SHORT:
+            data = base64.b64encode(value.tobytes()).decode()
+        else:
+            data = {"id": f"a{len(self.arrays)}"}
+            self.arrays.append((data["id"], np.ascontiguousarray(value).data.cast("B")))
+        return {"type": "ndarray", "array": {"type": "bytes", "data": data}, "shape": list(value.shape),
                 "dtype": _ARRAYS[value.dtype.char], "order": sys.byteorder}
 
 

@@ -31,11 +31,16 @@ log = logging.getLogger("granchain.page")
 _FINISHING: set[asyncio.Future[None]] = set()
 
 
+def can_lock(session: Any) -> bool:
+    """Whether this is a session of Bokeh's that can be locked here."""
+    there = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
+    return there and hasattr(session, "_pending_writes")
+
+
 def session_of(document: Document) -> Any:
     """Bokeh's session of a page, None where there is none, or none that can be locked here."""
     session = getattr(getattr(document, "session_context", None), "session", None)
-    known = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
-    return session if known and hasattr(session, "_pending_writes") else None
+    return session if can_lock(session) else None
 
 
 def run_locked(session: Any, actions: list[Callable[[], None]]) -> None:
@@ -93,14 +98,28 @@ class Channel:
         self._loop = IOLoop.current(instance=False)
         self._lock = threading.Lock()
         self._waiting: deque[Callable[[], None]] = deque()
-        self._due = False
+        self._due = self._closed = False
+        self._timers: set[asyncio.TimerHandle] = set()
+
+    def close(self) -> None:
+        """The visitor left: nothing is called any more, and what was to be called later is forgotten."""
+        with self._lock:
+            self._closed = True
+            self._waiting.clear()
+        for timer in self._timers:
+            timer.cancel()
+        self._timers.clear()
 
     def call_soon(self, action: Callable[[], None]) -> None:
         """Call `action` in the next turn of the event loop; from any thread."""
+        if self._closed:
+            return
         if self._loop is None or session_of(self._document) is None:
             self._document.add_next_tick_callback(action)
             return
         with self._lock:
+            if self._closed:
+                return
             self._waiting.append(action)
             due, self._due = self._due, True
         if not due:
@@ -108,10 +127,18 @@ class Channel:
 
     def call_later(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` so many seconds from now; on the event loop."""
+        if self._closed:
+            return
         if self._loop is None or session_of(self._document) is None:
             self._document.add_timeout_callback(action, round(1e3 * seconds))
-        else:
-            self._loop.asyncio_loop.call_later(seconds, self.call_soon, action)  # type: ignore[attr-defined]
+            return
+
+        def fire() -> None:
+            self._timers.discard(timer)
+            self.call_soon(action)
+
+        timer: asyncio.TimerHandle = self._loop.asyncio_loop.call_later(seconds, fire)  # type: ignore[attr-defined]
+        self._timers.add(timer)
 
     def _run(self) -> None:
         with self._lock:

@@ -19,7 +19,7 @@ from tornado.web import HTTPError, RequestHandler
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
 #: Between two measurements of how late the event loop is [s], and how many are remembered.
 _EVERY, _KEPT = 0.25, 40
-#: The server is called busy when a knob's message waits longer than this [s].
+#: The server is called busy when a knob's message, or the computation for it, waits longer than this [s].
 _BUSY = 0.3
 
 
@@ -40,6 +40,8 @@ class Meters:
         self.answers_total = 0.0
         self._late: deque[float] = deque(maxlen=_KEPT)
         self.gauges: dict[str, Callable[[], float]] = {}
+        #: How long computations wait before they can begin [s]; the server puts it there.
+        self.turn_wait: Callable[[], float] = lambda: 0.0
 
     def answered(self, seconds: float) -> None:
         """Count a first picture that came so many seconds after the knob moved."""
@@ -55,8 +57,8 @@ class Meters:
 
     @property
     def busy(self) -> bool:
-        """Whether visitors notice that there are many."""
-        return self.lateness > _BUSY
+        """Whether visitors notice that there are many: by the event loop, or by the wait for a turn to compute."""
+        return max(self.lateness, self.turn_wait()) > _BUSY
 
     async def watch(self) -> None:
         """Measure how late the event loop is, for as long as it runs."""
@@ -85,6 +87,8 @@ class Meters:
         add("errors_total", "counter", "Unexpected failures; each is in the log.", self.errors)
         add("event_loop_lateness_seconds", "gauge", "Mean delay of the event loop in the last ten seconds.",
             self.lateness)
+        add("turn_wait_seconds", "gauge", "Mean wait of a computation before it could begin in the last ten seconds.",
+            self.turn_wait())
         add("resident_memory_bytes", "gauge", "Resident memory.", resident_memory())
         add("threads", "gauge", "Threads.", threading.active_count())
         for name, read in sorted(self.gauges.items()):

@@ -12,7 +12,7 @@ from typing import Any
 
 from bokeh.document import Document
 
-from .channel import run_locked, session_of
+from .channel import can_lock, run_locked
 
 Receive = Callable[[dict[str, Any]], None]
 
@@ -33,11 +33,10 @@ def receives(document: Document, model: str, receive: Receive) -> None:
 def take(connection: Any, content: dict[str, Any]) -> bool:
     """Pass a message on to its part, with the document locked; False if it is for Bokeh."""
     session = getattr(connection, "session", None)
-    if session is None or session.destroyed:
+    if session is None or not can_lock(session) or session.destroyed:
         return False
-    document = session.document
-    known = _RECEIVERS.get(document)
-    if known is None or session_of(document) is None:
+    known = _RECEIVERS.get(session.document)
+    if known is None:
         return False
     try:
         model, message = _read(content)

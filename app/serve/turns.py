@@ -12,6 +12,7 @@ import math
 import os
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
@@ -22,6 +23,8 @@ Result = TypeVar("Result")
 
 #: Processor time for which a computation has just begun [s]: that of a first picture of some ten beads.
 _BEGINNING = 0.03
+#: Over how many beginnings, and in which time [s], waits are averaged.
+_REMEMBERED, _LATELY = 200, 10.0
 #: After so long a wait a computation has the same right as one that has just begun [s].
 _LONGEST_WAIT = 0.5
 
@@ -83,8 +86,16 @@ class FairScheduler:
     def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
         self._at_once, self._clock = at_once, clock
         self._lock = threading.Lock()
-        self._running: dict[object, float] = {}
+        self._running: dict[_Wait, float] = {}
         self._waiting: list[_Wait] = []
+        self._waits: deque[tuple[float, float]] = deque(maxlen=_REMEMBERED)
+
+    @property
+    def wait(self) -> float:
+        """How long a computation waited lately before it could begin, on average [s]."""
+        since = self._clock() - _LATELY
+        waits = [wait for at, wait in list(self._waits) if at > since]
+        return sum(waits) / len(waits) if waits else 0.0
 
     @property
     def waiting(self) -> int:
@@ -111,16 +122,25 @@ class FairScheduler:
     def end(self, turn: object) -> None:
         """The turn is over."""
         with self._lock:
-            self._running.pop(turn, None)
+            if isinstance(turn, _Wait):
+                self._running.pop(turn, None)
             self._grant()
 
     def should_yield(self, cpu_time: CpuTime, begins: bool = True) -> bool:
-        """Whether another waits that has used less, or has just begun while this one has not."""
-        if not self._waiting:
+        """Whether another waits that has used less, or has just begun while this one has not.
+
+        Or more compute than there are turns, because some turns are old, and this one has used most of all: else what
+        has just begun would share the cores with what has long been under way.
+        """
+        if not self._waiting and len(self._running) <= self._at_once:
             return False
         with self._lock:
             now, mine = self._clock(), (not begins, cpu_time.used)
-            return any(other.rank(now) < mine for other in self._waiting)
+            if any(other.rank(now) < mine for other in self._waiting):
+                return True
+            too_many = len(self._running) - self._at_once
+            used = sorted((one.cpu_time.used for one in self._running), reverse=True)
+            return too_many > 0 and cpu_time.used >= used[too_many - 1] > used[-1]
 
     def _grant(self) -> None:
         """With the lock held: give free turns to those who have used least."""
@@ -130,6 +150,8 @@ class FairScheduler:
             best = min(self._waiting, key=lambda one: one.rank(now))
             self._waiting.remove(best)
             self._running[best] = now
+            if best.begins:
+                self._waits.append((now, now - best.since))
             best.granted.set()
 
 

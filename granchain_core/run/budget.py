@@ -132,7 +132,10 @@ def check_picture(scene: Scene, periods: int, samples: int, budget: float) -> No
     if seconds <= budget:
         return
     part = 0.9 * budget / seconds
-    fits = [f"N = {int(scene.N * part)}"] if scene.N * part >= 1.0 and not scene.impurities else []
+    beads = 0 if scene.impurities else int(scene.N * part)
+    while beads and picture_seconds(scene.evolve(N=beads), periods, samples) > budget:
+        beads = int(0.9 * beads)  # the time is not proportional to their number
+    fits = [f"N = {beads}"] if beads else []
     fastest = float(f"{1.1 * scene.f / part:.2g}")
     while fastest <= QUANTITIES["f"].high and picture_seconds(scene.evolve(f=fastest), periods, samples) > budget:
         fastest = float(f"{1.5 * fastest:.2g}")  # a period has at least so many steps, however short it is

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import struct
 from typing import Any
@@ -43,7 +44,8 @@ def without_ids(value: Any, buffers: dict[str, bytes]) -> Any:
     """A message's content with its arrays in place of their names."""
     if isinstance(value, dict):
         if value.get("type") == "bytes":
-            return buffers[value["data"]["id"]]
+            data = value["data"]
+            return base64.b64decode(data) if isinstance(data, str) else buffers[data["id"]]
         return {name: without_ids(one, buffers) for name, one in value.items()}
     return [without_ids(one, buffers) for one in value] if isinstance(value, list) else value
 
@@ -67,7 +69,8 @@ def events_of(document: Document) -> list[Any]:
     return [
         ModelChangedEvent(document, axis, "start", np.float64(0.25)), ModelChangedEvent(document, words, "text", "é" * 40_000),
         ColumnDataChangedEvent(document, source, "data", {
-            "time": np.arange(5, dtype=np.float32), "image": [np.ones((2, 3), np.float32)], "none": np.zeros(0), "label": ["a", "b"]}),
+            "time": np.arange(5, dtype=np.float32), "long": np.arange(30_000, dtype=np.float32).reshape(2, -1)[:, ::2],
+            "image": [np.ones((2, 3), np.float32)], "none": np.zeros(0), "label": ["a", "b"]}),
         MessageSentEvent(document, "bokeh_event", ESMEvent(model=words, data=said)),
     ]
 

@@ -114,6 +114,20 @@ def test_at_a_pause_the_turn_goes_to_who_has_used_less() -> None:
     thread.join(20)
 
 
+def test_of_more_than_there_are_turns_the_one_that_has_used_most_goes_at_its_pause() -> None:
+    """A turn that is old keeps nobody waiting, but would share the cores with who came after it."""
+    now = [0.0]
+    turns, bomb, other = FairScheduler(1, lambda: now[0]), CpuTime(lambda: 0.0), CpuTime(lambda: 0.0)
+    bomb.charge(5.0)
+    turns.begin(bomb, Stop())
+    assert not turns.should_yield(bomb, False)
+    now[0] = 1.0
+    turn = turns.begin(other, Stop())
+    assert turns.should_yield(bomb, False) and not turns.should_yield(other)
+    turns.end(turn)
+    assert not turns.should_yield(bomb, False)
+
+
 def test_a_turn_that_never_pauses_keeps_nobody_waiting() -> None:
     """As many as have turns at once and more."""
     turns = FairScheduler(2)

@@ -50,15 +50,17 @@ async def run(server: Started, count: int, minutes: float, bomb: bool, same: boo
     await asyncio.sleep(3.0)
     load, used = os.getloadavg()[0], server.processor_time if server.process else 0.0
     loop = server.loop_time if server.process else float("nan")
+    own = time.process_time()
     end = time.perf_counter() + 60.0 * minutes
     await asyncio.gather(*(_moves(one, end, random.Random(seed if same else f"{seed} {number}"), answers, same)
                            for number, one in enumerate(viewers)))
     used = (server.processor_time - used) / (60.0 * minutes) if server.process else float("nan")
+    own = (time.process_time() - own) / (60.0 * minutes)
     move = (server.loop_time - loop) / max(1, len(answers.times)) if server.process else float("nan")
     after = figures(server.number)[0] if server.process else float("nan")
     print("viewers | bomb | p50 ms | p95 ms | answered | after a second | opening p50 s | slowest opening s | all open s "
-          "| processors used | loop ms a move | loop ms an opening | memory before MB | with all MB | load before")
-    print(f"{count} | {'yes' if bomb else 'no'} | {answers.row} | {all_open:.1f} | {used:.2f} | {1e3 * move:.1f} "
+          "| processors used | by the viewers | loop ms a move | loop ms an opening | memory before MB | with all MB | load before")
+    print(f"{count} | {'yes' if bomb else 'no'} | {answers.row} | {all_open:.1f} | {used:.2f} | {own:.2f} | {1e3 * move:.1f} "
           f"| {1e3 * opening:.0f} | {memory:.0f} | {after:.0f} | {load:.1f}", flush=True)
     await asyncio.gather(*(one.leave() for one in [*viewers, *bombs]))
 
