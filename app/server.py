@@ -7,7 +7,7 @@ import gc
 import ipaddress
 import secrets
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -76,9 +76,13 @@ def is_loopback(address: str) -> bool:
 
 
 def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] | None = None,
-          access: Access | None = None, log_level: str = "warning") -> None:
-    """Serve the page until interrupted; `/liveness` answers health checks. Raises `OSError` for a taken port."""
+          access: Access | None = None, log_level: str = "warning", before: Callable[[], None] = lambda: None) -> None:
+    """Serve the page until interrupted; `/liveness` answers health checks. Raises `OSError` for a taken port.
+
+    `before` is called when the server is about to listen.
+    """
     logs.configure(log_level)
+    before()
     server = server_at(port, address, origins, access)
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else address
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)

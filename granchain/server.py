@@ -139,8 +139,9 @@ def _answers(process: subprocess.Popen[bytes], port: int) -> bool:
             line.request("GET", "/liveness")
             if line.getresponse().status == 200:
                 return True
-        except OSError:
-            time.sleep(_LOOK)
+        except (OSError, http.client.HTTPException):
+            pass
         finally:
             line.close()
+        time.sleep(_LOOK)
     return False

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import secrets
+from collections.abc import Callable
 from pathlib import Path
 
 from granchain_core import BadInput
 
 from .options import whole
+from .waiting import Waiting
 
 LEVELS = ("debug", "info", "warning", "error")
 #: Shortest secret [bytes].
@@ -44,13 +47,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Open the dashboard."""
-    from ..server import Access, is_loopback
-    from ..server import serve as serve_page
-
     if not 0 <= arguments.port <= 65535:
         raise BadInput(f"port {arguments.port} is outside 0 to 65535; the usual one is 5006.")
     if not 1 <= arguments.most_visitors <= 10_000:
         raise BadInput(f"--most-visitors {arguments.most_visitors} is outside 1 to 10000; the usual number is 200.")
+    with contextlib.closing(Waiting(arguments.address, arguments.port)) as waiting:
+        _serve(arguments, waiting.close)
+
+
+def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
+    """Import the dashboard and serve it; `before` is called when it is about to listen."""
+    from ..server import Access, is_loopback
+    from ..server import serve as serve_page
+
     secret, sign_in = _secret(arguments), _sign_in(arguments)
     if not is_loopback(arguments.address) and not (arguments.allow_websocket_origin and secret):
         raise BadInput(
@@ -60,7 +69,7 @@ def do(arguments: argparse.Namespace) -> None:
     access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.most_visitors,
                     tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()))
     try:
-        serve_page(arguments.port, arguments.address, access=access, log_level=arguments.log_level)
+        serve_page(arguments.port, arguments.address, access=access, log_level=arguments.log_level, before=before)
     except OSError as problem:
         raise BadInput(f"Cannot listen on {arguments.address}:{arguments.port}: {problem.strerror or problem}; "
                        f"try --port {arguments.port + 1}.") from None

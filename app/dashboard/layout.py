@@ -90,7 +90,7 @@ class Views:
 def _page() -> tuple[str, dict[str, Any]]:
     """The page's template and what stands in it, the same for every visitor."""
     return (_HERE / "page.html").read_text(encoding="utf-8"), {
-        "page_css": style_sheet() + (_HERE / "page.css").read_text(encoding="utf-8"),
+        "page_css": style_sheet() + text("page.css") + text("skeleton.css"),
         "page_js": text("page.js") + text("connection.js"),
         "terms": json.dumps(definitions()).replace("<", "\\u003c"),
         "frame_top": TOP, "frame_bottom": BOTTOM, "frame_left": LEFT, "gap": GAP,

@@ -31,6 +31,37 @@ def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) ->
     expect(page.locator("#bar select").first).to_have_value("sec2")
 
 
+HOLDS_ITS_MESSAGES = """
+const send = WebSocket.prototype.send, held = [];
+WebSocket.prototype.send = function (frame) { held.push([this, frame]); };
+window.release = () => {
+  WebSocket.prototype.send = send;
+  for (const [socket, frame] of held) socket.send(frame);
+};
+"""
+# What stands in each part before it is there; what is written over the pictures and can be seen.
+SKELETON = """() => ["chain", "left", "map", "right", "curve"]
+  .map((id) => getComputedStyle(document.getElementById(id), "::before").content)"""
+OVER = """() => [...document.querySelectorAll("#stage :is(.title, .peak, #key, #scale)")]
+  .filter((one) => getComputedStyle(one).visibility === "visible").length"""
+
+
+def test_before_the_first_picture_every_part_says_what_is_coming(chromium: Browser, prepared: str) -> None:
+    """And nothing is written on anything else: titles have their places with the pictures."""
+    page = chromium.new_page(reduced_motion="reduce")
+    page.add_init_script(HOLDS_ITS_MESSAGES)
+    page.goto(prepared)
+    page.wait_for_selector("#page.starting")
+    coming = page.evaluate(SKELETON)
+    assert all(words in content for words, content in zip(
+        ("the chain of beads", "at the driver", "kinetic energy", "at the wall", "resonance curve"), coming, strict=True))
+    assert page.evaluate(OVER) == 0
+    page.evaluate("release()")
+    page.wait_for_selector("#page:not(.starting)")
+    assert page.evaluate(SKELETON) == ["none"] * 5 and page.evaluate(OVER) == 7
+    page.close()
+
+
 def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromium: Browser,
                                                             tmp_path: Path) -> None:
     with dashboard(tmp_path / "log", GRANCHAIN_CACHE=str(tmp_path / "cache"), NUMBA_OPT="1") as url:

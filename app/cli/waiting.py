@@ -1,0 +1,75 @@
+"""What a browser is shown while `granchain serve` starts: the page's skeleton, then the page, as soon as there is one.
+
+The server needs some seconds to import what it consists of. Until then this one, of the standard library alone, answers
+every request with status 503, so that a health check waits. It listens on this machine only.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import threading
+from pathlib import Path
+
+#: Of one request: until its head must have come [s], and the most that is read of it [bytes].
+_PATIENCE, _HEAD = 2.0, 8192
+#: The addresses at which a visitor on this machine reaches it.
+_HERE = {"127.0.0.1": socket.AF_INET, "localhost": socket.AF_INET, "::1": socket.AF_INET6}
+
+
+def answer() -> bytes:
+    """The whole answer: the skeleton with the page's own layout."""
+    folder = Path(__file__).resolve().parent
+    layout = folder.parent / "dashboard"
+    sheets = "".join((layout / name).read_text(encoding="utf-8") for name in ("page.css", "skeleton.css"))
+    body = (folder / "waiting.html").read_text(encoding="utf-8").replace("/* style sheets */", sheets).encode()
+    head = ("HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/html; charset=utf-8\r\nCache-Control: no-store\r\n"
+            "Retry-After: 1\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n"
+            f"Content-Length: {len(body)}\r\n\r\n")
+    return head.encode() + body
+
+
+class Waiting:
+    """Answers at an address of this machine until it is closed; at any other address it does nothing."""
+
+    def __init__(self, address: str, port: int) -> None:
+        self._listening: socket.socket | None = None
+        if address not in _HERE or port == 0:
+            return
+        listening = socket.socket(_HERE[address])
+        try:
+            listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            listening.bind((address, port))
+            listening.listen()
+        except OSError:  # the server says what is wrong with the port
+            listening.close()
+            return
+        self._listening, self._answer = listening, answer()
+        self._thread = threading.Thread(target=self._serve, args=(listening,), daemon=True)
+        self._thread.start()
+
+    def _serve(self, listening: socket.socket) -> None:
+        while True:
+            try:
+                line, _ = listening.accept()
+            except OSError:  # closed
+                return
+            threading.Thread(target=self._reply, args=(line,), daemon=True).start()
+
+    def _reply(self, line: socket.socket) -> None:
+        with line, contextlib.suppress(OSError):
+            line.settimeout(_PATIENCE)
+            head = b""
+            while b"\r\n\r\n" not in head and len(head) < _HEAD and (more := line.recv(_HEAD)):
+                head += more
+            line.sendall(self._answer)
+
+    def close(self) -> None:
+        """Leave the port to the server."""
+        if self._listening is None:
+            return
+        with contextlib.suppress(OSError):
+            self._listening.shutdown(socket.SHUT_RDWR)  # what waits in accept() comes back
+        self._listening.close()
+        self._thread.join()
+        self._listening = None
