@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import importlib
 import io
+import multiprocessing
 import os
 import pty
 import subprocess
 import sys
 import threading
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 import pytest
 
 from app.cli.common import in_background
-from app.cli.compiling import WORDS
+from app.cli.compiling import WORDS, compiling_beside
+from granchain_core import scene
 
 #: Compiles two functions, as a first run does.
 PROGRAM = """
@@ -76,3 +80,28 @@ def test_seconds_are_counted_where_the_work_reports_nothing_itself(monkeypatch: 
     shown = terminal.getvalue()
     assert in_background(lambda stop: "soon") == "soon"  # within the first second
     assert terminal.getvalue() == shown
+
+
+def compilers() -> list[BaseProcess]:
+    """The processes that compile for this one."""
+    return [one for one in multiprocessing.active_children() if one.name == "compiler"]
+
+
+def test_a_second_process_compiles_only_where_numba_does_and_ends_with_the_block(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    event = importlib.import_module("numba.core.event")
+    with compiling_beside(scene("sec2"), "fixed step"):
+        assert compilers() == [], "nothing has been compiled yet"
+        with event.trigger_event("numba:compile"), event.trigger_event("numba:compile"):
+            (process,) = compilers()  # one, however much is compiled
+    process.join(60)
+    assert not process.is_alive()
+    with event.trigger_event("numba:compile"):
+        assert compilers() == [], "the block has ended"
+
+
+def test_with_one_core_nothing_compiles_beside(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("os.cpu_count", lambda: 1)
+    event = importlib.import_module("numba.core.event")
+    with compiling_beside(scene("sec2"), "fixed step"), event.trigger_event("numba:compile"):
+        assert compilers() == []
