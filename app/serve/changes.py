@@ -8,6 +8,7 @@ where a release has it no longer, changes leave as Bokeh sends them.
 from __future__ import annotations
 
 import base64
+import gzip
 import itertools
 import json
 import math
@@ -82,7 +83,8 @@ class _Message:
     def _array(self, value: np.ndarray) -> dict[str, Any]:
         data: str | dict[str, str]
         if value.nbytes <= _SHORT:
-            data = base64.b64encode(value.tobytes()).decode()
+            # BokehJS expects gzip there; without compression it is only a frame around the bytes
+            data = base64.b64encode(gzip.compress(value.tobytes(), compresslevel=0, mtime=1)).decode()
         else:
             data = {"id": f"a{len(self.arrays)}"}
             self.arrays.append((data["id"], np.ascontiguousarray(value).data.cast("B")))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import json
 import struct
 from typing import Any
@@ -44,8 +45,8 @@ def without_ids(value: Any, buffers: dict[str, bytes]) -> Any:
     """A message's content with its arrays in place of their names."""
     if isinstance(value, dict):
         if value.get("type") == "bytes":
-            data = value["data"]
-            return base64.b64decode(data) if isinstance(data, str) else buffers[data["id"]]
+            data = value["data"]  # in the text it is base64 of gzip, without which the browser shows nothing at all
+            return gzip.decompress(base64.b64decode(data)) if isinstance(data, str) else buffers[data["id"]]
         return {name: without_ids(one, buffers) for name, one in value.items()}
     return [without_ids(one, buffers) for one in value] if isinstance(value, list) else value
 
