@@ -70,9 +70,12 @@ class Kept(Generic[Piece]):
                 return
             if not resume:
                 raise BadInput(f"{self.folder} holds an unfinished {self._kind}; go on with --resume, or delete it.")
-            found = json.loads(self._read(self._head_file.name) or b"{}")
+            head = self._read(self._head_file.name)
         except OSError as problem:
             raise self._denied(problem) from None
+        if head is None:
+            raise BadInput(f"{self._head_file} is damaged; delete {self.folder} to begin again.")
+        found = json.loads(head)
         if (found.get("version"), found.get("digest")) != (_VERSION, self._head["digest"]):
             raise BadInput(f"{self.folder} holds another {self._kind}, {found.get('words', 'of another version')}, not "
                            f"{self._words} with these knobs; give that one's words, another --out, or delete the "

@@ -2,8 +2,9 @@
 
 Equation   F(t) = Σ_m A_m cos(2π m f t / n + φ_m) for a motion of period n: its Fourier series, without a window
            H_m = F̂_out,m / F̂_in,m at the lines at which the input force has a part that counts
-Note       A motion that is not periodic has no lines. Its record is weighted by a Hann window, and a peak's height is
-           that of a sine that stands alone; two peaks closer than 2 / duration are one.
+Note       The spectrum of a motion without a period is no such series: quasi-periodic motion has lines at combinations
+           of its frequencies, chaotic motion a continuous part. Its record is weighted by a Hann window, and a peak's
+           height is that of a sine that stands alone; two peaks closer than 2 / duration are one.
            Samples see nothing above half their frequency, and what is there is folded back. `aliasing` estimates it:
            twice the largest difference from the lines that every second sample gives, below half of its frequencies.
 """

@@ -4,7 +4,7 @@ The place of a state on a resonance curve is another matter (steady/curve/resona
 
 Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives one strong push every n periods, at the
 moment at which the pulse reflected by the wall comes back to it; in an anti-resonance pulses interfere destructively,
-and every period has one weak push. Both are read from the orbit itself:
+and every period has one push, none much stronger than the others. Both are read from the orbit itself:
 
 pushes     counted as in steady/curve/resonance.py: `strong` pushes in `periods` drive periods, in lowest terms.
 returning  speed with which bead 1 comes towards the driver just before the strongest push, over the drive's largest

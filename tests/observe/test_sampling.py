@@ -45,8 +45,9 @@ def test_the_dashpots_jump_costs_orders(known) -> None:  # type: ignore[no-untyp
         return float(np.sqrt(np.mean((found - dense.force) ** 2)) / np.abs(dense.force).max())
 
     order = np.polyfit(np.log(RATES), [-np.log(lost(n)) for n in RATES], 1)[0]
-    # A jump within one spacing h: an error of order 1 over a time h, in root mean square h^{1/2}. Without a jump the
-    # onset is a δ^{3/2}: h^{3/2} over a time h, h^2. Where the jump lies in its interval moves the fit by some tenths.
+    # A jump within one spacing h: an error of order 1 over a time h, in root mean square h^{1/2}. The
+    # elastic onset δ^{3/2} gives h^2, which dominates at these rates; for much finer ones Kuwabara and Kono's damping,
+    # which begins as the root of the time, gives h. Where the jump lies in its interval moves the fit by some tenths.
     assert order == pytest.approx(0.5, abs=0.3) if shown is FOUNDED else order == pytest.approx(2.0, abs=0.5)
 
 

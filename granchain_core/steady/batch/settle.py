@@ -18,6 +18,7 @@ import numpy as np
 
 from ...integrate.batch import NEVER, Batch
 from ...kernels.width import BATCH_SIZE
+from ...regime import Regime
 from ...scaling import scale_chain
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
@@ -134,9 +135,20 @@ class _JobsInBatch:
             elif regime.name == "unsettled" and growth.mean() < 0.0 and job.run < MOST_PERIODS and job.affordable:
                 self.waiting.append(job)
             else:
-                unclear = regime.name == "unsettled" or (before is not None and not agree(regime, before))
-                yield SteadyState(job.scene, job.maxima, regime, None, job.scaled.to_si(y), number=job.number,
-                                 doubtful=unclear and job.affordable)
+                reported, clear = decided(regime, before, clearly_chaotic(growth))
+                yield SteadyState(job.scene, job.maxima, reported, None, job.scaled.to_si(y), number=job.number,
+                                  doubtful=not clear and job.affordable)
+
+
+def decided(regime: Regime, before: Regime | None, sure: bool) -> tuple[Regime, bool]:
+    """The regime to report after a last measurement, and whether it is clear.
+
+    Two measurements that disagree decide nothing, unless the last is `sure` by itself.
+    """
+    agreed = before is None or agree(regime, before)
+    if not agreed and not sure:
+        regime = replace(regime, name="unsettled")
+    return regime, agreed and regime.name != "unsettled"
 
 
 def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:
