@@ -265,10 +265,10 @@ class Curve:
             self._pinned.draw(scale[0])
             if self._measurement is not None:
                 self.measured(self._measurement)
-            # Room for the names of the peaks, and for those that the paper states above them.
-            change(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
-            # Its heading says that it is the largest.
-            change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
+        # Room for the names of the peaks, and for those that the paper states above them.
+        change(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
+        # Its heading says that it is the largest.
+        change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}
