@@ -24,7 +24,8 @@ export class Steel {
   }
 
   // A square picture of a bead with its glow, and how far it reaches from the bead's middle, in radii.
-  bead(radius, share, ratio, ink) {
+  bead(room, share, ratio, ink) {
+    const radius = Math.max(room, 0.5); // a page that is being resized may have no room for a moment
     const step = Math.round(STEPS * Math.sqrt(Math.max(0, Math.min(1, share))));
     const key = `${radius.toFixed(1)} ${step}`;
     if (!this.made.has(key)) this.made.set(key, this.draw(radius, step / STEPS, ratio, ink));
