@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
 from .options import add_json, add_scene, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Attractor, Attractors
@@ -31,12 +31,9 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core import attractors, save
     from granchain_core.diagram.attractors import MOST_STATES
     from granchain_core.errors import check_range
-    from granchain_core.store import check_writable
 
     chosen = chosen_scene(arguments)
-    check_picture(arguments.picture)
-    if arguments.out:
-        check_writable(arguments.out)
+    check_files(arguments)
     check_range("--random-states", arguments.random_states, 0, MOST_STATES)
     check_range("--seed", arguments.seed, 0, 2**63 - 1)
     progress = show_percent if sys.stderr.isatty() else None

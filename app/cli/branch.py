@@ -21,7 +21,7 @@ from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
 from .options import add_result, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_picture
 
 #: Orbits between two lines about progress.
 _EVERY = 25
@@ -46,11 +46,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Follow a branch of periodic orbits and report it."""
-    from granchain_core.store import check_writable
 
-    check_picture(arguments.picture)
-    if arguments.out:
-        check_writable(arguments.out)
+    check_files(arguments)
     check_points(arguments.points, 2, MOST_POINTS)
     found = _followed(arguments)
     write_picture(arguments.picture, f"A branch of {found.axis.scene.name}", found)

@@ -37,6 +37,10 @@ def announce_compiling() -> None:
     event.register("numba:compile", Listener())
 
 
+#: Pieces of kernels by their names in granchain_core/warm.py, whose import takes a sixth of a second.
+FIXED_STEP, ORBIT = "fixed step", "orbit"
+
+
 @contextmanager
 def compiling_beside(chosen: Scene, *pieces: str) -> Iterator[None]:
     """Where Numba begins to compile in this block, compile these pieces (granchain_core/warm.py) in another process.
@@ -75,5 +79,8 @@ def _compile(parent: int, chosen: Scene, pieces: tuple[str, ...]) -> None:
     end_with_parent(parent)
     from granchain_core.warm import compile_piece
 
-    for piece in pieces:
-        compile_piece(chosen, piece)
+    try:
+        for piece in pieces:
+            compile_piece(chosen, piece)
+    except Exception:  # the command meets it too, and says it in its own sentence
+        sys.exit(1)

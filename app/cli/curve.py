@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 from granchain_core import Amplitude, BadInput, Scene
 
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
-from .compiling import compiling_beside
+from .compiling import FIXED_STEP, compiling_beside
 from .data_options import add_amplitude, chosen_amplitude
 from .keeping import add_resume, finished, keeping
 from .options import add_result, add_scheduler, number, scheduler_of, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Curve, CurvePoint
@@ -39,18 +39,15 @@ def do(arguments: argparse.Namespace) -> None:
     import numpy as np
 
     from granchain_core.steady.curve.resonance_curve import MOST_POINTS
-    from granchain_core.store import check_writable
 
     chosen = chosen_scene(arguments)
-    check_picture(arguments.picture)
-    if arguments.out:
-        check_writable(arguments.out)
+    check_files(arguments)
     check_points(arguments.points, 1, MOST_POINTS)
     low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
     if low > high:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
     amplitude = chosen_amplitude(arguments, chosen)
-    with compiling_beside(chosen, "fixed step"):
+    with compiling_beside(chosen, FIXED_STEP):
         swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points), amplitude)
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", swept)
     if arguments.json:

@@ -12,7 +12,7 @@ from .common import check_points, chosen_scene, in_background, say, show_json
 from .data_options import add_answers, with_answers
 from .options import add_json, add_scene, add_scheduler, number, scheduler_of, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Fit, Scene
@@ -53,12 +53,9 @@ def do(arguments: argparse.Namespace) -> None:
 
     from granchain_core import fit
     from granchain_core.fit.parameters import per_frequency
-    from granchain_core.store import check_writable
 
     chosen = chosen_scene(arguments)
-    check_picture(arguments.picture)
-    if arguments.out:
-        check_writable(arguments.out)
+    check_files(arguments)
     free = _free(arguments)  # what is wrong with the words is said before a file is read
     target = _target(arguments, chosen)
     if arguments.per_frequency:

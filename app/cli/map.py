@@ -20,7 +20,7 @@ from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
 
 from .common import chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
-from .compiling import compiling_beside
+from .compiling import FIXED_STEP, compiling_beside
 from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
 from .keeping import add_resume, finished, keeping
@@ -80,7 +80,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
     done = [0]
     with scheduler_of(arguments) as client:
         blocks = Blocks.open(grid, arguments.out, arguments.resume)
-        with (compiling_beside(grid.scene, "fixed step"),
+        with (compiling_beside(grid.scene, FIXED_STEP),
               keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells")):
             found, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
     with unbroken():

@@ -11,7 +11,7 @@ from granchain_core import BadInput, Scene
 from granchain_core.integrate import State
 
 from .common import chosen_scene, in_background, show_json
-from .compiling import compiling_beside
+from .compiling import ORBIT, compiling_beside
 from .options import add_json, add_scene, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
@@ -40,7 +40,7 @@ def do(arguments: argparse.Namespace) -> None:
     check_picture(arguments.picture)
     chosen = chosen_scene(arguments)
     start = _start(chosen, arguments.start, arguments.seed)
-    with compiling_beside(chosen, "orbit"):
+    with compiling_beside(chosen, ORBIT):
         found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop))
     write_picture(arguments.picture, f"Multipliers of {chosen.name}", found)
     if arguments.json:

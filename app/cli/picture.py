@@ -16,13 +16,22 @@ def add_option(parser: argparse.ArgumentParser) -> None:
 
 def check_picture(name: str | None) -> None:
     """Refuse, before anything is computed, a file into which a picture cannot be written."""
-    from granchain_core.store import check_writable
-
     if name is None:
         return
+    from granchain_core.store import check_writable
+
     if Path(name).suffix.lower() not in (".html", ".htm"):
         raise BadInput(f"--picture writes an HTML file; name it {Path(name).with_suffix('.html')}, not {name}.")
     check_writable(name)
+
+
+def check_files(arguments: argparse.Namespace) -> None:
+    """Refuse, before anything is computed, files into which the picture or the result cannot be written."""
+    from granchain_core.store import check_writable
+
+    check_picture(arguments.picture)
+    if arguments.out:
+        check_writable(arguments.out)
 
 
 def write_picture(name: str | None, title: str, result: Any, **options: Any) -> None:

@@ -15,9 +15,10 @@ from pathlib import Path
 
 import pytest
 
+from app.cli import compiling
 from app.cli.common import in_background
 from app.cli.compiling import WORDS, compiling_beside
-from granchain_core import scene
+from granchain_core import scene, warm
 
 #: Compiles two functions, as a first run does.
 PROGRAM = """
@@ -98,6 +99,21 @@ def test_a_second_process_compiles_only_where_numba_does_and_ends_with_the_block
     assert not process.is_alive()
     with event.trigger_event("numba:compile"):
         assert compilers() == [], "the block has ended"
+
+
+def test_the_pieces_have_the_names_of_their_table() -> None:
+    assert (compiling.FIXED_STEP, compiling.ORBIT) == (warm.FIXED_STEP, warm.ORBIT)
+
+
+def test_what_cannot_be_compiled_beside_leaves_no_word() -> None:
+    """The tangent flow refuses a chain that cuts tension; the command says so, and this process nothing."""
+    done = subprocess.run([sys.executable, "-c", f"""
+import os
+from app.cli.compiling import ORBIT, _compile
+from granchain_core import scene
+_compile({os.getpid()}, scene("sec2").evolve(tension="cut"), (ORBIT,))
+"""], cwd=ROOT, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
 
 
 def test_with_one_core_nothing_compiles_beside(monkeypatch: pytest.MonkeyPatch) -> None:
