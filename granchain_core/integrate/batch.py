@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..kernels.batch import run as kernels
-from ..kernels.batch.period_end import COARSE_ERROR_LEFT, FINE, FORCES, STROBES_KEPT
+from ..kernels.batch.period_end import COARSE_ERROR_LEFT, DISTANCE, FINE, FORCES, STROBES_KEPT
 from ..kernels.batch.unequal import Unequal
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
@@ -70,7 +70,7 @@ class Batch:
             change_before_extrapolation=parts[1], before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE)), strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)),
             maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
-            last_check=np.zeros((BATCH_SIZE, 3)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
+            last_check=np.zeros((BATCH_SIZE, DISTANCE + 1)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
             limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
         )
         for member in range(BATCH_SIZE):  # an empty place holds the example at rest and is never checked

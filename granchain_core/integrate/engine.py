@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
-from ..kernels.forces.peaks import MEMORY, largest_forces, reset_peaks
+from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE, NOT_FINITE
 from ..scaling import ScaledChain, scale_chain
@@ -156,7 +156,7 @@ class Engine:
     @property
     def jumps(self) -> np.ndarray:
         """The largest jumps of input and output force (2,) in the same time, in scaled units."""
-        return self.log.peaks[MEMORY:].copy()
+        return largest_jumps(self.log.peaks).copy()
 
     @property
     def closings(self) -> np.ndarray:

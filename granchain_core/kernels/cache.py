@@ -24,14 +24,13 @@ import uuid
 from pathlib import Path
 from typing import Any
 
-import llvmlite.binding
 import numba
 from numba.core import caching
 from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
 from .compile_lock import CompileLock
-from .width import BATCH_SIZE
+from .width import BATCH_SIZE, processor
 
 #: Where messages for a person go: on stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
@@ -47,7 +46,7 @@ _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
 
 def sources_hash() -> str:
     """Hash of the kernels' sources but for `_KEEPERS`, of Numba's version, the processor and the batch's size."""
-    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.binding.get_host_cpu_name()} {BATCH_SIZE}".encode())
+    digest = hashlib.sha256(f"{numba.__version__} {processor()} {BATCH_SIZE}".encode())
     folder = Path(__file__).parent
     for path in sorted(folder.rglob("*.py")):
         name = path.relative_to(folder).as_posix()
@@ -266,7 +265,8 @@ class KernelCache(caching.FunctionCache):
         try:
             super().save_overload(sig, data)
         except OSError as problem:
-            self._go_on_without(problem)
+            say_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that "
+                     "are not there are compiled for this process only.")
         finally:
             lock = self._locks.pop(self._path(sig, data.codegen), None)
             if lock is not None:
@@ -283,14 +283,11 @@ class KernelCache(caching.FunctionCache):
             with self._guard_against_spurious_io_errors():
                 return self._load_overload(sig, target_context)
         except OSError as problem:
-            self._go_on_without(problem)
+            say_once(f"Compiled kernels in {CACHE_FOLDER} cannot be read ({problem.strerror or problem}); they are "
+                     "compiled for this process only.")
             return None
 
     def _path(self, sig: Any, codegen: Any) -> Path:
         """Where a version is, or would be."""
         found: Path = self._cache_file.path(self._index_key(sig, codegen))
         return found
-
-    def _go_on_without(self, problem: OSError) -> None:
-        say_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that are "
-                 "not there are compiled for this process only.")

@@ -2,7 +2,7 @@
 
 By itself Numba compiles a function once more for each number that is written out in a call, and what `overload` makes
 once more for each set of the caller's options. A call here asks for a version by the types of its arguments alone,
-which takes a third of the versions away, and with them their share of the compiler's time.
+which takes a sixth of the versions away, and with them their share of the compiler's time.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ from ..kernels.effects.driver import Moved
 from ..kernels.effects.given_force import Sampled
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
-from ..kernels.forces.peaks import MEMORY, largest_forces, reset_peaks
+from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
 from ..kernels.rk4.observed import SampledForce, run_observed
 from ..kernels.rk4.step import DriveTable, Rk4Split, Stages
 from ..kernels.samples import Output, Samples, first_not_finite
@@ -58,7 +58,7 @@ class ChainInPieces:
     @property
     def jumps(self) -> np.ndarray:
         """The largest jumps of input and output force (2,) in the same time, in scaled units."""
-        return self._log.peaks[MEMORY:].copy()
+        return largest_jumps(self._log.peaks).copy()
 
     def steps(self, halvings: int) -> int:
         """Steps of a run whose steps are halved `halvings` times."""

@@ -14,7 +14,7 @@ from math import log
 import numpy as np
 
 from ..equations.motion import copy
-from ..forces.peaks import MEMORY, ROWS
+from ..forces.peaks import row_of, row_of_jump
 from ..jit import inline_numba, internal
 from ..strobes.extrapolation import ORBITS, reduced_rank
 from ..strobes.periodicity import (
@@ -30,31 +30,34 @@ from ..strobes.periodicity import (
 #: Fewest strobes kept of each member.
 STROBES_KEPT = 432
 #: Strobes on which its regime is decided.
-SEEN = 4 * LONGEST_PERIOD + 1
+CHECKED = 4 * LONGEST_PERIOD + 1
 #: Fewest orbits still to run that justify an extrapolation.
-_TOO_LONG = 4.0
+_FEWEST_ORBITS_LEFT = 4.0
 #: Fewest drive periods between two attempts.
-_BETWEEN = 8
+_PERIODS_BETWEEN = 8
 #: How far an extrapolation may go, in units of change/(1 − rate), the distance that the decay predicts.
 FARTHEST_EXTRAPOLATION = 3.0
 #: Part of the coarse orbit's error that may be left in the finer run.
 COARSE_ERROR_LEFT = 0.02
 #: Extrapolations for that at most.
-_MOST_ROUNDS = 6
+_MOST_EXTRAPOLATIONS = 6
 #: Disturbance that tests an extrapolated orbit, relative to the motion.
 _DISTURBANCE = 1e-4
 #: Orbits of the test.
 _TEST_ORBITS = 16
 #: Largest part of the disturbance that may be left at their end, relative to their first quarter.
-_LEFT = 0.97
+_PART_LEFT = 0.97
 #: Drive periods without extrapolation after a failed test.
-_NO_MORE = 400
+_PAUSE = 400
 #: Decay reported for a disturbance that did not shrink in the end: the multipliers are then computed.
 _NEARLY_ONE = 0.9999
 #: Slowest decay that counts as removed by an extrapolation: slower ones are not measured well enough.
 _SLOWEST = 0.98
-#: Columns of a fine member's record: period, rate, the coarse run's largest forces, orbits a round, rounds.
-PERIOD, RATE, FORCES, ORBITS_A_ROUND, ROUNDS, FINE = 0, 1, 2, 5, 6, 7
+#: Columns of the last check: period in drive periods, decay per drive period, distance still to go.
+PERIOD, RATE, DISTANCE = 0, 1, 2
+#: Columns of a fine member's record: period and decay as above, the coarse run's largest forces, orbits between two
+#: extrapolations, extrapolations so far.
+FORCES, ORBITS_BETWEEN, EXTRAPOLATIONS, FINE = 2, 5, 6, 7
 
 
 @internal
@@ -112,9 +115,10 @@ def check_coarse(state, member):
     """Whether a member's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
     kept, periods = state.kept[member], state.periods[member]
     period, rate, distance, n, approach_rate, change = detect_period(
-        state.strobes[member, max(0, kept - SEEN) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
+        state.strobes[member, max(0, kept - CHECKED) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
         state.slowest[member], state.scale, state.change)
-    state.last_check[member, 0], state.last_check[member, 1], state.last_check[member, 2] = period, rate, distance
+    last_check = state.last_check[member]
+    last_check[PERIOD], last_check[RATE], last_check[DISTANCE] = period, rate, distance
     if period > 0 and state.slowest[member] > 0.0:
         disturb(state, member, period)
         return False
@@ -131,7 +135,7 @@ def check_coarse(state, member):
     left = change * approach_rate / (1.0 - approach_rate) if n > 0 else 0.0
     if periods < state.extrapolate_from[member] or left <= SETTLED_DISTANCE:
         return False
-    if log(SETTLED_DISTANCE / left) > _TOO_LONG * log(approach_rate):
+    if log(SETTLED_DISTANCE / left) > _FEWEST_ORBITS_LEFT * log(approach_rate):
         return False  # it settles sooner without extrapolation
     copy(state.strobes[member, kept - 1, 0], state.before[member, 0])
     copy(state.strobes[member, kept - 1, 1], state.before[member, 1])
@@ -141,7 +145,7 @@ def check_coarse(state, member):
         state.earliest[member] = periods + window_of(n) + n + 1
         state.extrapolate_from[member] = periods + ORBITS * n
     else:
-        state.extrapolate_from[member] = periods + max(_BETWEEN, kept // 4)
+        state.extrapolate_from[member] = periods + max(_PERIODS_BETWEEN, kept // 4)
     return False
 
 
@@ -178,14 +182,14 @@ def decayed(state, member):
         middle += whole if quarter == 1 else 0.0
         late += whole if quarter == 3 else 0.0
         last = there
-    if last <= _LEFT * first:
+    if last <= _PART_LEFT * first:
         place_member(state, member, state.before[member])
         rate = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
-        state.last_check[member, 1] = max(state.last_check[member, 1], min(rate, _NEARLY_ONE))
+        state.last_check[member, RATE] = max(state.last_check[member, RATE], min(rate, _NEARLY_ONE))
         return True
     state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
-    state.last_check[member, 0] = 0.0  # the orbit that was found is none for this member
-    state.extrapolate_from[member] = state.periods[member] + _NO_MORE
+    state.last_check[member, PERIOD] = 0.0  # the orbit that was found is none for this member
+    state.extrapolate_from[member] = state.periods[member] + _PAUSE
     return False
 
 
@@ -204,30 +208,32 @@ def check_fine(state, member):
 
     If changes are not smaller after an extrapolation, it is undone and the member continues without.
     """
-    fine, kept, seen = state.fine_record[member], state.kept[member], state.last_check[member]
+    fine, kept, last_check = state.fine_record[member], state.kept[member], state.last_check[member]
     n, rate = int(fine[PERIOD]), fine[RATE]
     record = state.strobes[member, kept - 1 - n : kept]
     largest_of(record, state.scale)
     change = change_between(record, state.scale, n, 0)
-    seen[0], seen[1], seen[2] = n, rate, change * rate / (1.0 - rate)
+    last_check[PERIOD], last_check[RATE], last_check[DISTANCE] = n, rate, change * rate / (1.0 - rate)
     proved = change < state.change_before_extrapolation[member] or state.change_before_extrapolation[member] == 0.0
     state.change_before_extrapolation[member] = 0.0
     if not proved:
         place_member(state, member, state.before[member])
-        state.earliest[member], fine[ROUNDS] = state.periods[member] + n * int(fine[ORBITS_A_ROUND]), _MOST_ROUNDS
+        state.earliest[member] = state.periods[member] + n * int(fine[ORBITS_BETWEEN])
+        fine[EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
         return False
     moved = 0.0
     for q in range(1, 3):
         largest = largest_top(state, member, n, q)
         moved = max(moved, abs(largest - fine[FORCES + q]) / largest if largest > 0.0 else 0.0)
-    if seen[2] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved) or fine[ROUNDS] >= _MOST_ROUNDS:
+    close = last_check[DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)
+    if close or fine[EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:
         return True
-    fine[ROUNDS] += 1.0
+    fine[EXTRAPOLATIONS] += 1.0
     copy(state.strobes[member, kept - 1, 0], state.before[member, 0])
     copy(state.strobes[member, kept - 1, 1], state.before[member, 1])
     if extrapolate_member(state, member, n, rate, change):
         state.change_before_extrapolation[member] = change
-    state.earliest[member] = state.periods[member] + n * int(fine[ORBITS_A_ROUND])
+    state.earliest[member] = state.periods[member] + n * int(fine[ORBITS_BETWEEN])
     return False
 
 
@@ -239,12 +245,12 @@ def end_period(state, member):
     finite = keep_member_strobe(state, member)
     maxima = state.maxima[member, periods % STROBES_KEPT]
     for q in range(3):
-        maxima[q] = state.peaks[ROWS * q, member]
-        state.peaks[ROWS * q, member] = 0.0
+        maxima[q] = state.peaks[row_of(q), member]
+        state.peaks[row_of(q), member] = 0.0
     for q in range(2):
-        maxima[3 + q] = state.peaks[MEMORY + q, member]
+        maxima[3 + q] = state.peaks[row_of_jump(q), member]
         maxima[q] = max(maxima[q], maxima[3 + q])
-        state.peaks[MEMORY + q, member] = 0.0
+        state.peaks[row_of_jump(q), member] = 0.0
     state.phase[0, member], state.phase[1, member] = 0.0, 1.0
     state.left[member] = state.steps[member]
     if not finite:

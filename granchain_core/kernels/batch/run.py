@@ -66,7 +66,7 @@ class BatchState(NamedTuple):
     fine_record (L, 7)       record of a fine member (period_end.py)
     strobes (L, 2R, 2, N+2)  stroboscopic states
     maxima (L, R, 5)           largest forces and jumps of the last periods, a ring
-    last_check (L, 3)        result of the last check: period, rate, distance
+    last_check (L, 3)        result of the last check (period_end.py)
 
     The others are workspaces of period_end.py.
     """

@@ -17,7 +17,7 @@ from ..effects.dissipation import dashpot_force
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
-from ..forces.peaks import OUTPUT
+from ..forces.peaks import row_of
 from ..jit import internal
 from ..status import EVALUATIONS
 from .bracket import top_inside, value_at
@@ -109,8 +109,8 @@ def follow_step(step, ready, peaks, counts):
     start, end = forces_of(slots, y, work.k[0]), forces_of(slots, work.end, work.k[STAGES])
     bright = False
     for q in range(3):
-        peaks[q * OUTPUT] = max(peaks[q * OUTPUT], start[q], end[q])
-        bright = bright or max(start[q], end[q]) > _SEARCHED * peaks[q * OUTPUT]
+        peaks[row_of(q)] = max(peaks[row_of(q)], start[q], end[q])
+        bright = bright or max(start[q], end[q]) > _SEARCHED * peaks[row_of(q)]
     if not bright:
         return ready
     rises, falls = slopes_of(slots, y, work.k[0], work), slopes_of(slots, work.end, work.k[STAGES], work)
@@ -125,9 +125,9 @@ def follow_step(step, ready, peaks, counts):
     middle = forces_in_step(step, 0.5)
     counts[EVALUATIONS] += 1
     for q in range(3):
-        peaks[q * OUTPUT] = max(peaks[q * OUTPUT], middle[q])
+        peaks[row_of(q)] = max(peaks[row_of(q)], middle[q])
         guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], step.h))
-        if rises[q] > 0.0 and falls[q] < 0.0 and guess > _WORTH * peaks[q * OUTPUT]:
+        if rises[q] > 0.0 and falls[q] < 0.0 and guess > _WORTH * peaks[row_of(q)]:
             _, top = top_inside(Force(q, counts), step, _SECTIONS)
-            peaks[q * OUTPUT] = max(peaks[q * OUTPUT], top)
+            peaks[row_of(q)] = max(peaks[row_of(q)], top)
     return True

@@ -32,11 +32,11 @@ def power_lost_on_bead(slots, v):
 
 
 @inline_llvm
-def add_force_slope(slots, slope, u, v, du, dv, inverse_mass, rate):
+def add_force_slope(slots, slope, u, v, du, du_slope, inverse_mass, rate):
     """A tangent's slope d(δw)/dx with the share δP/m of a bead added, for numbers and vectors.
 
-    The bead is at displacement u with velocity v, its neighbouring motion δu = `du` away. `rate` is dt/dx, and `dv` is
-    d(δu)/dx, which is δv times `rate`.
+    The bead is at displacement u with velocity v, its neighbouring motion δu = `du` away. `rate` is dt/dx, and
+    `du_slope` is d(δu)/dx = δv dt/dx.
     """
     return add_foundation_slope(slots.foundation, slope, du, inverse_mass * rate)
 

@@ -23,7 +23,7 @@ from ..effects.tension import cut_at_zero
 from ..equations.body_forces import force_on_bead
 from ..equations.motion import contact_force
 from ..jit import by_slot, inline_numba, internal
-from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS
+from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS, row_of
 
 #: A force above this part of the largest so far is followed with its slope, a smaller one without: a maximum inside a
 #: step exceeds the step's ends by h²/8 of its curvature, which is some per cent of it.
@@ -126,7 +126,7 @@ def cubic_top(f0, s0, f1, s1, h):
 def track_force(log, q, value, slope, h):
     """Update the maximum of force q over the step of size h."""
     peaks, last = log.peaks, log.last
-    row = q * OUTPUT
+    row = row_of(q)
     reach(peaks, row, cubic_top(last[q, 0], last[q, 1], value, slope, h) if h > 0.0 else value)
     last[q, 0], last[q, 1] = value, slope
 
@@ -138,7 +138,7 @@ def watch_at_event(slots, y, dy, e, h, event, closed, log):
     for q in range(2):
         c = 0 if q == 0 else last
         value, slope = force_at_event(slots, y, dy, e, c, event, closed), np.nan
-        if value > _FOLLOWED_WITH_SLOPE * log.peaks[q * OUTPUT]:
+        if value > _FOLLOWED_WITH_SLOPE * log.peaks[row_of(q)]:
             slope = force_slope(slots, y, dy, e, c, event, closed)
         track_force(log, q, value, slope, h)
     d = 0.0 if event == last else positive_part(overlap(slots.preload, y, last))
@@ -180,7 +180,7 @@ def watch_ends_at_event(slots, ends, c, theta, log):
         contact = 0 if q == 0 else last
         delta = ends[OVERLAP, contact]
         force = elastic_force(slots.chain.stiffness[contact], positive_part(delta))
-        reach(log.peaks, q * OUTPUT, force + dashpot_force(slots.dissipation, delta, ends[RATE, contact]))
+        reach(log.peaks, row_of(q), force + dashpot_force(slots.dissipation, delta, ends[RATE, contact]))
         if q == 1:
             reach(log.peaks, OUTPUT_ELASTIC, force)
     note_closing(slots.dissipation, ends[RATE, c], c, last, theta, log)
@@ -194,7 +194,7 @@ def note_closing(law, rate, c, last, theta, log):
 @note_closing.of(*JUMP_LAWS)
 def _(law, rate, c, last, theta, log):
     if rate > 0.0:
-        force = law.coefficient * rate
+        force = onset_force(law, rate)
         if c == 0:
             reach(log.peaks, INPUT, force)
             reach(log.peaks, INPUT_JUMP, force)

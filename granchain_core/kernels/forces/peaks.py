@@ -15,10 +15,22 @@ ROWS = 5
 #: interpolated (`choose_peak`).
 HIGHEST = 1.25
 
-#: Where the memories of the three forces start in an array of peaks, and how many values they take.
-INPUT, OUTPUT, OUTPUT_ELASTIC, MEMORY = 0, ROWS, 2 * ROWS, 3 * ROWS
-#: After them the largest jumps of input and output force, and the size of the whole.
-INPUT_JUMP, OUTPUT_JUMP, PEAKS = MEMORY, MEMORY + 1, MEMORY + 2
+#: An array of peaks: for each of the three forces its `ROWS` values, the largest first, ...
+INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
+#: ... then the largest jumps of the input and of the output force; and the size of the whole.
+INPUT_JUMP, OUTPUT_JUMP, PEAKS = 3 * ROWS, 3 * ROWS + 1, 3 * ROWS + 2
+
+
+@inline_llvm
+def row_of(force):
+    """Row of the largest value of a force: 0 input, 1 output, 2 elastic output."""
+    return force * ROWS
+
+
+@inline_llvm
+def row_of_jump(force):
+    """Row of the largest jump of a force: 0 input, 1 output."""
+    return INPUT_JUMP + force
 
 
 @internal
@@ -49,20 +61,25 @@ def watch(peaks, row, value):
 
 def largest_forces(peaks: np.ndarray) -> np.ndarray:
     """The largest input, output and elastic output force so far, as a view (3,); for Python."""
-    return peaks[:MEMORY:ROWS]
+    return peaks[:INPUT_JUMP:ROWS]
+
+
+def largest_jumps(peaks: np.ndarray) -> np.ndarray:
+    """The largest jumps of input and output force so far, as a view (2,); for Python."""
+    return peaks[INPUT_JUMP:]
 
 
 @inline_llvm
 def keep_largest_forces(peaks, out):
     """The largest input, output and elastic output force so far into `out` (3,)."""
     for q in range(3):
-        out[q] = peaks[q * ROWS]
+        out[q] = peaks[row_of(q)]
 
 
 @kernel
 def reset_peaks(peaks):
     """Reset the largest value and the last values."""
-    for i in range(MEMORY):
+    for i in range(INPUT_JUMP):
         peaks[i] = -np.inf if i % ROWS == 0 else 0.0
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
 
@@ -70,7 +87,7 @@ def reset_peaks(peaks):
 @kernel
 def next_period(peaks):
     """Begin a new largest value but keep the last values: a maximum may lie across the end of a period."""
-    for row in range(0, MEMORY, ROWS):
+    for row in range(0, INPUT_JUMP, ROWS):
         peaks[row] = -np.inf
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
 

@@ -1,6 +1,7 @@
-"""Fixed-step methods: classical Runge–Kutta of order 4 in w, plain or with its step split at contact events.
+"""One step of the fixed-step methods: classical Runge–Kutta of order 4 in w, plain or split at contact events.
 
-The drive phase comes from an integer step count.
+`rk4` is the formula. `step` is the step of each method: plain, or a whole step that is taken back and `split` at every
+contact that opens or closes in it. The drive phase comes from an integer step count, so no time adds up errors.
 """
 
 from __future__ import annotations

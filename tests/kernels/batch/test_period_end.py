@@ -44,13 +44,13 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
     """
     batch = seen(1.0 + 1e-4 * rate ** np.arange(period_end._TEST_ORBITS + 1))
     state = batch.state
-    state.testing[MEMBER], state.slowest[MEMBER], state.last_check[MEMBER, 0] = 1, 0.9, 1.0
+    state.testing[MEMBER], state.slowest[MEMBER], state.last_check[MEMBER, period_end.PERIOD] = 1, 0.9, 1.0
     state.scale[:] = 1e-12, 1e12
     state.before[MEMBER, :, 1:-1] = 1.0
     assert period_end.decayed.py_func(state, MEMBER) == stable
     assert state.testing[MEMBER] == 0 and (state.slowest[MEMBER] > 0.0) == stable
     assert (state.y[1, MEMBER] == 1.0) == stable
-    assert (state.last_check[MEMBER, 0] == 1.0) == stable, "what was no orbit has no period"
+    assert (state.last_check[MEMBER, period_end.PERIOD] == 1.0) == stable, "what was no orbit has no period"
     assert state.scale == pytest.approx(1.0, rel=1e-2)
 
 
