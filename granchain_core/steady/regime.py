@@ -27,6 +27,11 @@ _SLOW_WINDOW, _SHRINKS = 100, 0.98
 _SMALL = 0.1
 #: Lyapunov exponent per period that no departure from an orbit sustains over the periods in which a motion may settle.
 CLEAR_GROWTH = 0.05
+#: Difference of two mean exponents per period below which they agree, however small their standard errors.
+_SAME_EXPONENT = 1e-3
+#: Largest median distance between neighbours of a section that returns near itself, in units of their distance on a
+#: curve that is filled evenly.
+_RETURNS_NEAR = 5.0
 #: Strobes needed for the three windows.
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
@@ -136,11 +141,12 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
 
 
 def agree(one: Regime, other: Regime) -> bool:
-    """Whether two Lyapunov measurements give the same regime and agree within 3 combined standard errors (or 1e-3)."""
+    """Whether two Lyapunov measurements give the same regime and agree within 3 combined standard errors
+    or `_SAME_EXPONENT`."""
     if one.name != other.name or one.name == "unsettled" or one.lyapunov is None or other.lyapunov is None:
         return False
     (a, error_a), (b, error_b) = one.lyapunov, other.lyapunov
-    return abs(a - b) <= max(3.0 * math.hypot(error_a, error_b), 1e-3)
+    return abs(a - b) <= max(3.0 * math.hypot(error_a, error_b), _SAME_EXPONENT)
 
 
 def _windows(strobes: np.ndarray) -> np.ndarray:
@@ -214,8 +220,8 @@ def returns_near(strobes: np.ndarray) -> bool:
     """Whether late states of the section have close neighbours among early ones.
 
     A coarse test: it excludes drift and spreading, but does not prove a closed curve, and a torus of three frequencies
-    may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is five times that, with P
-    the number of early states.
+    may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is `_RETURNS_NEAR` times
+    that, with P the number of early states.
     """
     return return_distance(strobes) < return_limit(strobes)
 
@@ -229,4 +235,4 @@ def return_distance(strobes: np.ndarray) -> float:
 
 def return_limit(strobes: np.ndarray) -> float:
     """The distance below which the record counts as returning."""
-    return 5.0 * 2.0 * math.pi / (len(strobes) // 2)
+    return _RETURNS_NEAR * 2.0 * math.pi / (len(strobes) // 2)

@@ -36,7 +36,8 @@ def test_a_threshold_of_the_page_is_that_of_the_code(printed: str, name: str, fi
 def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
     assert len(ROWS) == REGIMES.count(".py` |") > 20
     assert {file for _, _, file in ROWS} == {
-        "kernels/strobes/periodicity", "steady/regime", "steady/settling/regime_decisions",
+        "kernels/strobes/periodicity", "kernels/batch/period_end", "steady/regime", "steady/lyapunov",
+        "steady/settling/regime_decisions",
         "steady/settling/nearby_orbit", "steady/batch/settle"}
 
 

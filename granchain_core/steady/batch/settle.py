@@ -34,7 +34,7 @@ from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
 #: Periods after which a draft gives up.
 _DRAFT = 300
 #: Decay per orbit above which an orbit found by extrapolation needs its multipliers.
-_SLOW = 0.998
+_SLOW_DECAY = 0.998
 #: Largest |μ|, by one-sided differences, that settles it.
 _SURE = 0.995
 #: Scenes whose exponents are found at once.
@@ -187,7 +187,7 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
 def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
     """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
-    if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW or scene.N > MOST_BEADS:
+    if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW_DECAY or scene.N > MOST_BEADS:
         return result
     y = scale_chain(scene).from_si(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)

@@ -44,7 +44,7 @@ _PART = 0.3
 #: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
 _TURN = 16
 #: Directions whose |μ| is below this, or below this part of the largest, have decayed after those orbits.
-_SLOW = 0.3
+_SLOW_DIRECTION = 0.3
 #: Length to which a departure is enlarged along the growing directions, relative to the motion.
 _ENLARGED_TO = 3e-3
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period. The fixed-step map
@@ -90,7 +90,7 @@ class NearbyOrbit:
         """Whether the motion goes to this orbit: from where it is and from all shorter distances it comes nearer."""
         if not self.stable or self.away > NEAR:
             return False
-        rows = _slow_coordinates(self.point.derivative, max(_SLOW, _SLOW * self.modulus))
+        rows = _slow_coordinates(self.point.derivative, max(_SLOW_DIRECTION, _SLOW_DIRECTION * self.modulus))
         orbits = min(_MOST_ORBITS, int(_TAKEN / (1.0 - self.modulus)))
         left = 1.0 - _PART * (1.0 - self.modulus ** (orbits + _TURN))
         offset = self.x - self.point.x
