@@ -1,9 +1,12 @@
-"""Screenshots of the dashboard: the one in the readme, or one for every size and look.
+"""Screenshots of the dashboard: the one in the readme, or all of them.
 
     python -m tools.screenshots                  docs/dashboard.png
-    python -m tools.screenshots --all FOLDER     laptop, screen and phone in the light, dark and projector's look
+    python -m tools.screenshots --all FOLDER     the main page in every theme, every tab, every page over the pictures
+                                                 and every step of the stories, at four sizes
+    python -m tools.screenshots --all FOLDER --only NAME     of these only those whose name contains NAME
 
-It starts a dashboard and a headless Chromium of its own, and waits for the picture and the whole curve.
+It starts a dashboard and a headless Chromium of its own. A picture is taken when nothing on the page has changed for a
+second, at the latest after half a minute: pages that compute go on for longer.
 """
 
 from __future__ import annotations
@@ -11,50 +14,112 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from urllib.parse import quote
 
-from playwright.sync_api import Browser, sync_playwright
+from playwright.sync_api import Browser, Page, TimeoutError, sync_playwright
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "tests" / "browser"))
 
 from server import dashboard, launch  # noqa: E402  (the browser tests start them in the same way)
 
-SIZES = {"laptop": (1280, 800), "screen": (1920, 1080), "phone": (390, 844)}
+from app.dashboard.table import TABS  # noqa: E402
+from app.session.stories import Story, stories  # noqa: E402
+
+SIZES = {"laptop": (1280, 800), "screen": (1920, 1080), "hall": (2560, 1440), "phone": (390, 844)}
 LOOKS = ("light", "dark", "projector")
 #: The 1:3 resonance of the paper's figure 3b.
 SHOWN = "?v=1&scene=sec2&f=1130"
 #: A first visit would be shown round.
 TOURED = 'try { localStorage.setItem("granchain-toured", "yes"); } catch { /* about:blank keeps nothing */ }'
+# Counts the changes of the page, but not those of time: the replay, and the line that shows its time.
+COUNTER = """() => {
+  window.changes = { at: performance.now() };
+  const replayed = (node) => (node.nodeType === 1 ? node : node.parentElement)?.closest("#chain, #time, input, output");
+  new MutationObserver((list) => {
+    if (list.some(({ target }) => !replayed(target))) window.changes.at = performance.now();
+  }).observe(document.body, { subtree: true, childList: true, characterData: true });
+}"""
+REST = "() => performance.now() - window.changes.at > 1000"
 
 
-def shot(browser: Browser, address: str, path: Path, size: tuple[int, int], look: str) -> None:
-    """One screenshot once the curve is named."""
+def views() -> dict[str, str]:
+    """The query of each picture but those of the stories, by its name."""
+    found = {f"main-{look}": f"{SHOWN}&look={look}" for look in LOOKS}
+    for row in TABS:
+        found[f"tab-{row.name.replace(' ', '-')}"] = f"{SHOWN}&look=light&tab={quote(row.name)}"
+        if getattr(row, "view", None) is not None:
+            found[f"page-{row.name}"] = f"{SHOWN}&look=light&page={quote(row.name)}"
+    return found
+
+
+@contextmanager
+def opened(browser: Browser, address: str, size: tuple[int, int]) -> Iterator[Page]:
+    """The page at an address once it has something to show."""
     context = browser.new_context(viewport={"width": size[0], "height": size[1]}, reduced_motion="reduce")
     page = context.new_page()
     page.add_init_script(TOURED)
-    page.goto(f"{address}{SHOWN}&look={look}")
-    page.wait_for_selector(".chapters button", timeout=300_000)
-    page.wait_for_timeout(1000)
-    page.screenshot(path=path)
+    page.goto(address)
+    page.wait_for_function("() => document.getElementById('page')?.classList.contains('starting') === false", timeout=300_000)
+    page.evaluate(COUNTER)
+    yield page
     context.close()
-    print(path)
+
+
+def shot(page: Page, path: Path) -> None:
+    """One screenshot once the page is at rest."""
+    try:
+        page.wait_for_function(REST, timeout=30_000)
+    except TimeoutError:
+        print(f"{path}: still changing")
+    page.screenshot(path=path)
+    print(path, flush=True)
+
+
+def walk(page: Page, story: Story, path: Callable[[int], Path]) -> None:
+    """A screenshot of every step of a story, its answer shown."""
+    tab = page.locator("#tabs")
+    tab.get_by_role("button", name=story.title).click()
+    for number in range(1, len(story.steps) + 1):
+        tab.get_by_text(f"{number} of {len(story.steps)}").wait_for()
+        if story.steps[number - 1].answer:
+            tab.get_by_role("button", name="answer").click()
+        page.evaluate("() => { window.changes.at = performance.now(); }")
+        shot(page, path(number))
+        if number < len(story.steps):
+            tab.get_by_role("button", name="next").click()
+
+
+def path_of(folder: Path, story: str, size: str) -> Callable[[int], Path]:
+    """Where the picture of a step is put."""
+    return lambda number: folder / f"{story}-{number}-{size}.png"
 
 
 def main() -> None:
     """Read the options, take the pictures."""
     parser = argparse.ArgumentParser(prog="python -m tools.screenshots", description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--all", type=Path, metavar="FOLDER", help="every size and look, as PNG files in this folder")
+    parser.add_argument("--all", type=Path, metavar="FOLDER", help="all of them, as PNG files in this folder")
+    parser.add_argument("--only", default="", metavar="NAME", help="of all of them those with NAME in their name")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, dashboard(Path(folder) / "log") as address, sync_playwright() as playwright:
         browser = launch(playwright)
         if options.all is None:
-            shot(browser, address, ROOT / "docs" / "dashboard.png", (1440, 900), "light")
+            with opened(browser, f"{address}{SHOWN}&look=light", (1440, 900)) as page:
+                shot(page, ROOT / "docs" / "dashboard.png")
             return
         options.all.mkdir(parents=True, exist_ok=True)
-        for name, size in SIZES.items():
-            for look in LOOKS:
-                shot(browser, address, options.all / f"{name}-{look}.png", size, look)
+        for size_name, size in SIZES.items():
+            for view, query in views().items():
+                if options.only in view:
+                    with opened(browser, address + query, size) as page:
+                        shot(page, options.all / f"{view}-{size_name}.png")
+            for story in stories()[0]:
+                if options.only in f"story-{story.name}":
+                    with opened(browser, address, size) as page:
+                        walk(page, story, path_of(options.all, f"story-{story.name}", size_name))
 
 
 if __name__ == "__main__":
