@@ -39,7 +39,7 @@ IN_BATCHES = (
            "the phase in batches turns on from period to period and is never set right", k.BATCH_PHASE),
     Mutant("batch-orbit-not-disturbed", _LOOKS, "if period > 0 and state.slowest[member] > 0.0:", "if period > 0 and state.slowest[member] > 2.0:",
            "an unstable orbit that extrapolation led to is drawn as periodic", k.BATCH_CHECKS),
-    Mutant("batch-disturbance-always-decays", _LOOKS, "if last <= _LEFT * first:", "if last < 1e300:",
+    Mutant("batch-disturbance-always-decays", _LOOKS, "if last <= _PART_LEFT * first:", "if last < 1e300:",
            "an orbit is called stable though the disturbance grew", k.BATCH_CHECKS),
     Mutant("batch-jump-not-proved", _LOOKS, "proved = n > 0 and change < state.change_before_extrapolation[member]", "proved = True",
            "an extrapolation that led away is kept", k.BATCH_CHECKS),
