@@ -93,8 +93,8 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
     remember_defaults()
     remember_resources()
     sys.setswitchinterval(SWITCH)
-    gc.collect()
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
+    gc.enable()
     server.start()
     server.io_loop.add_callback(lambda: asyncio.ensure_future(METERS.watch()))
     server.io_loop.start()  # until a signal ends the process (app/cli/ending.py); Bokeh's own waits for its threads

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import gc
 import os
 import secrets
 from collections.abc import Callable
@@ -57,6 +58,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
     """Import the dashboard and serve it; `before` is called when it is about to listen."""
+    gc.disable()  # an import makes nothing but what stays, and a tenth of its time was the search for garbage
     from ..server import Access, is_loopback
     from ..server import serve as serve_page
 

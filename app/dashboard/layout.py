@@ -30,6 +30,7 @@ from ..pictures.curve import KEY
 from ..pictures.energies import ENERGY_COLOURS
 from ..pictures.regimes import REGIMES, SYMBOLS
 from ..pictures.theme import Theme, style_sheet
+from ..scripts import IN_PAGE, modules
 from ..session.session import Session
 from ..session.terms import definitions
 from .scales import Scales
@@ -91,8 +92,9 @@ def _page() -> tuple[str, dict[str, Any]]:
     """The page's template and what stands in it, the same for every visitor."""
     return (_HERE / "page.html").read_text(encoding="utf-8"), {
         "page_css": style_sheet() + text("page.css") + text("skeleton.css"),
-        "page_js": text("page.js") + text("connection.js"),
+        "page_js": "".join(map(text, IN_PAGE)),
         "terms": json.dumps(definitions()).replace("<", "\\u003c"),
+        "modules": modules(),
         "frame_top": TOP, "frame_bottom": BOTTOM, "frame_left": LEFT, "gap": GAP,
         "overlays": [(row.name, row.title.capitalize()) for row in PAGES if row.view],
     }

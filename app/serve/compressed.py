@@ -12,8 +12,14 @@ from typing import Any
 
 from tornado.web import StaticFileHandler
 
+from ..scripts import FILES, file_at
+
 #: Kinds of files that are smaller when compressed; pictures and fonts are not.
 _KINDS = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map", ".html", ".txt"})
+#: The modules of the page.
+_MODULES = frozenset(map(str, FILES.values()))
+#: For how long a browser keeps what does not change [s].
+_YEAR = 365 * 86400
 #: Size from which it is worth it: that of one packet [bytes].
 _LEAST = 1400
 
@@ -40,7 +46,8 @@ class CompressedFiles(StaticFileHandler):
         key = type(self), url_path
         found = _resolved.get(key)
         if found is None:
-            found = super().parse_url_path(url_path)
+            ours = file_at(url_path)
+            found = super().parse_url_path(url_path) if ours is None else str(ours)
             if Path(found).is_absolute():  # by Panel's handler, which has a list of what may be served
                 _resolved[key] = found
         return found
@@ -67,8 +74,11 @@ class CompressedFiles(StaticFileHandler):
         return super().get_content_size() if packed is None else len(packed)
 
     def set_extra_headers(self, path: str) -> None:
-        """How it is encoded, and that this depends on the request."""
+        """How it is encoded, that this depends on the request, and that a module of ours never changes: with any of
+        them the addresses of all do, so that a page that is opened again asks for none."""
         super().set_extra_headers(path)
+        if path in _MODULES:
+            self.set_header("Cache-Control", f"max-age={_YEAR}, immutable")
         self.set_header("Vary", "Accept-Encoding")
         if self._packed() is not None:
             self.set_header("Content-Encoding", "gzip")
