@@ -1,0 +1,103 @@
+"""Two processes behind nginx with the configuration of docs/nginx.conf: one page, one process, and a picture."""
+
+from __future__ import annotations
+
+import http.client
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+
+import pytest
+from knobs import Visit, settled, type_into
+from playwright.sync_api import expect
+from server import ROOT, free_port
+
+NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
+pytestmark = pytest.mark.skipif(NGINX is None, reason="nginx is not installed")
+
+# What an installation of nginx has around the file; the answers name the process that gave them.
+AROUND = """
+daemon off; pid {folder}/pid; error_log {folder}/error.log;
+events {{}}
+http {{
+    access_log off; client_body_temp_path {folder}/body; proxy_temp_path {folder}/proxy;
+    fastcgi_temp_path {folder}/fastcgi; uwsgi_temp_path {folder}/uwsgi; scgi_temp_path {folder}/scgi;
+    add_header X-Process $upstream_addr always;
+    {configuration}
+}}
+"""
+
+
+def adapted(port: int, processes: list[int]) -> str:
+    """The configuration of the page, with ports of this test and without a certificate."""
+    lines = (ROOT / "docs" / "nginx.conf").read_text(encoding="utf-8").splitlines()
+    kept = [line for line in lines if not re.match(r"\s*(ssl_|server 127)", line)]
+    assert len(lines) - len(kept) == 6  # four processes, a certificate and its key
+    servers = " ".join(f"server 127.0.0.1:{one};" for one in processes)
+    text = "\n".join(kept).replace("upstream granchain {", f"upstream granchain {{ {servers}")
+    return text.replace("listen 443 ssl;", f"listen 127.0.0.1:{port};")
+
+
+def answers(port: int, path: str, source: str = "127.0.0.1") -> http.client.HTTPResponse:
+    """The answer to somebody at the address `source`, which this machine has like all of 127.0.0.0/8."""
+    connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60, source_address=(source, 0))
+    connection.request("GET", path)
+    return connection.getresponse()
+
+
+@pytest.fixture(scope="module")
+def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+    """The port of nginx, behind which two processes answer."""
+    folder = tmp_path_factory.mktemp("nginx")
+    outside, *processes = free_port(), free_port(), free_port()
+    (folder / "secret").write_text("0123456789abcdef0123456789abcdef")
+    (folder / "nginx.conf").write_text(AROUND.format(folder=folder, configuration=adapted(outside, processes)))
+    commands = [[sys.executable, "-m", "app.cli", "serve", "--port", str(one), "--behind-proxy", "--allow-websocket-origin",
+                 f"127.0.0.1:{outside}", "--secret-file", str(folder / "secret")] for one in processes]
+    commands.append([str(NGINX), "-c", str(folder / "nginx.conf"), "-e", str(folder / "error.log")])
+    with ExitStack() as stack, (folder / "log").open("wb") as log:
+        for command in commands:
+            process = stack.enter_context(subprocess.Popen(command, cwd=ROOT, stdout=log, stderr=log))
+            stack.callback(process.terminate)
+        end = time.monotonic() + 60
+        for one in processes:
+            while not alive(one):
+                assert time.monotonic() < end, (folder / "log").read_text()
+                time.sleep(0.1)
+        yield outside
+
+
+def alive(port: int) -> bool:
+    """Whether a process answers there."""
+    try:
+        return answers(port, "/liveness").status == 200
+    except OSError:
+        return False
+
+
+def test_a_page_behind_nginx_has_its_pictures_and_answers_a_knob(visit: Visit, port: int) -> None:
+    page = visit("?v=1&scene=sec2&f=1130", url=f"http://127.0.0.1:{port}/")
+    settled(page)
+    type_into(page, "f", "380")
+    settled(page)
+    expect(page.locator("#foot b")).to_contain_text("period 1")
+    expect(page.locator("#lost")).to_be_hidden()
+
+
+def test_a_visitor_always_reaches_the_same_process_and_not_all_the_same_one(port: int) -> None:
+    def reached(source: str) -> str | None:
+        return answers(port, "/liveness", source).headers["X-Process"]
+
+    sources = [f"127.{number}.1.1" for number in range(1, 13)]
+    first = [reached(source) for source in sources]
+    assert len(set(first)) == 2 and None not in first
+    assert [reached(source) for source in sources] == first
+
+
+def test_the_figures_of_the_server_are_closed_to_the_outside(port: int) -> None:
+    assert answers(port, "/metrics").status == 404
+    assert answers(port, "/liveness").status == 200
