@@ -27,8 +27,8 @@ QUICK = (
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """`-n auto`: two workers more than processors, because those that test the dashboard mostly wait for browser and server."""
-    return (os.cpu_count() or 1) + 2
+    """`-n auto`: one worker more than processors, because one that tests the dashboard mostly waits for browser and server."""
+    return (os.cpu_count() or 1) + 1
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -16,6 +16,8 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from bokeh.document import Document
+from bokeh.io.doc import _PATCHED_CURDOCS, set_curdoc
 from bokeh.util.token import generate_jwt_token, generate_session_id
 from tornado.ioloop import IOLoop
 
@@ -76,6 +78,9 @@ class Listening:
         """End it."""
         self.loop.add_callback(self.loop.stop)
         self._thread.join(20)
+        # Bokeh leaves a page's document behind as the current one of the process, where every test to come would find it.
+        _PATCHED_CURDOCS.clear()
+        set_curdoc(Document())
 
     def ask(self, path: str = "/", **headers: str) -> tuple[int, dict[str, str], str]:
         """Status, headers and text of an answer."""
