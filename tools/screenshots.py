@@ -43,7 +43,9 @@ COUNTER = """() => {
     if (list.some(({ target }) => !replayed(target))) window.changes.at = performance.now();
   }).observe(document.body, { subtree: true, childList: true, characterData: true });
 }"""
-REST = "() => performance.now() - window.changes.at > 1000"
+# The line at the bottom says whether the curve, which has the names of its peaks, is still being computed.
+REST = """() => performance.now() - window.changes.at > 1000
+  && !document.querySelector("#foot b")?.textContent.includes("being computed")"""
 
 
 def views() -> dict[str, str]:
