@@ -62,6 +62,7 @@ def views() -> dict[str, str]:
 def opened(browser: Browser, address: str, size: tuple[int, int]) -> Iterator[Page]:
     """The page at an address once it has something to show."""
     context = browser.new_context(viewport={"width": size[0], "height": size[1]}, reduced_motion="reduce")
+    context.set_default_timeout(300_000)
     page = context.new_page()
     page.add_init_script(TOURED)
     page.goto(address)
