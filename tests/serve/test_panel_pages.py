@@ -7,7 +7,7 @@ import re
 import panel.io.resources as resources
 import panel.io.server as pages
 import pytest
-from test_security import Listening
+from listening import Listening
 
 from app.serve.panel_pages import remember_resources
 from app.server import Access

@@ -3,30 +3,26 @@
 from __future__ import annotations
 
 import asyncio
-import http.client
 import itertools
 import json
 import logging
 import re
 import socket
-import threading
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from bokeh.document import Document
-from bokeh.io.doc import _PATCHED_CURDOCS, set_curdoc
 from bokeh.util.token import generate_jwt_token, generate_session_id
-from tornado.ioloop import IOLoop
+from listening import Listening
 
 from app import server
 from app.curve.sweep import CURVES_SHARED
 from app.dashboard.main_picture import PICTURES_SHARED
 from app.serve import guard
 from app.serve.compiler import Compiler
-from app.server import Access, server_at
+from app.server import Access
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
 from app.session.share import LONGEST
 from granchain_core.experiment.measured import MOST_BYTES
@@ -53,62 +49,6 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
     } == LIMITS
-
-
-class Listening:
-    """A signed dashboard in a thread, reached as 127.0.0.1."""
-
-    def __init__(self, access: Access) -> None:
-        started = threading.Event()
-        self._thread = threading.Thread(target=self._run, args=(access, started), daemon=True)
-        self._thread.start()
-        assert started.wait(60)
-
-    def _run(self, access: Access, started: threading.Event) -> None:
-        asyncio.set_event_loop(asyncio.new_event_loop())
-        self.loop = IOLoop.current()
-        one = server_at(0, "127.0.0.1", access=access)
-        self.port = one.port
-        one.start()
-        self.loop.add_callback(started.set)
-        self.loop.start()
-        one.stop()
-
-    def stop(self) -> None:
-        """End it."""
-        self.loop.add_callback(self.loop.stop)
-        self._thread.join(20)
-        # Bokeh leaves a page's document behind as the current one of the process, where every test to come would find it.
-        _PATCHED_CURDOCS.clear()
-        set_curdoc(Document())
-
-    def ask(self, path: str = "/", **headers: str) -> tuple[int, dict[str, str], str]:
-        """Status, headers and text of an answer."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
-        connection.request("GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()})
-        answer = connection.getresponse()
-        found = answer.status, dict(answer.getheaders()), answer.read().decode(errors="replace")
-        connection.close()
-        return found
-
-    def token(self) -> str:
-        """The token in a new page."""
-        found = re.search(r'"token":"([^"]+)"', self.ask()[2])
-        assert found is not None
-        return found.group(1)
-
-    def connect(self, token: str, **headers: str) -> int:
-        """The status that a websocket with this token gets: 101 where it is let in."""
-        return self.open(token, **headers)[0]
-
-    def open(self, token: str, **headers: str) -> tuple[int, socket.socket]:
-        """The same, and its socket."""
-        one = socket.create_connection(("127.0.0.1", self.port), timeout=60)
-        words = {"Host": f"127.0.0.1:{self.port}", "Upgrade": "websocket", "Connection": "Upgrade",
-                 "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version": "13",
-                 "Sec-WebSocket-Protocol": f"bokeh, {token}", "Origin": f"http://127.0.0.1:{self.port}", **headers}
-        one.sendall(("GET /ws HTTP/1.1\r\n" + "".join(f"{a}: {b}\r\n" for a, b in words.items()) + "\r\n").encode())
-        return int(one.recv(4096).split()[1]), one
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 from bokeh.document import Document
-from test_security import Listening
+from listening import Listening
 
 from app.dashboard.controller import Controller
 from app.serve.queues import PICTURES, VISITORS
