@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import asyncio
 import json
 from pathlib import Path
 
 import h5py
 import pytest
+from event_loop import run_async
 from tornado.httpclient import AsyncHTTPClient
 
 from app.cli import main
@@ -120,5 +120,5 @@ def test_the_page_opens_whatever_the_address_says(query: str, monkeypatch: pytes
         finally:
             server.stop(wait=False)
 
-    assert asyncio.run(asked()) == 200
+    assert run_async(asked()) == 200
     assert len(seen) == 1 and seen[0][0].endswith(".")

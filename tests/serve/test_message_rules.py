@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
 import base64
 import gzip
 import json
 from typing import Any
 
 import pytest
+from event_loop import run_async
 
 from app.serve import guard
 from app.serve.message_rules import DEEPEST, Refused, check
@@ -82,7 +82,7 @@ def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken()
             if (passed := one.on_message(frame)) is not None:
                 await passed
 
-    asyncio.run(send())
+    run_async(send())
     assert one.taken == list(good) and one.closed == 1008
 
 

@@ -11,6 +11,7 @@ import pytest
 from bokeh.core.serialization import Deserializer
 from bokeh.document import Document
 from bokeh.server.session import ServerSession
+from event_loop import run_async
 from tornado.ioloop import IOLoop
 
 from app.serve.channel import Channel, run_locked
@@ -54,7 +55,7 @@ def heard(sent: dict[str, Any]) -> tuple[bool, list[Any]]:
     async def send() -> bool:
         return take(connection, sent)
 
-    return asyncio.run(send()), part.heard
+    return run_async(send()), part.heard
 
 
 def test_a_part_hears_what_bokeh_decodes() -> None:
@@ -100,7 +101,7 @@ def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(
             await asyncio.sleep(0.001)
         assert session._pending_writes is None
 
-    asyncio.run(asyncio.wait_for(act(), 20))
+    run_async(asyncio.wait_for(act(), 20))
     assert order == ["later", 0, 1, 2, 3, 4, "timed"]
 
 
@@ -113,5 +114,5 @@ def test_an_action_that_fails_keeps_no_other_from_running() -> None:
     async def act() -> None:
         run_locked(ServerSession("tested", Document()), [fail, lambda: order.append("next")])  # type: ignore[arg-type]
 
-    asyncio.run(act())
+    run_async(act())
     assert order == ["next"]

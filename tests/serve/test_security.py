@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import itertools
 import json
 import logging
@@ -15,6 +14,7 @@ from typing import Any
 
 import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
+from event_loop import run_async
 from listening import Listening
 
 from app import server
@@ -218,7 +218,7 @@ def test_a_flood_of_messages_closes_the_connection(monkeypatch: pytest.MonkeyPat
             if (passed := one.on_message(frame)) is not None:
                 await passed
 
-    asyncio.run(flood())
+    run_async(flood())
     # what is left of every message after a millisecond's allowance empties the store
     assert one.closed == 1008 and one.taken == pytest.approx(guard.FRAMES_AT_ONCE / (1.0 - 1e-3 * guard.FRAMES_A_SECOND), rel=1e-3)
 

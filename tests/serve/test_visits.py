@@ -7,12 +7,11 @@ import gc
 import logging
 import time
 import weakref
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import pytest
 from bokeh.document import Document
+from event_loop import run_async
 from listening import Listening
 
 from app.dashboard.controller import Controller
@@ -47,12 +46,6 @@ async def visit(address: str, query: str = "", moves: int = 2) -> Viewer:
     return viewer
 
 
-def in_a_thread(work: Callable[..., object], *arguments: object) -> None:
-    """Call `work` where no event loop runs: a browser test before this one may have left its own running here."""
-    with ThreadPoolExecutor(1) as pool:
-        pool.submit(work, *arguments).result()
-
-
 def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) -> None:
     """A handler that Panel keeps for each document once kept every page: 1.5 MB a visit."""
     one = Listening(Access())
@@ -61,7 +54,7 @@ def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) ->
         before = alive(Controller, Document)
         with caplog.at_level(logging.ERROR):
             for _ in range(3):
-                in_a_thread(asyncio.run, visit(address))
+                run_async(visit(address))
             until(lambda: not alive(Controller, Document) - before)  # what other tests have left may go meanwhile
         assert not [record for record in caplog.records if record.levelno >= logging.ERROR]
     finally:
@@ -86,7 +79,7 @@ def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit()
 
     one = Listening(Access())
     try:
-        said = asyncio.run(asyncio.wait_for(insist(f"http://127.0.0.1:{one.port}"), 300))
+        said = run_async(asyncio.wait_for(insist(f"http://127.0.0.1:{one.port}"), 300))
         assert "would take about" in said and "would fit" in said and "insist" in said
         until(lambda: PICTURES.busy == 0 and VISITORS.busy == 0)
     finally:
