@@ -23,7 +23,7 @@ class Quantity:
     a slider goes through its range: "linear", "log", or "cubic" for knobs that start at 0 and span decades: the value
     is the cube of the position, fine near 0. `step` is the fine step of the keyboard; 0 stands for half a decade.
     `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted too. `main` knobs are
-    always on the page, the others under "more". `short` is the label beside a number where `label` is too long.
+    always on the page, the others under "more knobs". `short` is the label beside a number where `label` is too long.
     `at_zero` says in a few words what 0 means where that switches something off. `shown_in` is the factor and unit on
     the page if that is not `unit`. `changes_motion` is False for a knob of the computation alone, `at_start` true for
     one that changes where a motion begins and not the chain.

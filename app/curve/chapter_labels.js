@@ -11,6 +11,7 @@ const BESIDE = 3; // px between the line of what the paper states and its name
 const MARK = 4; // px from the middle of a point to its edge
 const STEP = 6; // px by which a name moves up
 const ASIDE = { peak: [0, -8, 8, -16, 16], band: [0, -8, 8, -16, 16], valley: [0, -4, 4, -8, 8] }; // px to the side
+const SHORT = "anti-res."; // the name of a valley that has no room for the whole
 const ORDER = { peak: 0, band: 1, valley: 2 };
 
 const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
@@ -84,6 +85,14 @@ class Room {
       },
     ]);
   }
+
+  // Off the points of the curve, with a shorter name if the whole one finds no such place.
+  putValley(label, chapter) {
+    return [chapter.name, SHORT].some((words) => {
+      label.textContent = words;
+      return this.put(label, chapter, this.offPoints);
+    });
+  }
 }
 
 export class ChapterLabels {
@@ -146,10 +155,11 @@ export class ChapterLabels {
     });
     const places = this.chapters.map((chapter, i) => [chapter, named[i]]);
     const valleys = places.filter(([{ kind }]) => kind === "valley");
-    const put = valleysFirst ? valleys.filter(([one, label]) => room.put(label, one, room.offPoints)) : [];
+    const put = valleysFirst ? valleys.filter(([one, label]) => room.putValley(label, one)) : [];
     const others = places.filter((one) => !put.includes(one));
     others.sort(([a], [b]) => ORDER[a.kind] - ORDER[b.kind] || b.force - a.force);
-    for (const [one, label] of others) room.put(label, one, room.alone);
+    for (const [one, label] of others)
+      if (one.kind !== "valley" || !room.putValley(label, one)) room.put(label, one, room.alone);
     return places.every(([{ kind }, label]) => kind !== "peak" || !label.hidden);
   }
 }

@@ -47,10 +47,13 @@ export function render({ model }) {
   const done = meter("progress of the curve");
   const stop = button("✕", () => model.send_msg({ do: "curve-stop" }), { title: "Stop the curve" });
   const progress = element("span", { className: "progress" }, done, stop);
+  const choosing = element("div", { className: "row" }, ...labels.values());
   const show = () => {
     for (const [name, box] of boxes) box.checked = Boolean(model.state[name]);
     // Frequencies of another chain would say nothing.
     labels.get("features").hidden = !(model.state.rig || model.state.features);
+    document.getElementById("curves").classList.toggle("undriven", !model.state.driven);
+    choosing.hidden = !model.state.driven;
     progress.hidden = !(model.state.done >= 0 && model.state.done < 1);
     done.value = model.state.done ?? 0;
   };
@@ -70,5 +73,5 @@ export function render({ model }) {
   name();
   const title = element("h2", { textContent: "resonance curve: largest force at the wall" });
   const head = element("div", { className: "row titled" }, title, progress);
-  return element("div", { className: "part" }, head, element("div", { className: "row" }, ...labels.values()), key);
+  return element("div", { className: "part" }, head, choosing, key);
 }

@@ -36,8 +36,8 @@ from .view import Curve
 class CurveController:
     """Computes the selected curves while they are on the screen, each once for the same knobs.
 
-    `placed` is called when a curve from rest is complete; it shows where on the curve the present motion lies. So is
-    `compared`, with the visitor's data beside it.
+    `placed` is called when a curve from rest is complete, and when one that was expected is not computed: it shows
+    where on the curve the present motion lies. `compared` is called with the visitor's data beside a complete curve.
     """
 
     def __init__(self, host: Host, figure: Curve, bar: CurveBar, placed: Callable[[], None]) -> None:
@@ -111,6 +111,7 @@ class CurveController:
         with self._lock:
             self._buffer = []
         self._asked = without_frequency(scene)
+        self._figure.expected = self._visible and self._wanted["rest"] and self._affordable(scene)
         self._bar.update_state(driven=scene.is_driven)
         self._quiet.start(self._begin_when_compiled, scene)
 
@@ -169,6 +170,9 @@ class CurveController:
         self._task.cancel()
         self._done = -1.0
         self._bar.update_state(done=-1.0)
+        if self._figure.expected:
+            self._figure.expected = False
+            self._placed()
 
     @property
     def computing(self) -> bool:

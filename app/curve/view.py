@@ -33,6 +33,8 @@ class Curve:
         self._before: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
         self._scale = (1.0, "")
         self._whole = False
+        #: Whether a curve from rest is being computed or will be, without being asked for.
+        self.expected = False
         self._ordered: tuple[np.ndarray, np.ndarray, list[int | None]] | None = None
         self._shown: tuple[float, float | None] = (0.0, None)
         self._place: tuple[object, ...] = ()
@@ -181,9 +183,9 @@ class Curve:
         return sorted(self._points[direction], key=lambda point: point.frequency)
 
     def place(self, run: Run) -> Place | None:
-        """Where a run lies on the whole curve from rest; None while there is none."""
+        """Where a run lies on the whole curve from rest; None while that curve is being computed."""
         if not self._whole:
-            return None
+            return None if self.expected else Place("")
         if self._ordered is None:
             points = self.points("rest")
             self._ordered = (np.array([p.frequency for p in points]), np.array([p.max_output_force for p in points]),

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from granchain_core import Scene, Settled
+from granchain_core import Run, Scene, Settled
 
 from ..format import prefixed
 from ..frames import Frames, prepared_frames, round_up
@@ -23,18 +23,18 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
     factor, letter = prefixed(float(frames.time[-1]))
     views.trains.name_time(f"time ({letter}s){_periods_shown(frames, picture.run.scene)}")
     _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s",
-          (picture.run.max_input_force, picture.run.max_output_force), final=picture.final)
+          (picture.run.max_input_force, picture.run.max_output_force), final=picture.final,
+          known=_is_known(picture.run))
     views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
     views.shown = picture
-    views.status_line.update_state(**settled_entries(
-        picture, views.curve.place(picture.run), views.trains.output_words(picture.run.max_output_force)))
+    show_regime(views)
 
 
 def show_regime(views: Views) -> None:
-    """Update the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
+    """Write the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
     if views.shown is not None:
         run = views.shown.run
-        force = views.trains.output_words(run.max_output_force)
+        force = views.trains.output_words(run.max_output_force, _is_known(run))
         views.status_line.update_state(**settled_entries(views.shown, views.curve.place(run), force))
 
 
@@ -51,7 +51,12 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
           live=True, running=running)
     views.curve.now(run.scene.knobs["f"], frames.largest_output)
     views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
-                                   **run_entries(run, views.trains.output_words(run.max_output_force)))
+                                   **run_entries(run, views.trains.output_words(run.max_output_force, known=True)))
+
+
+def _is_known(run: Run) -> bool:
+    """Whether the error of the largest output force is stated; of a motion that does not repeat it is not."""
+    return run.force_errors.output is not None
 
 
 def _periods_shown(frames: Frames, scene: Scene) -> str:
@@ -61,11 +66,12 @@ def _periods_shown(frames: Frames, scene: Scene) -> str:
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
-          largest: tuple[float, float], live: bool = False, running: bool = False, final: bool = False) -> None:
+          largest: tuple[float, float], live: bool = False, running: bool = False, final: bool = False,
+          known: bool = True) -> None:
     change(views.time, start=float(time[-1]), end=float(time[0]))
     high = views.scales.of(frames, scene)
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
-    views.trains.update(frames, time, high)
+    views.trains.update(frames, time, high, scene.is_driven)
     views.energy.update(frames, time, unit, high.kinetic_energy)
-    peaks = views.trains.peak_words(largest)
+    peaks = views.trains.peak_words(largest, known)
     views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, peaks, live, running, final))

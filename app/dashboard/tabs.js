@@ -141,6 +141,7 @@ class Tabs {
     const { content, show = () => {}, updatesItself = false } = make(this.model, this.rows.get(this.chosen));
     Object.assign(this, { redraw: show, updatesItself });
     this.body.replaceChildren(...content);
+    this.root.classList.toggle("telling", this.chosen === "stories" && Boolean(this.model.state.story));
     explainTerms(this.body);
     if (focused) this.body.querySelector(`[data-name="${focused}"]`)?.focus();
   }

@@ -1,33 +1,17 @@
 // Terms that explain themselves: the first of each in a piece of text gets its definition, which stands in
 // docs/glossary.md, on hover, on focus and on a touch.
 
+import { hideMeaning, showMeaning } from "../parts/bubble.js";
 import { element } from "../parts/dom.js";
 
 const TEXTS = "p, h3, dd, .explained";
 
-const bubble = element("div", { id: "term", className: "bubble", role: "tooltip", hidden: true });
-document.body.append(bubble);
-
-function explain(term) {
-  bubble.textContent = term.dataset.meaning;
-  bubble.hidden = false;
-  const { left, top, bottom } = term.getBoundingClientRect();
-  const { offsetWidth: wide, offsetHeight: tall } = bubble;
-  bubble.style.left = `${Math.max(8, Math.min(left, innerWidth - wide - 8))}px`;
-  bubble.style.top = `${bottom + tall + 12 < innerHeight ? bottom + 6 : top - tall - 6}px`;
-}
-
-const hide = () => {
-  bubble.hidden = true;
-};
-document.addEventListener("keydown", ({ key }) => key === "Escape" && hide());
-document.addEventListener("scroll", hide, true);
-
 function termOf(words, name, meaning) {
   const term = element("dfn", { textContent: words, tabIndex: 0, ariaDescription: meaning });
   term.dataset.meaning = `${name}: ${meaning}`;
-  for (const begin of ["pointerenter", "focus", "click"]) term.addEventListener(begin, () => explain(term));
-  for (const end of ["pointerleave", "blur"]) term.addEventListener(end, hide);
+  for (const begin of ["pointerenter", "focus", "click"])
+    term.addEventListener(begin, () => showMeaning(term, term.dataset.meaning));
+  for (const end of ["pointerleave", "blur"]) term.addEventListener(end, hideMeaning);
   return term;
 }
 
@@ -50,7 +34,7 @@ function inText(node, seen) {
 }
 
 export function explainTerms(root) {
-  hide();
+  hideMeaning();
   const seen = new Set();
   for (const text of root.querySelectorAll(TEXTS))
     for (const node of [...text.childNodes]) if (node.nodeType === Node.TEXT_NODE) inText(node, seen);

@@ -79,6 +79,7 @@ class Chain {
       button(words, () => this.chooseScale(value), { title, value, ariaPressed: "false" }),
     );
     scale.querySelector(".segments").append(...this.scales);
+    this.leftTitle = document.querySelector('[data-over="left"] span');
     this.peaks = [...document.querySelectorAll("#stage .peak")];
     for (const peak of this.peaks) peak.title = PEAK;
   }
@@ -94,12 +95,13 @@ class Chain {
       place.textContent = energy_labels[i];
     });
     for (const one of this.scales) one.ariaPressed = String((one.value === "fit") === fit);
-    // More words where there is room: of the scale that is chosen, and the unit, which the axis has.
+    // More words where there is room, of the scale that is chosen.
     const more = (words, rest) => [words, element("span", { className: "roomy", textContent: rest })];
+    this.leftTitle.textContent = driven ? "driver" : "left end";
     this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
     this.scales[1].replaceChildren(...(fit ? more("fitted", " to each picture") : ["fit"]));
     this.peaks.forEach((place, i) => {
-      place.replaceChildren(...more(peaks[i][0], ` ${peaks[i][1]}`));
+      place.textContent = peaks[i];
     });
   }
 

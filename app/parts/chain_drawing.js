@@ -126,6 +126,7 @@ export class ChainDrawing {
     const at = sampler(frames, row);
     const place = (i) => this.home(i) + at.u(i) * this.exaggeration * pitch;
     this.ground(frames, radius, y, place);
+    this.driven = frames.driven ?? true;
     this.bodies(place, pitch, radius, y, beads);
     const sizes = frames.radii.map((one) => radius * (one / this.largest));
     for (let i = 1; i <= beads; i++) this.bead(i, place, y, sizes, at.energy(i) / frames.energy_high);
@@ -206,9 +207,10 @@ export class ChainDrawing {
     const tall = 1.5 * radius,
       deep = Math.min(26, 0.8 * pitch + 6);
     const driver = place(0) + radius;
-    g.fillStyle = ink.drive;
+    g.fillStyle = this.driven ? ink.drive : ink.steel; // a plate at rest has no rod that pushes it
     g.fillRect(driver - deep, y - tall, deep, 2 * tall);
-    g.fillRect(driver - deep - Math.min(60, driver), y - 0.18 * radius, Math.min(60, driver), 0.36 * radius);
+    if (this.driven)
+      g.fillRect(driver - deep - Math.min(60, driver), y - 0.18 * radius, Math.min(60, driver), 0.36 * radius);
     const wall = place(beads + 1) - radius;
     g.fillStyle = ink.steel;
     g.fillRect(wall, y - tall, 5, 2 * tall);
@@ -253,17 +255,23 @@ export class ChainDrawing {
     g.textBaseline = "top";
     g.fillStyle = g.strokeStyle = ink.text;
     g.textAlign = "left";
-    g.fillText("driver", 8, 5);
+    const left = this.driven ? "driver" : "at rest";
+    g.fillText(left, 8, 5);
     g.textAlign = "right";
     g.fillText("wall", this.width - 8, 5);
     const [metres, name] = tape((0.22 * this.width) / (this.pitch * this.exaggeration));
     const long = metres * this.pitch * this.exaggeration;
-    const words = `displacements × ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`;
-    const ends = [g.measureText("driver").width, g.measureText(words).width, g.measureText(name).width];
-    const whole = ends[1] + 12 + long + 6 + ends[2];
-    const shown = whole < this.width - 2 * ends[0] - 40 ? words : `× ${this.factor}`;
-    const wide = whole - ends[1] + g.measureText(shown).width;
-    let x = 0.5 * (this.width - wide);
+    const factor = this.factor.toLocaleString("en").replaceAll(",", "\u202f");
+    // The bar is a real displacement, drawn as much larger as those of the beads; with little room it has fewer words.
+    const forms = [
+      [`displacements drawn × ${factor}`, `${name} of displacement`],
+      [`displacements × ${factor}`, name],
+      [`× ${factor}`, name],
+    ];
+    const widthOf = (form) => form.reduce((sum, one) => sum + g.measureText(one).width, 18 + long);
+    const room = this.width - 2 * g.measureText(left).width - 40;
+    const [shown, length] = forms.find((form) => widthOf(form) < room) ?? forms.at(-1);
+    let x = 0.5 * (this.width - widthOf([shown, length]));
     g.textAlign = "left";
     g.fillText(shown, x, 5);
     x += g.measureText(shown).width + 12;
@@ -276,7 +284,7 @@ export class ChainDrawing {
     g.moveTo(x, 5 + 0.5 * size);
     g.lineTo(x + long, 5 + 0.5 * size);
     g.stroke();
-    g.fillText(name, x + long + 6, 5);
+    g.fillText(length, x + long + 6, 5);
   }
 }
 

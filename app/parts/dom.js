@@ -1,5 +1,8 @@
 // Elements, and the controls that several parts of the page have.
 
+// Whether the page is arranged for a phone, as page.css has it.
+export const PHONE = matchMedia("(max-width: 820px)");
+
 // An element with its properties and children.
 export const element = (tag, properties = {}, ...children) => {
   const made = Object.assign(document.createElement(tag), properties);

@@ -225,6 +225,7 @@ class Header {
     });
     this.scene.replaceChildren(...options);
     this.scene.value = scene;
+    this.scene.title = `scene: ${this.scene.selectedOptions[0]?.title ?? scene}`;
     const each = (value) => `${value} period${value > 1 ? "s" : ""} a second`;
     this.speed.replaceChildren(...speeds.map((value) => new Option(each(value), value)));
     this.speed.value = String(speed);

@@ -1,4 +1,4 @@
-// The knobs, one below the other; those that are seldom moved are folded away under "more".
+// The knobs, one below the other; those that are seldom moved are folded away under "more knobs".
 
 import { element } from "./dom.js";
 import { Knob } from "./knob.js";
@@ -54,7 +54,7 @@ class Knobs {
   // The knobs of another scene.
   build() {
     const open = Boolean(this.root.querySelector("details")?.open);
-    const more = element("details", { innerHTML: "<summary>more</summary>", open });
+    const more = element("details", { innerHTML: "<summary>more knobs</summary>", open });
     this.root.replaceChildren();
     this.knobs.clear();
     for (const spec of this.model.state.specs ?? []) {

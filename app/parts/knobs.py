@@ -21,7 +21,7 @@ _NEUTRAL = {one.name: one.default for one in fields(Scene)
             if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike", "end")}
 #: What a knob is without a drive: its label and its meaning.
 _UNDRIVEN = {
-    "f": ("1 / time shown", "This chain has no drive: 1/f is only the time that is shown."),
+    "f": ("time shown = 1/f", "This chain has no drive: 1/f is only the time that is shown."),
     "A0": ("unit of length", "This chain has no drive: A₀ is only the unit of length in the computation."),
 }
 
@@ -46,7 +46,7 @@ def knob_state(current: Scene) -> dict[str, Any]:
 
 def beside_knobs(current: Scene) -> dict[str, Any]:
     """What is said beside the knobs of a scene: of the foundation, and of a knob that turns nothing now."""
-    idle = {"D": "no effect: the law, under “more”, is “none”"} if current.dissipation == "none" else {}
+    idle = {"D": "no effect: the law, under “more knobs”, is “none”"} if current.dissipation == "none" else {}
     return {"foundation": foundation_words(current), "kept": beside_kappa(current), "idle": idle}
 
 

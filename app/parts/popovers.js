@@ -11,10 +11,11 @@ const HELP = [
     "Point at a picture: a line through all of them, with the values there. Shift and drag in the map: a measuring tape for time, distance and speed.",
   ],
   ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
+  ["status", "The line at the bottom: a click on an entry says what it means."],
   ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
   [
     "accuracy",
-    "Click it in the status line to measure, on this machine, every method's error against its computing time.",
+    "Click the error in the status line: that of each quantity, and a page that measures what accuracy costs on this machine.",
   ],
   ["effects", "In the tab “effects”: switch an effect on or off and see what it costs."],
   ["curve", "Click a frequency to go there. Shape and colour of a point show its regime."],

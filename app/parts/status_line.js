@@ -1,6 +1,7 @@
-// The status line: what is on the screen, how sure it is and what it cost.
+// The status line: what is on the screen, how sure it is and what it cost. A click on an entry says what it means.
 
-import { button, element, onWidth } from "./dom.js";
+import { explains, hideMeaning } from "./bubble.js";
+import { button, element, onWidth, PHONE } from "./dom.js";
 
 const ENTRIES = [
   ["busy", (v) => v, "The server is busy: computations queue and intermediate pictures are skipped."],
@@ -19,7 +20,15 @@ const ENTRIES = [
 // What gives way, in this order, where the line has no room for all: an entry goes, or has fewer words, as often as the
 // server has a shorter form of them.
 const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime"];
-const PHONE = matchMedia("(max-width: 820px)"); // there it may have several lines: the page scrolls
+
+// Opens the page that measures what accuracy costs.
+function costButton() {
+  const open = () => {
+    hideMeaning();
+    window.granchain.openPage("accuracy");
+  };
+  return element("div", { className: "row" }, button("What accuracy costs in time", open));
+}
 
 function entryOf([name, write, meaning], state) {
   const entry = element(name === "accuracy" ? "button" : "span", {
@@ -27,7 +36,7 @@ function entryOf([name, write, meaning], state) {
     title: state[`${name}_hint`] ?? meaning,
     id: name,
   });
-  if (name === "accuracy") entry.addEventListener("click", () => window.granchain.openPage("accuracy"));
+  explains(entry, () => [entry.title, ...(name === "accuracy" ? [costButton()] : [])]);
   return entry;
 }
 
@@ -53,6 +62,7 @@ class Line {
     this.state = state;
     const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");
     this.regime = element("b", { textContent: state.regime ?? "", title: state.regime_hint ?? "" });
+    explains(this.regime, () => [this.regime.title]);
     this.entries = new Map([["regime", this.regime], ...known.map((entry) => [entry[0], entryOf(entry, state)])]);
     const [, ...others] = this.entries.values();
     this.el.replaceChildren(this.regime, element("i", { className: "grow" }), ...others);
@@ -78,7 +88,7 @@ class Line {
       entry.hidden = false;
       if (state[`${name}_shorter`]) entry.textContent = state[name];
     }
-    if (PHONE.matches) return;
+    if (PHONE.matches) return; // there it may have several lines: the page scrolls
     let need = this.gap; // beside what grows
     for (const [name, entry] of this.entries) need += this.widthOf(name, entry);
     const shorter = { accuracy: [...(state.accuracy_shorter ?? [])], regime: [...(state.regime_shorter ?? [])] };

@@ -5,11 +5,35 @@ from __future__ import annotations
 from typing import Any
 
 from granchain_core import Run, Settled
-from granchain_core.steady.curve.resonance import Place, place_words, push_words, pushes
+from granchain_core.integrate import METHODS
+from granchain_core.regime import Regime
+from granchain_core.steady.curve.resonance import STOPS, Place, place_words, push_words, pushes
 
 from ..format import duration, short_error
 from ..scripts import module
 from .component import Component, text
+
+#: What the name of a place on the curve means.
+_PLACES = {
+    "peak": "Resonance: a peak of the curve, where more arrives at the wall than at frequencies beside it.",
+    "valley": "Anti-resonance: a valley of the curve, where less arrives at the wall than at frequencies beside it.",
+    "flank": "Flank: between a peak of the curve and the valley beside it.",
+    "stop band": f"Stop band: above the last peak, less than {100 * STOPS:.0f} % of the input force reaches the wall.",
+}
+#: What the name of a regime means that is not periodic.
+_REGIMES = {
+    "quasi-periodic": "Quasi-periodic: it comes back near every earlier state and never exactly to one.",
+    "chaotic": "Chaotic: it never repeats, and small disturbances grow.",
+    "unsettled": "Not settled: so far it neither repeats nor shows by evidence that it never will.",
+}
+_UNDRIVEN = "Nothing drives the chain: what is shown begins at the start of the motion."
+_MULTIPLIER = "|μ|: factor by which a small disturbance changes in one orbit; below 1 the orbit is stable."
+_DECAY = "Decay: factor by which the distance to the orbit was seen to shrink."
+_LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the logarithm of its factor per drive period; "
+             "above zero the motion is chaotic.")
+_FOLLOWED = ("Followed to its orbit: the motion approached it so slowly that the orbit was computed from the last "
+             "periods, by Newton's method or extrapolation.")
+_SETTLED = "Settled: after so many drive periods from its start the motion was as near to its orbit as the error says."
 
 
 class StatusLine(Component):
@@ -22,7 +46,7 @@ class StatusLine(Component):
 def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[str, Any]:
     """The line for a settled picture.
 
-    `place` is where it lies on the curve from rest, None while there is none; `force` is the largest output force in
+    `place` is where it lies on the curve from rest, None while that is computed; `force` is the largest output force in
     words.
     """
     regime, pushed = picture.regime.sentence, pushes(picture.run)
@@ -30,7 +54,7 @@ def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[s
     return {
         "regime": regime_words(picture, pushed, place, regime),
         "regime_shorter": [regime_words(picture, pushed, place, name), regime_words(picture, pushed, Place(""), name)],
-        "regime_hint": regime_hint(picture, pushed),
+        "regime_hint": regime_hint(picture.regime, pushed, place),
         "start": f"from {picture.start}",
         **run_entries(picture.run, force),
     }
@@ -43,14 +67,21 @@ def regime_words(picture: Settled, pushed: tuple[int, int] | None, place: Place 
     return ready + (f"{counted}, " if counted else "") + regime
 
 
-def regime_hint(picture: Settled, pushed: tuple[int, int] | None) -> str:
-    """What the ratio and the multiplier in the line mean; empty where it has neither."""
+def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | None) -> str:
+    """What the words of the line mean: the ratio, the place on the curve, the regime, and its evidence."""
     meanings = []
     if pushed is not None:
         meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
-    if "|μ|" in picture.regime.sentence:
-        meanings.append("|μ|: factor by which a small disturbance changes in one orbit; below 1 the orbit is stable.")
-    return " ".join(meanings)
+        meanings.append(_PLACES.get(place.kind, "") if place is not None else "")
+    if regime.name == "periodic":
+        meanings.append(_FOLLOWED if regime.followed else _SETTLED)
+    else:
+        meanings.append(_REGIMES[regime.name] if regime.driven else _UNDRIVEN)
+    if regime.lyapunov is not None and regime.name != "periodic":
+        meanings.append(_LYAPUNOV)
+    if regime.evidence:
+        meanings.append(_DECAY if regime.multiplier is None else _MULTIPLIER)
+    return " ".join(one for one in meanings if one)
 
 
 def error_words(error: float | None, before: str = "") -> str:
@@ -63,10 +94,21 @@ def accuracy_words(run: Run) -> str:
     return f"asked {short_error(run.scene.accuracy)} · {error_words(run.error_estimate, 'reached ')}"
 
 
+def why_no_error(run: Run) -> str:
+    """Why no error of the displacements is stated; empty where one is."""
+    if run.error_estimate is not None:
+        return ""
+    if run.regime.name in ("quasi-periodic", "chaotic"):
+        grows = "grows in every period" if run.regime.name == "chaotic" else "adds up from period to period"
+        return f" Why none: in a {run.regime.name} motion the error of an instant {grows}, however small the steps are."
+    return " Why none: the motion has not settled, and errors are stated for steady states."
+
+
 def force_hint(run: Run) -> str:
     """What the force of the line is, and its error."""
     return ("The largest output force in the periods shown, the dashpot's part included; relative error "
-            f"{error_words(run.force_errors.output)}.")
+            f"{error_words(run.force_errors.output)}. A force is positive where the bodies push each other; below zero "
+            f"the dashpot of an opening contact pulls.{why_no_error(run)}")
 
 
 def errors_hint(run: Run) -> str:
@@ -74,7 +116,8 @@ def errors_hint(run: Run) -> str:
     errors = [f"{name} {error_words(error)}" for name, error in (
         ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
-    return f"Relative errors: {', '.join(errors)}. Click to see what accuracy costs."
+    return (f"Relative errors of the numerical solution: {', '.join(errors)}.{why_no_error(run)} How well the model "
+            "fits an experiment is another question: the tab “data” compares it with yours.")
 
 
 def run_entries(run: Run, force: str) -> dict[str, Any]:
@@ -87,5 +130,6 @@ def run_entries(run: Run, force: str) -> dict[str, Any]:
         "accuracy_hint": errors_hint(run),
         "energy": "" if run.energy_residual is None else f"energy residual {short_error(run.energy_residual)}",
         "method": run.cost.method,
+        "method_hint": f"Method of integration: {METHODS[run.cost.method].title}.",
         "effects": list(run.scene.effects),
     }

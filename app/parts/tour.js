@@ -1,7 +1,7 @@
 // The tour of a first visit: five steps, each beside a part of the page. It can be left at any time, does not come
 // again by itself, and stops nothing.
 
-import { button, element } from "./dom.js";
+import { button, element, PHONE } from "./dom.js";
 
 const KEPT_AS = "granchain-toured"; // in the browser, from visit to visit
 const STEPS = [
@@ -73,7 +73,7 @@ export class Tour {
     for (const one of document.querySelectorAll(".toured")) one.classList.remove("toured");
     if (this.root.hidden) return;
     this.part().classList.add("toured");
-    this.part().scrollIntoView({ block: "nearest" });
+    this.part().scrollIntoView({ block: PHONE.matches ? "start" : "nearest" }); // there the words are at the bottom
   }
 
   // Beside the part where there is room, else below or above it, else at the bottom of the window.

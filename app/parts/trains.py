@@ -79,8 +79,13 @@ class Trains:
         ]
         return plot
 
-    def update(self, frames: Frames, time: np.ndarray, high: Extremes) -> None:
-        """Show `frames`, whose rows are at `time` on the shared axis, on axes that end at the forces of `high`."""
+    def update(self, frames: Frames, time: np.ndarray, high: Extremes, driven: bool) -> None:
+        """Show `frames`, whose rows are at `time` on the shared axis, on axes that end at the forces of `high`.
+
+        A chain that is not `driven` has no line of the drive and no axis for it.
+        """
+        change(self._axes[0], visible=driven)
+        change(self._lines[0], visible=driven)
         scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
         drive_high = round_up(moved)
@@ -110,15 +115,22 @@ class Trains:
         """The title of the axis of time."""
         change(self._time_axis, axis_label=title)
 
-    def peak_words(self, largest: tuple[float, float]) -> list[tuple[str, str]]:
-        """The largest input and output force [N] of the picture in words, and the units of their axes."""
-        return [(f"max {force / factor:#.3g}".rstrip("."), unit)
+    def peak_words(self, largest: tuple[float, float], known: bool) -> list[str]:
+        """The largest input and output force [N] of the picture; two figures where their errors are not known."""
+        figures = 3 if known else 2
+        return [f"max {force / factor:#.{figures}g}".rstrip(".") + f" {unit}"
                 for force, factor, unit in zip(largest, self._factors, self._units[1:], strict=True)]
 
-    def output_words(self, force: float) -> str:
-        """A force at the wall [N] in the unit of its axis; in its own where it is too small for that."""
+    def output_words(self, force: float, known: bool) -> str:
+        """A force at the wall [N] in the unit of its axis; in its own where it is too small for that.
+
+        Two figures where its error is not `known`.
+        """
         factor, unit = self._factors[1], self._units[2]
-        return f"{force / factor:.4g} {unit}" if force >= _READABLE * factor else in_words(force, "N")
+        figures, about = (4, "") if known else (2, "about ")
+        if force < _READABLE * factor:
+            return about + in_words(force, "N", figures)
+        return f"{about}{force / factor:.{figures}g} {unit}"
 
     def pin(self, runs: Sequence[Run | None]) -> None:
         """Let these motions stay, as dashed grey lines over the same time; None leaves a place free."""

@@ -18,7 +18,6 @@ from granchain_core.errors import unknown_name
 from granchain_core.scene import ASSETS
 from granchain_core.stop import Stop
 
-from ..format import in_words
 from .share import EXTRAS
 
 FOLDER = ASSETS / "stories"
@@ -28,6 +27,7 @@ LOOKS = ("chain", "left", "map", "right", "curve")
 #: How far a computed force may be from the one a story tells, where the motion repeats and where it does not: there the
 #: largest force depends on the periods that are recorded.
 TOLERANCE, IRREGULAR = 5e-3, 0.1
+_IRREGULAR_REGIMES = ("quasi-periodic", "chaotic")
 _STORY = ("title", "about", "order", "steps")
 _STEP = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "expect")
 _EXPECT = ("regime", "period", "output", "input", "pulse", "speed")
@@ -118,11 +118,12 @@ def told_words(story: Story, number: int, words: str) -> str:
         if not 1 <= place <= len(story.steps):
             raise BadInput(f"step {number}: {match[0]} is of step {place}, but there are {len(story.steps)}.")
         step = story.steps[place - 1]
-        numbers = {"output": _force(step.expect.output), "input": _force(step.expect.input),
+        repeats = step.expect.regime not in _IRREGULAR_REGIMES
+        numbers = {"output": _force(step.expect.output, repeats), "input": _force(step.expect.input, repeats),
                    "share": f"{100 * step.expect.output / step.expect.input:.0f} %",
                    "f": f"{step.scene.f:g} Hz"}
         if step.expect.pulse is not None and step.expect.speed is not None:
-            numbers |= {"pulse": _force(step.expect.pulse), "speed": f"{step.expect.speed:.3g} m/s"}
+            numbers |= {"pulse": _force(step.expect.pulse, repeats), "speed": f"{step.expect.speed:.3g} m/s"}
         if match[2] not in numbers:
             raise unknown_name("number", match[2], tuple(numbers))
         return numbers[match[2]]
@@ -151,13 +152,14 @@ def differences(step: Step, shown: Run) -> list[str]:
         middle = len(first.contact) // 2
         numbers += [("pulse's force", "N", expected.pulse, float(first.force[middle])),
                     ("pulse's speed", "m/s", expected.speed, float(first.speed_in_metres[middle]))]
-    allowed = IRREGULAR if regime in ("quasi-periodic", "chaotic") else TOLERANCE
+    allowed = IRREGULAR if regime in _IRREGULAR_REGIMES else TOLERANCE
     return found + [f"the {name} is {computed:.4g} {unit}, not {number:.4g} {unit}."
                     for name, unit, number, computed in numbers if abs(computed - number) > allowed * computed]
 
 
-def _force(newtons: float) -> str:
-    return in_words(newtons, "N", 3)
+def _force(newtons: float, repeats: bool) -> str:
+    """In newtons, whatever its size, so that steps can be compared; two figures where the motion does not repeat."""
+    return f"{newtons:.{3 if repeats else 2}g} N"
 
 
 def _step(number: int, data: Any) -> Step:

@@ -62,8 +62,8 @@ def test_a_knob_that_turns_nothing_says_so(visit: Visit) -> None:
     """Without dissipation there is no D in the equation."""
     page = visit("?v=1&scene=impact")
     damping = page.locator('[data-knob="D"]')
-    expect(damping).to_contain_text("no effect: the law, under “more”, is “none”")
-    page.locator("summary").get_by_text("more", exact=True).first.click()
+    expect(damping).to_contain_text("no effect: the law, under “more knobs”, is “none”")
+    page.locator("summary").get_by_text("more knobs", exact=True).first.click()
     page.get_by_label("dissipation law").select_option("linear")
     expect(damping).to_contain_text("0: contacts lose no energy")
 

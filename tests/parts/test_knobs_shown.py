@@ -16,7 +16,7 @@ def test_a_scene_shows_the_knobs_that_make_it() -> None:
     impact, driven = specs("impact"), specs("sec2")
     assert [name for name, spec in impact.items() if not spec["more"] and driven[name]["more"]] == ["drive", "strike"]
     assert [name for name, spec in specs("diode").items() if not spec["more"] and driven[name]["more"]] == ["site", "impurity"]
-    assert impact["f"]["short"] == "1 / time shown" and driven["f"]["short"] == "drive frequency"
+    assert impact["f"]["short"] == "time shown = 1/f" and driven["f"]["short"] == "drive frequency"
 
 
 def test_a_chain_without_a_drive_has_fine_pictures_and_no_curve() -> None:

@@ -69,7 +69,7 @@ def test_a_wrong_speed_of_a_pulse_is_found(tmp_path: Path) -> None:
 def test_numbers_stand_in_the_text(tmp_path: Path) -> None:
     path = tmp_path / "one.toml"
     path.write_text(GOOD.replace("It has {output}.", "{output} {input} {share} {f} {1.output}"))
-    assert told_words(read_story(path), 1, "say") == "628 mN 698 mN 90 % 340 Hz 628 mN"
+    assert told_words(read_story(path), 1, "say") == "0.628 N 0.698 N 90 % 340 Hz 0.628 N"
 
 
 @pytest.mark.parametrize(("change", "to", "told"), [

@@ -10,6 +10,8 @@ from ...format import in_words
 
 #: Instants of a table over time; the file has all.
 _INSTANTS = 25
+#: A value below this part of the largest of its series is what rounding left of zero, as of the sine of a full turn.
+_ROUNDING = 1e-12
 #: Most beads of a table; the file has all.
 _BEADS = 200
 
@@ -19,13 +21,27 @@ def summary(run: Run) -> str:
     energy = run.kinetic_energy
     row, bead = map(int, np.unravel_index(int(energy.argmax()), energy.shape))
     far = int(energy[:, -1].argmax())
-    share = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
     most = f"Bead {bead + 1} has the most kinetic energy, {_energy(energy, row, bead)} at {_time(run, row)}"
     last = f"; bead {run.scene.N}, at the wall, has at most {_energy(energy, far, run.scene.N - 1)}"
-    return (f"At {run.scene.f:g} Hz: {run.regime.sentence}. The driver pushes with at most "
-            f"{in_words(run.max_input_force, 'N', 3)}, and at most {in_words(run.max_output_force, 'N', 3)} arrive at "
-            f"the wall, {100 * share:.3g} % of it. {most}{last if bead + 1 != run.scene.N else ''}."
-            f"{_where_energy_goes(run)}")
+    return f"{_forces(run)} {most}{last if bead + 1 != run.scene.N else ''}. {_travel(run)}{_where_energy_goes(run)}"
+
+
+def _forces(run: Run) -> str:
+    """The motion, and the largest forces at both ends with their ratio, which is none of energies."""
+    pushed, arrived = (in_words(force, "N", 3) for force in (run.max_input_force, run.max_output_force))
+    if not run.scene.is_driven:
+        return (f"Nothing drives the chain; {_time(run, -1)} from its start are shown. The force on bead 1 from the "
+                f"left is at most {pushed}, that on the wall at most {arrived}.")
+    ratio = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
+    return (f"At {run.scene.f:g} Hz: {run.regime.sentence}. The driver pushes with at most {pushed}, and at most "
+            f"{arrived} arrive at the wall, {ratio:.3g} times as much.")
+
+
+def _travel(run: Run) -> str:
+    """How far beads move from rest."""
+    far = np.abs(run.displacement).max(axis=0)
+    most = int(far.argmax())
+    return f"The bead that moves farthest, number {most + 1}, goes {in_words(float(far[most]), 'm', 3)} from its place."
 
 
 def _where_energy_goes(run: Run) -> str:
@@ -38,9 +54,14 @@ def _where_energy_goes(run: Run) -> str:
 def forces_over_time(run: Run) -> list[list[str]]:
     """Time, drive, input and output force at equal distances."""
     rows = np.unique(np.linspace(0, len(run.time) - 1, _INSTANTS).round().astype(int))
-    return [[_time(run, int(row)), in_words(float(run.drive_displacement[row]), "m", 3),
-             in_words(float(run.input_force[row]), "N", 3), in_words(float(run.output_force[row]), "N", 3)]
-            for row in rows]
+    series = ((run.drive_displacement, "m"), (run.input_force, "N"), (run.output_force, "N"))
+    return [[_time(run, int(row)), *(_value(values, int(row), unit) for values, unit in series)] for row in rows]
+
+
+def _value(values: np.ndarray, row: int, unit: str) -> str:
+    """A value of a series; what rounding left of a zero is a zero."""
+    value = float(values[row])
+    return f"0 {unit}" if abs(value) <= _ROUNDING * float(np.abs(values).max()) else in_words(value, unit, 3)
 
 
 def beads(run: Run) -> list[list[str]]:

@@ -1,10 +1,11 @@
 // The Stories tab: all stories, or one step of the one that is told: what to see, a question, and its answer on demand.
 
-import { button, element, paragraph } from "../../parts/dom.js";
+import { button, element, paragraph, PHONE } from "../../parts/dom.js";
 
 const INVITES = "A story turns the knobs, says where to look, and asks. All controls stay available.";
 
 let revealed = ""; // the step whose answer has been asked for
+let told = ""; // the step that was shown last
 
 // The part of the page that a step is about has a frame.
 function point(look, telling = false) {
@@ -33,6 +34,7 @@ function telling(model, story) {
   const reveal = button("answer", () => {
     revealed = place;
     show();
+    answered.scrollIntoView({ block: "nearest" });
   });
   const show = () => {
     answered.hidden = revealed !== place;
@@ -50,9 +52,18 @@ function telling(model, story) {
   return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), answered];
 }
 
+// On a phone a step that begins stands at the top of the screen.
+function comeUp(story) {
+  const step = story ? `${story.name} ${story.step}` : "";
+  if (step === told) return;
+  told = step;
+  if (step && PHONE.matches) requestAnimationFrame(() => document.getElementById("tabs").scrollIntoView());
+}
+
 export function storiesTab(model) {
   const { story } = model.state;
   point(story?.look, Boolean(story));
+  comeUp(story);
   return { content: story ? telling(model, story) : chooser(model) };
 }
 

@@ -132,8 +132,8 @@ def push_words(pushed: tuple[int, int]) -> str:
 def place_words(pushed: tuple[int, int] | None, place: Place | None) -> str:
     """A periodic motion in the paper's words: strong pushes per periods, and its place on the curve.
 
-    `place` is None while there is no whole curve. Peak and valley have the paper's names where the pushes are those it
-    gives them: one strong push in n periods on a peak, one in every period in a valley.
+    `place` is None while the curve is being computed. Peak and valley have the paper's names where the pushes are those
+    it gives them: one strong push in n periods on a peak, one in every period in a valley.
     """
     if pushed is None:
         return ""
