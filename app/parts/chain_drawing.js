@@ -265,7 +265,7 @@ export class ChainDrawing {
     // The bar is a real displacement, drawn as much larger as those of the beads; with little room it has fewer words.
     const forms = [
       [`displacements drawn × ${factor}`, `${name} of displacement`],
-      [`displacements × ${factor}`, name],
+      [`drawn × ${factor}`, `${name} of displacement`],
       [`× ${factor}`, name],
     ];
     const widthOf = (form) => form.reduce((sum, one) => sum + g.measureText(one).width, 18 + long);

@@ -118,7 +118,7 @@ class Trains:
     def peak_words(self, largest: tuple[float, float], known: bool) -> list[str]:
         """The largest input and output force [N] of the picture; two figures where their errors are not known."""
         figures = 3 if known else 2
-        return [f"max {force / factor:#.{figures}g}".rstrip(".") + f" {unit}"
+        return [f"max {force / factor:#.{figures}g}".rstrip(".") + f"\N{NO-BREAK SPACE}{unit}"
                 for force, factor, unit in zip(largest, self._factors, self._units[1:], strict=True)]
 
     def output_words(self, force: float, known: bool) -> str:

@@ -158,5 +158,5 @@ class ObserverRun:
                     "periods.")
         side = ", to the other side each time" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
         if self.drifts:
-            return f"{beginning} it drifts: an offset of its beads grows, because nothing pulls them back{side}."
+            return f"{beginning} it moves away: an offset of its beads grows, because nothing pulls them back{side}."
         return f"{beginning} it leaves its chain{side}."

@@ -23,6 +23,8 @@ from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
 #: Most steps of the fixed-step method while settling: about half a minute.
 MOST_STEPS = 100_000_000
+#: Periods until the motion is first looked at for a period, and at least between two looks.
+_FIRST_LOOK, _BETWEEN_LOOKS = 2, 8
 
 
 class Settling:
@@ -45,6 +47,7 @@ class Settling:
         first, scales = self.engine.state, self.engine.scaled.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
         self._run, self._here, self._stop_at = run, 0, EXAMINED_AFTER
+        self._look_at = _FIRST_LOOK
         self.regime = Regime.unsettled(run)
 
     def go_on(self, seconds: float) -> None:
@@ -62,8 +65,9 @@ class Settling:
             left = end - time.perf_counter()
             if per_period and left < per_period:
                 return False
-            chunk = 2 if per_period == 0.0 else max(1, int(min(self._until_next_look(), left / per_period)))
-            chunk = min(chunk, self._stop_at - self._here, max(1, self._steps_left() // self._steps))
+            chunk = _FIRST_LOOK if per_period == 0.0 else max(1, int(min(left / per_period, MOST_STEPS)))
+            chunk = min(chunk, self._look_at - self._here, self._stop_at - self._here,
+                        max(1, self._steps_left() // self._steps))
             began = time.perf_counter()
             strobes, maxima = self.engine.periods(chunk)
             per_period = (time.perf_counter() - began) / chunk
@@ -72,17 +76,20 @@ class Settling:
         return True
 
     def _note(self, strobes: np.ndarray) -> None:
-        """Add strobes to the record, of which only the last are kept, and look for a period."""
+        """Add strobes to the record, of which only the last are kept, and look for a period when it is time for that.
+
+        An eighth of the periods so far are run between two looks, so that they cost little. When they come depends on
+        the motion alone, and not on how long a chunk of periods takes on this machine.
+        """
         self._here += len(strobes)
         self.strobes = np.concatenate([self.strobes[-REMEMBERED:], strobes])
-        self.regime = replace(find_period(self.strobes[-REMEMBERED:]), periods_run=self._run + self._here)
+        if self._here >= min(self._look_at, self._stop_at):
+            self._look_at = self._here + max(_BETWEEN_LOOKS, self._here // 8)
+            self.regime = find_period(self.strobes[-REMEMBERED:])
+        self.regime = replace(self.regime, periods_run=self._run + self._here)
 
     def _steps_left(self) -> int:
         return MOST_STEPS - self.engine.counts.steps
-
-    def _until_next_look(self) -> float:
-        """Periods until the next test of the regime: an eighth of those run, so that tests cost little."""
-        return max(8.0, self._here / 8)
 
     @property
     def _finished(self) -> bool:
