@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import threading
+import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
@@ -16,7 +18,7 @@ from granchain_core.warm import CURVE
 
 from ..pictures.curve import WORDS
 from ..serve.compiler import COMPILER, PICTURE_PIECES
-from ..serve.delays import CURVE_QUIET
+from ..serve.delays import CURVE_EVERY, CURVE_QUIET
 from ..serve.queues import CURVES, LatestWins
 from ..serve.turns import SchedulerSlot
 from ..session.activities import Activity
@@ -57,6 +59,7 @@ class CurveController:
         self._quiet = Debounce(host, CURVE_QUIET)
         self._lock = threading.Lock()
         self._buffer: list[Progress] = []
+        self._drawn = -math.inf
         self._key: Scene | None = None
         self._remaining: list[str] = []
         self._done = -1.0
@@ -254,6 +257,12 @@ class CurveController:
             self._host.next_tick(self._draw)
 
     def _draw(self) -> None:
+        """Draw what has come, and wait with what comes soon after: the loop would draw for a whole class else."""
+        rest = self._drawn + CURVE_EVERY - time.monotonic()
+        if rest > 0.0:
+            self._host.call_later(rest, self._draw)
+            return
+        self._drawn = time.monotonic()
         with self._lock:
             buffer, self._buffer = self._buffer, []
         if not buffer:  # they were another scene's

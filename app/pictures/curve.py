@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Sequence
 from typing import Any
@@ -10,6 +11,7 @@ from bokeh.models import ColumnDataSource, DataRange1d, HoverTool
 from bokeh.plotting import figure
 
 from granchain_core import Curve, CurvePoint
+from granchain_core.regime import Regime
 
 from ..format import in_words, short_error
 from .axes import force_scale, knob_scale
@@ -66,7 +68,7 @@ def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
         "frequency": [p.frequency for p in points], "force": [getattr(p, drawn) / factor for p in points],
         "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],
         "size": [style[2] + larger for style in styles], "regime": keys,
-        "sentence": [p.regime.sentence for p in points], **forces_in_words(points)}
+        "sentence": [_sentence(p.regime) for p in points], **forces_in_words(points)}
 
 
 def curve_tooltips(start: str) -> list[tuple[str, str]]:
@@ -76,10 +78,18 @@ def curve_tooltips(start: str) -> list[tuple[str, str]]:
 
 def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:
     """The largest forces of every point with their relative errors."""
-    return {"total": [in_words(p.max_output_force, "N", 5) + _error(p.force_errors.output) for p in points],
-            "elastic": [in_words(p.max_output_force_elastic, "N", 5) + _error(p.force_errors.elastic) for p in points],
-            "input": [in_words(p.max_input_force, "N", 5) + _error(p.force_errors.input) for p in points]}
+    return {"total": [_force(p.max_output_force, p.force_errors.output) for p in points],
+            "elastic": [_force(p.max_output_force_elastic, p.force_errors.elastic) for p in points],
+            "input": [_force(p.max_input_force, p.force_errors.input) for p in points]}
 
 
-def _error(relative: float | None) -> str:
-    return ", no error claimed" if relative is None else f", relative error {short_error(relative)}"
+@functools.lru_cache(maxsize=4096)
+def _force(newtons: float, relative: float | None) -> str:
+    """Remembered: a growing curve is drawn again and again, for every visitor of a class."""
+    error = ", no error claimed" if relative is None else f", relative error {short_error(relative)}"
+    return in_words(newtons, "N", 5) + error
+
+
+@functools.lru_cache(maxsize=1024)
+def _sentence(regime: Regime) -> str:
+    return regime.sentence

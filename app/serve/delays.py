@@ -1,7 +1,8 @@
 """Delays in seconds: between two checks, and after the last knob movement before work begins."""
 
-#: Between two checks whether the main picture is done; long work waits for it and never competes with a knob.
-PICTURE_POLL = 0.01
+#: Between the first two checks whether the main picture is done, and between later ones at most; long work waits for it
+#: and never competes with a knob.
+PICTURE_POLL, LONGEST_POLL = 0.01, 0.2
 #: Between checks of a stop flag while another process works.
 STOP_POLL = 0.05
 
@@ -16,6 +17,8 @@ COST_QUIET = 0.7
 
 #: Between two lists of what is being computed, while the Effects panel is on the screen.
 ACTIVITIES_EVERY = 0.4
+#: Between two drawings of a curve that grows: each has all its points.
+CURVE_EVERY = 0.1
 #: Between two messages to a page on which a branch grows.
 BRANCH_EVERY = 0.08
 #: Between two messages to a page on which a map grows.

@@ -1,9 +1,8 @@
 """Fair scheduling: the next picture computed is that of the waiting visitor who has used least time.
 
-Kernels run without the interpreter's lock, so as many computations as there are cores go on at once. Each gives its
-turn up at its pauses, some hundredths of a second apart, if a visitor waits that has used less. A computation that has
-just begun, which is what a visitor sees first, goes before all that only make a picture better; one that has waited for
-half a second has the same right.
+Kernels run without the interpreter's lock, so as many computations as there are cores go on at once. What a visitor
+sees first begins at once and is not interrupted, because it is short. What makes a picture better, or takes long, gives
+its turn up at the first pause after a slice of time.
 """
 
 from __future__ import annotations
@@ -21,11 +20,15 @@ from granchain_core.stop import Stop
 
 Result = TypeVar("Result")
 
-#: Processor time for which a computation has just begun [s]: that of a first picture of some ten beads.
+#: Longest processor time for which a computation without a result has just begun [s]: a first picture of ten beads
+#: takes a tenth of it.
 _BEGINNING = 0.03
+#: How long a turn is kept although others wait [s]. At every pause would be too often: passing it to another thread
+#: costs some waits for the interpreter.
+_SLICE = 0.02
 #: Over how many beginnings, and in which time [s], waits are averaged.
 _REMEMBERED, _LATELY = 200, 10.0
-#: After so long a wait a computation has the same right as one that has just begun [s].
+#: After so long a wait a computation has a slice although others use all cores [s].
 _LONGEST_WAIT = 0.5
 
 #: Time in which half of what a visitor has used is forgotten [s].
@@ -69,25 +72,25 @@ class SharedCpuTime(CpuTime):
             member.charge(seconds / len(members))
 
 
-class _Wait:
-    """One thread that waits for its turn."""
+class _Turn:
+    """One thread that waits for its turn or has it; `at` is when it began to."""
 
-    def __init__(self, cpu_time: CpuTime, begins: bool, since: float) -> None:
-        self.cpu_time, self.begins, self.since, self.granted = cpu_time, begins, since, threading.Event()
+    def __init__(self, cpu_time: CpuTime, begins: bool, at: float) -> None:
+        self.cpu_time, self.begins, self.at, self.granted = cpu_time, begins, at, threading.Event()
 
-    def rank(self, now: float) -> tuple[bool, float]:
-        """Who has the lowest is next."""
-        return not self.begins and now - self.since < _LONGEST_WAIT, self.cpu_time.used
+    def rank(self, now: float) -> tuple[bool, bool, float]:
+        """Of those that wait, who has the lowest is next."""
+        return not self.begins, now - self.at < _LONGEST_WAIT, self.cpu_time.used
 
 
 class FairScheduler:
-    """Who computes now: at most `at_once`; of those that wait, who has used least is next."""
+    """Who computes now: `at_once` that have just begun, and others as long as fewer than `at_once` compute."""
 
     def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
         self._at_once, self._clock = at_once, clock
         self._lock = threading.Lock()
-        self._running: dict[_Wait, float] = {}
-        self._waiting: list[_Wait] = []
+        self._running: set[_Turn] = set()
+        self._waiting: list[_Turn] = []
         self._waits: deque[tuple[float, float]] = deque(maxlen=_REMEMBERED)
 
     @property
@@ -102,12 +105,12 @@ class FairScheduler:
         """How many wait for their turn."""
         return len(self._waiting)
 
-    def begin(self, cpu_time: CpuTime, stop: Stop, begins: bool = True) -> object:
+    def begin(self, cpu_time: CpuTime, stop: Stop, begins: bool = True) -> _Turn:
         """Wait for a turn, or until the stop flag is set; returns what `end` needs.
 
         `begins` says whether the computation has just begun.
         """
-        mine = _Wait(cpu_time, begins, self._clock())
+        mine = _Turn(cpu_time, begins, self._clock())
         with self._lock:
             self._waiting.append(mine)
             self._grant()
@@ -119,40 +122,48 @@ class FairScheduler:
                 self._grant()
         return mine
 
-    def end(self, turn: object) -> None:
+    def end(self, turn: _Turn) -> None:
         """The turn is over."""
         with self._lock:
-            if isinstance(turn, _Wait):
-                self._running.pop(turn, None)
+            self._running.discard(turn)
             self._grant()
 
-    def should_yield(self, cpu_time: CpuTime, begins: bool = True) -> bool:
-        """Whether another waits that has used less, or has just begun while this one has not.
+    def should_yield(self, turn: _Turn, begins: bool) -> bool:
+        """Whether a turn is to be given up now that the computation has just begun, or no longer has.
 
-        Or more compute than there are turns, because some turns are old, and this one has used most of all: else what
-        has just begun would share the cores with what has long been under way.
+        It is if another has a better claim, or if more compute than `at_once` and this one has used most.
         """
-        if not self._waiting and len(self._running) <= self._at_once:
+        if begins:
             return False
         with self._lock:
-            now, mine = self._clock(), (not begins, cpu_time.used)
+            if turn.begins:
+                turn.begins = False
+                self._grant()
+            now = self._clock()
+            if now - turn.at < _SLICE:
+                return False
+            mine = True, True, turn.cpu_time.used
             if any(other.rank(now) < mine for other in self._waiting):
                 return True
             too_many = len(self._running) - self._at_once
-            used = sorted((one.cpu_time.used for one in self._running), reverse=True)
-            return too_many > 0 and cpu_time.used >= used[too_many - 1] > used[-1]
+            more = sum(one.cpu_time.used > turn.cpu_time.used for one in self._running if not one.begins)
+            return more < too_many
 
     def _grant(self) -> None:
-        """With the lock held: give free turns to those who have used least."""
+        """With the lock held: give turns to those with the best claims."""
         now = self._clock()
-        late = now - _LONGEST_TURN
-        while self._waiting and sum(began > late for began in self._running.values()) < self._at_once:
-            best = min(self._waiting, key=lambda one: one.rank(now))
-            self._waiting.remove(best)
-            self._running[best] = now
-            if best.begins:
-                self._waits.append((now, now - best.since))
-            best.granted.set()
+        for one in sorted(self._waiting, key=lambda one: one.rank(now)):
+            young = [other.begins for other in self._running if now - other.at < _LONGEST_TURN]
+            room = sum(young) < self._at_once if one.begins else len(young) < self._at_once
+            waited = not one.begins and now - one.at >= _LONGEST_WAIT and young.count(False) < self._at_once
+            if not (room or waited):
+                continue
+            if one.begins:
+                self._waits.append((now, now - one.at))
+            self._waiting.remove(one)
+            self._running.add(one)
+            one.at = now
+            one.granted.set()
 
 
 TURNS = FairScheduler(max(2, os.cpu_count() or 1))
@@ -183,12 +194,12 @@ class SchedulerSlot(Flag):
         super().__init__()
         self.cpu_time = cpu_time
         self._scheduler = scheduler
-        self._turn: object = None
+        self._turn: _Turn | None = None
         self._began = self._spent = 0.0
 
     @property
     def begins(self) -> bool:
-        """Whether the computation has just begun."""
+        """Whether the computation has just begun: there is no result yet, and it has not taken long."""
         return self._spent < _BEGINNING
 
     def pause(self) -> None:
@@ -196,7 +207,7 @@ class SchedulerSlot(Flag):
         if self._turn is None:
             return
         self._charge()
-        if self._scheduler.should_yield(self.cpu_time, self.begins):
+        if self._scheduler.should_yield(self._turn, self.begins):
             self._leave()
             self._enter()
 
@@ -234,6 +245,7 @@ class SchedulerSlot(Flag):
                     result = next(found)
                 except StopIteration:
                     return
+            self._spent = math.inf
             yield result
 
     def _enter(self) -> None:
@@ -242,7 +254,8 @@ class SchedulerSlot(Flag):
 
     def _leave(self) -> None:
         turn, self._turn = self._turn, None
-        self._scheduler.end(turn)
+        if turn is not None:
+            self._scheduler.end(turn)
 
     def _charge(self) -> None:
         now = time.thread_time()

@@ -10,7 +10,7 @@ from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
 from granchain_core.stop import Stop
 
 from ..serve.compiler import COMPILER
-from ..serve.delays import PICTURE_POLL
+from ..serve.delays import LONGEST_POLL, PICTURE_POLL
 from ..serve.queues import Queue
 from ..serve.turns import Flag
 from .host import Host
@@ -55,10 +55,14 @@ class Job:
             COMPILER.load(scene, piece)
 
     def give_way(self, to: Callable[[], bool] | None = None) -> None:
-        """Wait while the picture for a moved knob is being computed, or while `to` returns True."""
-        waits = to or (lambda: self._host.awaiting_picture)
+        """Wait while the picture for a moved knob is being computed, or while `to` returns True.
+
+        It looks the more rarely, the longer this takes: a thread that looks takes the interpreter from all others.
+        """
+        waits, pause = to or (lambda: self._host.awaiting_picture), PICTURE_POLL
         while waits() and not self.stop:
-            time.sleep(PICTURE_POLL)
+            time.sleep(pause)
+            pause = min(2.0 * pause, LONGEST_POLL)
 
 
 class Task:

@@ -6,10 +6,12 @@ import json
 import re
 from collections.abc import Iterator
 
+import bokeh.model.util as references
 import pytest
+from bokeh.core.has_props import HasProps
 from bokeh.core.property.descriptors import PropertyDescriptor
 from bokeh.document import Document
-from bokeh.models import Select
+from bokeh.models import CustomJS, InlineStyleSheet, Select
 from bokeh.plotting import figure
 from bokeh.themes import Theme
 
@@ -18,10 +20,17 @@ from app.serve.bokeh_defaults import remember_defaults
 CHANGES = Theme(json={"attrs": {"Axis": {"axis_label_text_font_size": "31px"}, "Line": {"line_width": 7}}})
 
 
+#: What is replaced.
+REPLACED = ((PropertyDescriptor, "_get_default"), (PropertyDescriptor, "has_unstable_default"),
+            (HasProps, "themed_values"), (HasProps, "_overridden_defaults"), (HasProps, "query_properties_with_values"),
+            (references, "visit_immediate_value_references"))
+
+
 @pytest.fixture(autouse=True)
 def restored(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Bokeh's own search is put back at the end."""
-    monkeypatch.setattr(PropertyDescriptor, "_get_default", PropertyDescriptor._get_default)
+    """Bokeh's own ways are put back at the end."""
+    for where, name in REPLACED:
+        monkeypatch.setattr(where, name, vars(where)[name])
     yield
 
 
@@ -56,13 +65,49 @@ def test_models_do_not_share_what_one_of_them_may_change() -> None:
     assert not other.xaxis[0].major_label_overrides and one.x_range is not other.x_range
 
 
-@pytest.mark.parametrize("name", ["_get_default", "has_unstable_default"])
-def test_a_release_without_that_search_keeps_its_own(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    class Newer:
-        _get_default = has_unstable_default = None
-
-    delattr(Newer, name)
-    monkeypatch.setattr("app.serve.bokeh_defaults.PropertyDescriptor", Newer)
-    before = dict(vars(Newer))
+def test_an_empty_default_is_made_when_it_is_asked_for_and_is_the_models_own() -> None:
     remember_defaults()
-    assert dict(vars(Newer)) == before
+    figure()
+    one, other = figure(), figure()
+    assert "tags" not in one._unstable_default_values
+    one.tags.append("mine")
+    assert one.tags == ["mine"] and other.tags == []
+    assert "mine" in json.dumps(document_of(one).to_json(deferred=False)["roots"], default=str)
+
+
+def document_of(model: object) -> Document:
+    """A document with this root."""
+    document = Document()
+    document.add_root(model)
+    return document
+
+
+def test_a_document_knows_every_model_to_which_its_roots_refer() -> None:
+    def kinds() -> list[str]:
+        plot = figure()
+        plot.line([0, 1], [0, 1], legend_label="force")
+        plot.js_on_event("tap", CustomJS(code="1"))
+        plot.stylesheets.append(InlineStyleSheet(css="a {}"))
+        return sorted(type(model).__name__ for model in document_of(plot).models)
+
+    before = kinds()
+    assert {"CustomJS", "InlineStyleSheet", "Line"} < set(before)
+    remember_defaults()
+    assert kinds() == before == kinds()
+
+
+def test_all_values_are_still_there_to_be_asked_for() -> None:
+    def all_values() -> list[str]:
+        return sorted(Select(options=["rest"]).properties_with_values(include_defaults=True))
+
+    before = all_values()
+    remember_defaults()
+    assert all_values() == before and "tags" in before
+
+
+@pytest.mark.parametrize(("where", "name"), REPLACED)
+def test_a_release_without_a_part_of_it_keeps_its_own_ways(where: object, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(where, name)
+    before = [getattr(one, other, None) for one, other in REPLACED]
+    remember_defaults()
+    assert [getattr(one, other, None) for one, other in REPLACED] == before

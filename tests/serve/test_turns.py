@@ -61,7 +61,7 @@ def test_of_those_who_wait_the_one_that_has_used_least_is_next() -> None:
     assert order == ["little", "some", "much"]
 
 
-def order_of(turns: FairScheduler, waits: list[tuple[str, float, bool]], ready: object) -> list[str]:
+def order_of(turns: FairScheduler, waits: list[tuple[str, float, bool]]) -> list[str]:
     """In which order those who wait get their turns: name, time used, whether the computation has just begun."""
     order: list[str] = []
     first, threads = turns.begin(CpuTime(), Stop()), []
@@ -77,7 +77,6 @@ def order_of(turns: FairScheduler, waits: list[tuple[str, float, bool]], ready: 
         threads.append(threading.Thread(target=wait))
         threads[-1].start()
         until(lambda number=number: turns.waiting == number)
-    ready()  # type: ignore[operator]
     turns.end(first)
     for thread in threads:
         thread.join(20)
@@ -87,44 +86,120 @@ def order_of(turns: FairScheduler, waits: list[tuple[str, float, bool]], ready: 
 def test_what_has_just_begun_goes_before_what_only_makes_a_picture_better() -> None:
     """Among each, who has used less."""
     waits = [("better", 0.0, False), ("first, much", 3.0, True), ("first, little", 1.0, True), ("better, much", 5.0, False)]
-    assert order_of(FairScheduler(1, lambda: 0.0), waits, lambda: None) == ["first, little", "first, much", "better", "better, much"]
+    assert order_of(FairScheduler(1, lambda: 0.0), waits) == ["first, little", "first, much", "better", "better, much"]
 
 
-def test_who_has_waited_for_half_a_second_waits_for_no_beginner() -> None:
-    now = [0.0]
-
-    def later() -> None:
-        now[0] = 0.6
-
-    assert order_of(FairScheduler(1, lambda: now[0]), [("better", 0.0, False), ("first", 1.0, True)], later) == ["better", "first"]
+def account(used: float) -> CpuTime:
+    """Of a visitor who has used so much, which is not forgotten."""
+    found = CpuTime(lambda: 0.0)
+    found.charge(used)
+    return found
 
 
-def test_at_a_pause_the_turn_goes_to_who_has_used_less() -> None:
-    turns, done = FairScheduler(1), []
-    mine = CpuTime()
-    mine.charge(5.0)
-    turn = SchedulerSlot(mine, turns)
-    with turn.held():
-        thread = threading.Thread(target=lambda: done.append(turns.begin(CpuTime(), Stop())))
+def waiting_threads(turns: FairScheduler, *accounts: CpuTime, begins: bool = False) -> list[threading.Thread]:
+    """Threads that wait for a turn, one for each account, and end it as soon as they have it."""
+    found = [threading.Thread(target=lambda one=one: turns.end(turns.begin(one, Stop(), begins)), daemon=True)
+             for one in accounts]
+    for thread in found:
         thread.start()
-        until(lambda: turns.waiting == 1)
-        threading.Timer(0.05, lambda: turns.end(done[0]) if done else None).start()
-        turn.pause()
-        assert done
+    until(lambda: turns.waiting == len(accounts))
+    return found
+
+
+def test_after_its_slice_a_turn_goes_to_who_has_used_less() -> None:
+    now = [0.0]
+    turns = FairScheduler(1, lambda: now[0])
+    turn = turns.begin(account(5.0), Stop(), False)
+    thread, = waiting_threads(turns, account(1.0))
+    assert not turns.should_yield(turn, False)
+    now[0] = 0.05
+    assert turns.should_yield(turn, False)
+    turns.end(turn)
     thread.join(20)
 
 
-def test_of_more_than_there_are_turns_the_one_that_has_used_most_goes_at_its_pause() -> None:
+def test_a_turn_does_not_go_to_who_has_used_more() -> None:
+    now = [0.0]
+    turns = FairScheduler(1, lambda: now[0])
+    turn = turns.begin(account(1.0), Stop(), False)
+    thread, = waiting_threads(turns, account(5.0))
+    now[0] = 0.05
+    assert not turns.should_yield(turn, False)
+    turns.end(turn)
+    thread.join(20)
+
+
+def test_at_a_pause_the_turn_is_passed_on() -> None:
+    now = [0.0]
+    turns = FairScheduler(1, lambda: now[0])
+    slot = SchedulerSlot(account(5.0), turns)
+    list(slot.in_turns([1]))
+    with slot.held():
+        thread, = waiting_threads(turns, account(1.0))
+        slot.pause()
+        assert turns.waiting == 1
+        now[0] = 0.05
+        slot.pause()
+        thread.join(20)
+        assert not thread.is_alive()
+
+
+def test_what_has_just_begun_waits_for_nothing_that_takes_long_and_is_not_interrupted() -> None:
+    """Of those, too, as many at once as there are cores."""
+    now = [0.0]
+    turns = FairScheduler(1, lambda: now[0])
+    turns.begin(account(0.0), Stop(), False)
+    begun = []
+    threading.Thread(target=lambda: begun.append(turns.begin(account(9.0), Stop())), daemon=True).start()
+    until(lambda: bool(begun))
+    first = begun[0]
+    thread, = waiting_threads(turns, account(0.0), begins=True)
+    now[0] = 0.05
+    assert not turns.should_yield(first, True)
+    turns.end(first)
+    thread.join(20)
+    assert not thread.is_alive()
+
+
+def test_a_computation_with_a_result_has_no_longer_just_begun() -> None:
+    slot, seen = SchedulerSlot(CpuTime(), FairScheduler(1)), []
+    for _ in slot.in_turns(seen.append(slot.begins) for _ in range(3)):
+        pass
+    assert seen == [True, False, False]
+
+
+def test_a_turn_that_has_become_long_makes_room_for_what_begins() -> None:
+    """It is asked at its pause, and may go on."""
+    turns = FairScheduler(1, lambda: 0.0)
+    turn = turns.begin(account(0.0), Stop())
+    thread, = waiting_threads(turns, account(0.0), begins=True)
+    assert not turns.should_yield(turn, False)
+    thread.join(20)
+    assert not thread.is_alive()
+
+
+def test_who_has_waited_for_half_a_second_has_a_slice_beside_those_who_begin() -> None:
+    now = [0.0]
+    turns = FairScheduler(1, lambda: now[0])
+    first = turns.begin(account(0.0), Stop())
+    thread, = waiting_threads(turns, account(5.0))
+    now[0] = 0.6
+    first.at = 0.6  # not so old that it does not count
+    thread.join(20)
+    assert not thread.is_alive()
+
+
+def test_of_more_than_there_are_turns_the_one_that_has_used_most_goes_after_its_slice() -> None:
     """A turn that is old keeps nobody waiting, but would share the cores with who came after it."""
     now = [0.0]
-    turns, bomb, other = FairScheduler(1, lambda: now[0]), CpuTime(lambda: 0.0), CpuTime(lambda: 0.0)
-    bomb.charge(5.0)
-    turns.begin(bomb, Stop())
-    assert not turns.should_yield(bomb, False)
+    turns = FairScheduler(1, lambda: now[0])
+    bomb = turns.begin(account(5.0), Stop(), False)
     now[0] = 1.0
-    turn = turns.begin(other, Stop())
-    assert turns.should_yield(bomb, False) and not turns.should_yield(other)
-    turns.end(turn)
+    assert not turns.should_yield(bomb, False)
+    other = turns.begin(account(1.0), Stop(), False)
+    now[0] = 1.05
+    assert turns.should_yield(bomb, False) and not turns.should_yield(other, False)
+    turns.end(other)
     assert not turns.should_yield(bomb, False)
 
 

@@ -125,6 +125,13 @@ def test_work_gives_way_to_a_moving_knob(host: Dashboard, task: Task) -> None:
     host.run_callbacks_until(lambda: not task.running)
 
 
+def test_who_gives_way_for_long_looks_ever_more_rarely(host: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    pauses: list[float] = []
+    monkeypatch.setattr("app.session.task.time.sleep", pauses.append)
+    Job(host, host.say).give_way(lambda: len(pauses) < 7)  # type: ignore[arg-type]
+    assert pauses == [0.01, 0.02, 0.04, 0.08, 0.16, 0.2, 0.2]
+
+
 def test_compiling_is_said_and_given_up_with_the_job(host: Dashboard, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.session.task.COMPILER.has", lambda *_: False)
     monkeypatch.setattr("app.session.task.COMPILER.await_piece", lambda *_: False)

@@ -1,0 +1,54 @@
+"""A curve that grows is drawn now and then, not with each of its points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from app.curve.bar import CurveBar
+from app.curve.page import CurveController
+from app.curve.sweep import Progress
+from app.curve.view import Curve
+from app.serve.delays import CURVE_EVERY
+from app.session.session import Session
+from granchain_core import CurvePoint, scene
+from granchain_core.regime import Regime
+from granchain_core.result import ForceErrors
+from granchain_core.state import rest
+from tests.host import FakeHost
+
+
+class Host(FakeHost):
+    """Keeps what is to be called later."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.session = Session()
+        self.later: list[tuple[float, Callable[[], None]]] = []
+
+    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+        """The test lets the time pass."""
+        self.later.append((seconds, lambda: action(*arguments)))
+
+
+def point(f: float) -> Progress:
+    """One more point of a curve from rest."""
+    found = CurvePoint(f, 1.0, 1.0, 1.0, Regime("periodic", 1, None, None, 9), ForceErrors(), rest(scene("sec2")))
+    return Progress("rest", [found], 0.5)
+
+
+def test_points_that_come_soon_after_each_other_are_drawn_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [100.0]
+    monkeypatch.setattr("app.curve.page.time.monotonic", lambda: now[0])
+    host, figure = Host(), Curve(lambda _: None)
+    curves = CurveController(host, figure, CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
+    for f in (500.0, 600.0, 700.0):
+        curves._report(point(f))
+        host.call_waiting()
+    assert len(figure.points("rest")) == 1
+    (seconds, draw), = host.later
+    assert seconds == pytest.approx(CURVE_EVERY)
+    now[0] += seconds
+    draw()
+    assert len(figure.points("rest")) == 3
