@@ -10,6 +10,8 @@ from pathlib import Path
 
 from documents import ROOT, blocks, edited
 
+from granchain_core.kernels.cache import CACHE_FOLDER
+
 _PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml", "README.md", "docs/model.md",
           "tests/session/test_share.py", "tests/numerics/test_orders.py")
 
@@ -48,8 +50,13 @@ def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
 
 
 def follow(tree: Path, *arguments: str) -> str:
-    """What a command prints in the edited tree."""
+    """What a command prints in the edited tree.
+
+    What it compiles is kept: the folder of kernels is named by their sources, so an edited tree finds its own there until
+    a kernel or the page changes. Without optimisation (NUMBA_OPT=0) Numba could keep nothing.
+    """
+    cache = tree / "cache" if CACHE_FOLDER is None else CACHE_FOLDER.parent / "edited-trees"
     done = subprocess.run([sys.executable, *arguments], cwd=tree, capture_output=True, text=True, timeout=900,
-                          env={**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(tree / "cache"), "NUMBA_OPT": "0"})
+                          env={**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(cache), "NUMBA_OPT": "1"})
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return done.stdout

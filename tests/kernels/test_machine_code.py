@@ -9,6 +9,7 @@ instructions then count its choices, not the effects.
 from __future__ import annotations
 
 import functools
+import hashlib
 import json
 import os
 import platform
@@ -17,11 +18,15 @@ import sys
 import tempfile
 from pathlib import Path
 
+import llvmlite
+import numba
 import pytest
 
+import granchain_core
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
+from granchain_core.kernels.cache import CACHE_FOLDER
 from granchain_core.stop import Stop
 
 PROGRAM = Path(__file__).parent / "machine_code.py"
@@ -37,11 +42,35 @@ TARGET = {"GRANCHAIN_LANES": "8", "NUMBA_CPU_NAME": "skylake-avx512", "NUMBA_CPU
 
 @functools.cache
 def code() -> dict:
-    """What machine_code.py finds in freshly compiled kernels."""
+    """What machine_code.py finds in freshly compiled kernels; kept until the core, its scenes or the compiler change."""
+    if CACHE_FOLDER is None:
+        return json.loads(measured())
+    kept = CACHE_FOLDER / f"machine-code-{all_that_decides()}.json"
+    if not kept.exists():
+        unfinished = kept.with_suffix(f".{os.getpid()}.tmp")
+        unfinished.write_bytes(measured())
+        unfinished.replace(kept)
+    return json.loads(kept.read_bytes())
+
+
+def measured() -> bytes:
+    """What machine_code.py writes with an empty folder of kernels."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     with tempfile.TemporaryDirectory() as cache:
         types = program("types", environment=environment)
-        return json.loads(program(environment={**environment, **TARGET, "GRANCHAIN_CACHE": cache}, given=types))
+        return program(environment={**environment, **TARGET, "GRANCHAIN_CACHE": cache}, given=types)
+
+
+def all_that_decides() -> str:
+    """Hash of the core and the scenes, of the program that counts, of the processor it compiles for, and of the compiler."""
+    root = Path(granchain_core.__path__[0])
+    files = [*sorted(root.rglob("*.py")), *sorted((root.parent / "assets" / "scenes").glob("*.toml")), PROGRAM]
+    compiler = f"{TARGET} {numba.__version__} {llvmlite.__version__} {os.environ.get('NUMBA_OPT')} {sys.version_info[:2]}"
+    digest = hashlib.sha256(compiler.encode())
+    for file in files:
+        digest.update(f"{file.relative_to(root.parent) if file is not PROGRAM else file.name}\n".encode())
+        digest.update(file.read_bytes())
+    return digest.hexdigest()[:16]
 
 
 def program(*words: str, environment: dict, given: bytes = b"") -> bytes:

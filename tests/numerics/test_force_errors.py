@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from forces.draw import FEW
-from forces.judge import Verdict, verdicts
-from forces.located import located
 
 from granchain_core import scene
+from tests.numerics.forces.draw import FEW
+from tests.numerics.forces.judge import Verdict, verdicts
+from tests.numerics.forces.located import located
 from tools.fuzzing import oracle
 
 LAWS = [("linear", "allowed"), ("linear", "cut"), ("tsuji", "cut"), ("kuwabara-kono", "allowed")]

@@ -11,7 +11,6 @@ import argparse
 import time
 from math import pi
 
-import numba
 import numpy as np
 
 from granchain_core.hard.touches import (
@@ -32,18 +31,20 @@ from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.foundation import Foundation
 from granchain_core.kernels.effects.preload import Preload
-from granchain_core.kernels.equations.motion import Slots, Trajectory
+from granchain_core.kernels.equations.motion import Slots, Trajectory, copy
+from granchain_core.kernels.jit import kernel
 
 __all__ = ["DEPTH", "ONSETS", "ONSET_ERROR", "RELEASE_ERROR", "TOLERANCE", "draw", "missed", "moved", "run", "run_pairs"]
 
 
-@numba.njit(nogil=True, error_model="numpy")
+@kernel
 def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
     """Times at which two beads on springs, random_count apart with amplitude 1, reach standing driver and wall."""
     static[0], static[1], static[2] = -gaps[0], -1e3, -gaps[1]
     slots = Slots(chain, None, None, Foundation(rate * rate), Preload(static), Harmonic(0.0, rate), None)
     end = 0.5 * pi / rate
-    y[:] = 0.0
+    for i in range(y.size):
+        y[i] = 0.0
     y[5], y[6] = -rate, rate
     work.next_step[0], work.scale[0], work.scale[1], t = 0.1 * end, 1.0, rate, 0.0
     evaluate(slots, rate, t, y, work.k[0], work.forces)
@@ -57,8 +58,8 @@ def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
             c = 2 * side
             if work.end[c] - work.end[c + 1] + static[c] > 0.0 and times[side] == 0.0:
                 times[side] = t
-        y[:] = work.end
-        work.k[0, :] = work.k[STAGES]
+        copy(work.end, y)
+        copy(work.k[STAGES], work.k[0])
 
 
 def run_pairs(count: int, seed: int, tolerance: float) -> np.ndarray:

@@ -6,15 +6,16 @@ Coefficients: scipy.integrate._ivp.dop853_coefficients (Hairer, Nørsett & Wanne
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import hashlib
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
 from scipy.integrate._ivp import dop853_coefficients as table
 
-#: Numba's cache knows a function by its file and remembers the name its module was imported by: only the program, which
-#: imports it by one name and the tests by another, keeps what is compiled.
-jit = njit(cache=__name__.startswith("tests."))
+from granchain_core.kernels.cache import CACHE_FOLDER, KernelCache
+
 #: What acts in a contact: nothing, the law, or nothing though it touches (tension cut).
 OPEN, NET_FORCE, SLACK = 0, 1, 2
 #: The forces followed: of contact 0, of contact N, of the spring of contact N.
@@ -30,6 +31,23 @@ SLOPES, POLYNOMIAL = 16, 7
 #: Places in a step at which forces are looked at for a top.
 _LOOKS = 8
 _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+
+
+class _Kept(KernelCache):
+    """Compiled versions on disk: those of the core's kernels know an edit by their own file, these call one another."""
+
+    def __init__(self, function: Any) -> None:
+        super().__init__(function)
+        sources = sorted(Path(__file__).parent.glob("*.py"))
+        self._cache_file._stamp = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()
+
+
+def jit(function: Any) -> Any:
+    """Decorator for compiled functions of this folder: compiled once a machine, by one process at a time."""
+    compiled = njit(function)
+    if CACHE_FOLDER is not None:
+        compiled._cache = _Kept(function)
+    return compiled
 
 
 class Law(NamedTuple):
