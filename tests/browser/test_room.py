@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from knobs import COMPILED, Visit, settled, type_into
 from layout_faults import faults
 from playwright.sync_api import Page, expect
-from server import until
+from server import ROOT, until
+
+from app.pictures.theme import THEMES, style_sheet
 
 #: Laptops, screens, a beamer, a phone.
 SIZES = ((1024, 768), (1180, 820), (1280, 800), (1280, 720), (1366, 768), (1440, 900), (1536, 864), (1920, 1080),
@@ -68,13 +72,24 @@ def fits(page: Page) -> None:
         raise AssertionError(f"{page.viewport_size}: {found}") from None
 
 
+def test_dark_differs_from_light_in_colours_only() -> None:
+    """So what fits in light fits in dark, which is looked at in fewer sizes below."""
+    for role in ("line", "type", "small"):
+        assert getattr(THEMES["dark"], role) == getattr(THEMES["light"], role)
+    dark = next(rule for rule in style_sheet().splitlines() if "data-theme=dark" in rule)
+    values = re.findall(r"--[\w-]+: ([^;}]+)", dark)
+    assert len(values) > 5 and all(re.fullmatch(r"#[0-9a-f]{6}", value.strip()) for value in values), dark
+    sheets = [path for path in (ROOT / "app").rglob("*.css") if re.search(r"data-theme\W+dark|prefers-color-scheme", path.read_text(encoding="utf-8"))]
+    assert sheets == []
+
+
 @pytest.mark.parametrize("scene", ["sec2", "fig11-founded"])
 def test_no_control_and_no_word_is_cut_hidden_or_covered(visit: Visit, scene: str) -> None:
     page = visit(f"?v=1&scene={scene}&look=light")
     page.wait_for_selector(".chapters button", timeout=COMPILED)
     for look in ("light", "dark", "projector"):
         expect(page.locator("html")).to_have_attribute("data-theme", look)
-        for width, height in SIZES:
+        for width, height in SIZES if look != "dark" else WIDTHS:
             page.set_viewport_size({"width": width, "height": height})
             fits(page)
         page.set_viewport_size({"width": 1920, "height": 1080})  # where the bar has room for its button
