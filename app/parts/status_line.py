@@ -108,7 +108,8 @@ def force_hint(run: Run) -> str:
     """What the force of the line is, and its error."""
     return ("The largest output force in the periods shown, the dashpot's part included; relative error "
             f"{error_words(run.force_errors.output)}. A force is positive where the bodies push each other; below zero "
-            f"the dashpot of an opening contact pulls.{why_no_error(run)}")
+            "the dashpot of an opening contact pulls. The force at the wall may be larger than that of the driver: a "
+            f"wave presses harder where it is turned back.{why_no_error(run)}")
 
 
 def errors_hint(run: Run) -> str:
@@ -116,8 +117,9 @@ def errors_hint(run: Run) -> str:
     errors = [f"{name} {error_words(error)}" for name, error in (
         ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
-    return (f"Relative errors of the numerical solution: {', '.join(errors)}.{why_no_error(run)} How well the model "
-            "fits an experiment is another question: the tab “data” compares it with yours.")
+    return ("“Asked” is the knob ε, “reached” the relative error of the displacements, and the time that of the "
+            f"computation. Relative errors of the numerical solution: {', '.join(errors)}.{why_no_error(run)} How well "
+            "the model fits an experiment is another question: the tab “data” compares it with yours.")
 
 
 def run_entries(run: Run, force: str) -> dict[str, Any]:

@@ -99,6 +99,7 @@ class Channel:
         self._lock = threading.Lock()
         self._waiting: deque[Callable[[], None]] = deque()
         self._due = self._closed = False
+        self._served = session_of(document) is not None
         self._timers: set[asyncio.TimerHandle] = set()
 
     def close(self) -> None:
@@ -112,9 +113,9 @@ class Channel:
 
     def call_soon(self, action: Callable[[], None]) -> None:
         """Call `action` in the next turn of the event loop; from any thread."""
-        if self._closed:
+        if self._closed or self._is_destroyed():
             return
-        if self._loop is None or session_of(self._document) is None:
+        if self._loop is None or not self._served:
             self._document.add_next_tick_callback(action)
             return
         with self._lock:
@@ -127,9 +128,9 @@ class Channel:
 
     def call_later(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` so many seconds from now; on the event loop."""
-        if self._closed:
+        if self._closed or self._is_destroyed():
             return
-        if self._loop is None or session_of(self._document) is None:
+        if self._loop is None or not self._served:
             self._document.add_timeout_callback(action, round(1e3 * seconds))
             return
 
@@ -139,6 +140,13 @@ class Channel:
 
         timer: asyncio.TimerHandle = self._loop.asyncio_loop.call_later(seconds, fire)  # type: ignore[attr-defined]
         self._timers.add(timer)
+
+    def _is_destroyed(self) -> bool:
+        """Whether Bokeh has taken the document apart, which it does before it tells that the visitor left."""
+        here = session_of(self._document) is not None
+        gone = self._served and not here
+        self._served = self._served or here
+        return gone
 
     def _run(self) -> None:
         with self._lock:
