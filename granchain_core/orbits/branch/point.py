@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from .equations import BranchEquations, Solved
 
 #: Tolerance of one step of the run that records forces and contacts: they are then good to about 1e-9.
 _TOLERANCE = 1e-11
+#: The same of an orbit that only helps to find others: overlaps are then good to about 1e-7.
+_ROUGH = 1e-9
 #: Room for turning points of overlaps at first, for each contact and period.
 _ROOM = 32
 #: Count of the closings of a contact that is always open.
@@ -80,16 +82,27 @@ class BranchPoint:
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
     """The point with its multipliers, forces and contacts, from a run along the orbit."""
-    x, value = equations.state(solved.z), equations.value(solved.z)
+    return recorded(equations, unrecorded(equations, solved, tangent, arclength), solved.flow.changes)
+
+
+def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
+    """The point without what a run along the orbit tells: its forces are NaN, and no contact closes."""
     multipliers = sorted_multipliers(solved.flow.derivative)
-    engine, record = record_along(equations, x, value)
-    maxima = largest_forces(record.peaks) * engine.scaled.scales.force
     return BranchPoint(
-        knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
-        max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
-        closings=_counts(len(x) // 2 + 1, record, solved.flow.changes), slope=solved.knob_slope,
-        residuals=solved.residuals,
-        liouville=liouville_error(multipliers, solved.flow.log_determinant), turns=record.turns)
+        knob=equations.value(solved.z), x=equations.state(solved.z), tangent=tangent, arclength=arclength,
+        multipliers=multipliers, max_input_force=np.nan, max_output_force=np.nan, max_output_force_elastic=np.nan,
+        closings=np.zeros(equations.size // 2 + 1, dtype=int), slope=solved.knob_slope, residuals=solved.residuals,
+        liouville=liouville_error(multipliers, solved.flow.log_determinant), turns=np.zeros((0, 4)))
+
+
+def recorded(equations: BranchEquations, point: BranchPoint, changes: np.ndarray) -> BranchPoint:
+    """The point with its forces and contacts; `changes` are its contact events, as in `Flow`."""
+    engine, record = record_along(equations, point.x, point.knob)
+    maxima = largest_forces(record.peaks) * engine.scaled.scales.force
+    return replace(
+        point, max_input_force=float(maxima[0]), max_output_force=float(maxima[1]),
+        max_output_force_elastic=float(maxima[2]), closings=_counts(len(point.closings), record, changes),
+        turns=record.turns)
 
 
 def state_at(scene: Scene, x: np.ndarray) -> State:
@@ -98,9 +111,22 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
     return scaled.to_si(scaled.embed(x))
 
 
-def record_along(equations: BranchEquations, x: np.ndarray, value: float) -> tuple[Engine, OrbitRecord]:
+def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, slope: np.ndarray,
+                multipliers: np.ndarray, changes: np.ndarray, residuals: list[float], arclength: float) -> BranchPoint:
+    """A point near the branch with its contacts, to find others by; it has no forces and no Liouville."""
+    x, value = equations.state(z), equations.value(z)
+    _, record = record_along(equations, x, value, _ROUGH)
+    return BranchPoint(
+        knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
+        max_input_force=np.nan, max_output_force=np.nan, max_output_force_elastic=np.nan,
+        closings=_counts(len(x) // 2 + 1, record, changes), slope=slope, residuals=tuple(residuals), liouville=np.nan,
+        turns=record.turns)
+
+
+def record_along(equations: BranchEquations, x: np.ndarray, value: float,
+                 tolerance: float = _TOLERANCE) -> tuple[Engine, OrbitRecord]:
     """Largest forces and turning points of all overlaps along the way from the scaled state x."""
-    engine = Engine(equations.axis.scene_at(value), adaptive_setting(_TOLERANCE), 1, stop=equations.stop)
+    engine = Engine(equations.axis.scene_at(value), adaptive_setting(tolerance), 1, stop=equations.stop)
     stepper, room = engine.stepper, _ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)

@@ -12,12 +12,13 @@ two orbits. A fold's extends beyond them by a bound from both tangents, which as
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from ...errors import NumbersFailed
 from .axis import KnobAxis
+from .between import Between
 from .point import BranchPoint
 
 #: An interval is narrow enough at this width relative to the knob, or to a thousandth of the range's larger end.
@@ -34,10 +35,6 @@ _OF_WIDTH, _OF_ERROR = 0.4, 0.1
 _MIDDLE = 5
 #: Most levels of bisection between two neighbours; the interval is then taken as it is.
 _DEEPEST = 60
-
-Between = Callable[[BranchPoint, BranchPoint, float], BranchPoint]
-"""The orbit at a fraction of the way from one to another."""
-
 
 @dataclass(frozen=True, eq=False)
 class SpecialPoint:
@@ -57,22 +54,37 @@ class SpecialPoint:
     event: str | None = None
 
 
-def special_between(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between) -> list[SpecialPoint]:
-    """All special points between neighbours a and b, in their order."""
-    brackets = _brackets(axis, a, b, between)
+def special_between(between: Between) -> list[SpecialPoint]:
+    """All special points between two neighbours, in their order.
+
+    Rough orbits find brackets, whose ends are then computed exactly. Where that fails, or an exact end is not on the
+    side of its rough one, all orbits are computed as those of the walk.
+    """
+    axis, a, b = between.equations.axis, between.a, between.b
+    try:
+        rough = _brackets(axis, a, b, between)
+        brackets = [(between.made_exact(one), between.made_exact(other)) for one, other in rough]
+        kept = all(it.signature == its.signature for bracket, its_bracket in zip(rough, brackets, strict=True)
+                   for it, its in zip(bracket, its_bracket, strict=True))
+    except NumbersFailed:
+        kept = False
+    if not kept:
+        brackets = _brackets(axis, a, b, between, careful=True)
     found = [special for bracket in brackets for special in _classified(axis, *bracket)]
     return _merged(found)
 
 
 def _brackets(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between, depth: int = 0,
-              beyond: BranchPoint | None = None) -> list[tuple[BranchPoint, BranchPoint]]:
+              beyond: BranchPoint | None = None, careful: bool = False) -> list[tuple[BranchPoint, BranchPoint]]:
     """Narrow brackets of all changes between a and b; `beyond` is an orbit next to one of them outside."""
     if a.signature == b.signature:
         return []
     if _narrow(axis, a, b) or depth >= _DEEPEST:
         return [(a, b)]
-    middle = between(a, b, _fraction(axis, a, b, depth, beyond))
-    return [*_brackets(axis, a, middle, between, depth + 1, b), *_brackets(axis, middle, b, between, depth + 1, a)]
+    fraction, is_end = _fraction(axis, a, b, depth, beyond)
+    middle = (between.careful if careful else between.exact if is_end else between.rough)(a, b, fraction)
+    return [*_brackets(axis, a, middle, between, depth + 1, b, careful),
+            *_brackets(axis, middle, b, between, depth + 1, a, careful)]
 
 
 def _narrow(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> bool:
@@ -106,22 +118,25 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
     return float(np.hypot(np.linalg.norm(b.x - a.x) / np.sqrt(len(a.x)), moved))
 
 
-def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int, beyond: BranchPoint | None) -> float:
-    """Fraction of the next orbit: beside the root of a test function, towards the farther end, or the middle.
+def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
+              beyond: BranchPoint | None) -> tuple[float, bool]:
+    """Fraction of the next orbit, and whether it should be an end of a narrow bracket.
+
+    It is beside the root of a test function, towards the farther end, or the middle.
 
     Two such orbits, one on each side, close the bracket. The first is beside the root of a straight line; with a third
     value the root is known so well that the two can be as near as the bracket is to be narrow.
     """
     values = _test_values(a, b)
     if depth % _MIDDLE == _MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:
-        return 0.5
-    root, beside = values[0] / (values[0] - values[1]), _BESIDE
+        return 0.5, False
+    root, beside, is_end = values[0] / (values[0] - values[1]), _BESIDE, False
     better = None if beyond is None else _parabola_root(a, b, values, beyond)
     if better is not None:
-        beside = _OF_WIDTH * _wanted(axis, a, b) / _width(axis, a, b) + _OF_ERROR * abs(better - root)
-        root, beside = better, min(beside, _BESIDE)
+        near, unsure = _OF_WIDTH * _wanted(axis, a, b) / _width(axis, a, b), _OF_ERROR * abs(better - root)
+        root, beside, is_end = better, min(near + unsure, _BESIDE), unsure <= 0.5 * near
     fraction = root + beside if root < 0.5 else root - beside
-    return min(max(fraction, 0.5 * beside), 1.0 - 0.5 * beside)
+    return min(max(fraction, 0.5 * beside), 1.0 - 0.5 * beside), is_end
 
 
 def _parabola_root(a: BranchPoint, b: BranchPoint, values: tuple[float, float], beyond: BranchPoint) -> float | None:

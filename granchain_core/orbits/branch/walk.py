@@ -3,8 +3,9 @@
 The step grows while Newton's method needs few iterations and the tangent hardly turns, and shrinks otherwise. A
 failed step is halved; at the smallest step the branch ends, and the last residuals are reported.
 
-Special points take three quarters of the time. Other threads look for them while the walk goes some orbits ahead; an
-orbit is added when those before it are known, so that the branch is the same as without threads, to the last bit.
+Other threads record the forces and contacts of an orbit and look for the special points before it, while the walk goes
+some orbits ahead; an orbit is added when all before it are known, so that the branch is the same as without threads, to
+the last bit.
 """
 
 from __future__ import annotations
@@ -18,8 +19,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...errors import Cancelled, NumbersFailed
-from .equations import BranchEquations, Solved, formatted
-from .point import BranchPoint, branch_point
+from .between import Between, across, cubic
+from .equations import BranchEquations, Near, Solved
+from .newton import formatted
+from .point import BranchPoint, branch_point, recorded, unrecorded
 from .special import SpecialPoint, special_between
 
 #: First step in arclength.
@@ -70,14 +73,18 @@ class Arm:
 
 @dataclass(frozen=True)
 class _Ahead:
-    """An orbit whose special points are still looked for: how the branch ends there, and the steps to and from it."""
+    """An orbit whose special points are still looked for: how the branch ends there, and the steps to and from it.
+
+    `found` will be the orbit with its forces and contacts, and the special points before it.
+    """
 
     point: BranchPoint
+    near: Near
     ended: str
     reason: str
     tried: float
     step: float
-    special: Future[list[SpecialPoint]]
+    found: Future[tuple[BranchPoint, list[SpecialPoint]]]
 
 
 class Walk(Iterator[BranchPoint]):
@@ -90,6 +97,7 @@ class Walk(Iterator[BranchPoint]):
         self.equations, self.arm = equations, arm
         self._seeds = _images(equations, arm.points[0])
         self._pool = ThreadPoolExecutor(min(_THREADS, os.cpu_count() or 1))
+        self._known: tuple[BranchPoint, Near] | None = None
         self._go_back(arm.step)
 
     def __next__(self) -> BranchPoint:
@@ -103,14 +111,14 @@ class Walk(Iterator[BranchPoint]):
                     break
                 one = self._ahead.popleft()
                 try:
-                    special = one.special.result()
+                    point, special = one.found.result()
                 except (NumbersFailed, np.linalg.LinAlgError) as problem:
                     self._go_back(0.5 * one.tried, problem)
                     continue
             except Cancelled:
                 self._go_back(arm.step)
                 raise
-            self._add(one, special)
+            self._add(one, point, special)
             return arm.points[-1]
         raise StopIteration
 
@@ -132,17 +140,39 @@ class Walk(Iterator[BranchPoint]):
 
     def _advance(self) -> None:
         """Compute the next orbit ahead; halve the step where it is too long."""
-        last, tried = self._last_two[-1], self._step
+        last, tried, near = self._last_two[-1], self._step, self._near_last
         try:
-            point, ended, reason = self._next_orbit(last)
+            point, changes, its, ended, reason = self._next_orbit(last, near)
         except (NumbersFailed, np.linalg.LinAlgError) as problem:
             self._step, self._failure = 0.5 * tried, problem
             return
-        special = self._pool.submit(special_between, self.equations.axis, last, point, self.between)
-        self._ahead.append(_Ahead(point, ended, reason, tried, self._step, special))
+        before = self._ahead[-1].found if self._ahead else last
+        found = self._pool.submit(self._completed, before, point, changes, (near, its))
+        self._ahead.append(_Ahead(point, its, ended, reason, tried, self._step, found))
 
-    def _next_orbit(self, last: BranchPoint) -> tuple[BranchPoint, str, str]:
-        """The next orbit, and how and why the branch ends there; `NumbersFailed` where the step is too long."""
+    def _completed(self, before: BranchPoint | Future[tuple[BranchPoint, list[SpecialPoint]]], point: BranchPoint,
+                   changes: np.ndarray | None, near: tuple[Near, Near]) -> tuple[BranchPoint, list[SpecialPoint]]:
+        """The orbit with its forces and contacts, and the special points between the one before and itself."""
+        last = before.result()[0] if isinstance(before, Future) else before
+        if changes is not None:
+            point = recorded(self.equations, point, changes)
+        return point, special_between(Between(self.equations, last, point, near))
+
+    @property
+    def _near_last(self) -> Near:
+        """P_x and P_p at the last orbit. Where P_x is not known it is computed again, to the same bits."""
+        if self._ahead:
+            return self._ahead[-1].near
+        last = self.arm.points[-1]
+        if self._known is None or self._known[0] is not last:
+            self._known = last, Near(self.equations.stroboscopic_map(last.knob)(last.x).derivative, last.slope)
+        return self._known[1]
+
+    def _next_orbit(self, last: BranchPoint, near: Near) -> tuple[BranchPoint, np.ndarray | None, Near, str, str]:
+        """The next orbit, and how and why the branch ends there; `NumbersFailed` where the step is too long.
+
+        It comes with its contact events where forces and contacts are still to be found, and with P_x and P_p.
+        """
         equations = self.equations
         solved = equations.solve(self._predicted(last), last.tangent, last.slope, _OFF * self._step)
         self._refuse_shorter(solved)
@@ -152,15 +182,16 @@ class Walk(Iterator[BranchPoint]):
             raise NumbersFailed(f"the branch turns by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step",
                                 "no-convergence")
         way = float(np.linalg.norm(solved.z - self._z(last)))
-        found = self._end(last, branch_point(equations, solved, tangent, last.arclength + way))
+        point, its = unrecorded(equations, solved, tangent, last.arclength + way), solved.near
+        ending, its, ended, reason = self._end(last, near, point, its)
         self._adapt(solved, cosine)
-        return found
+        return ending, solved.flow.changes if ending is point else None, its, ended, reason
 
     # --- the arm -------------------------------------------------------------------------------------------
 
-    def _add(self, one: _Ahead, special: list[SpecialPoint]) -> None:
+    def _add(self, one: _Ahead, point: BranchPoint, special: list[SpecialPoint]) -> None:
         """Add an orbit and the special points before it to the arm, which ends at a merging."""
-        arm, point, ended, reason = self.arm, one.point, one.ended, one.reason
+        arm, ended, reason = self.arm, one.ended, one.reason
         merging = self._merging(special)
         if merging is not None:
             special, point = special[: merging + 1], special[merging].before
@@ -172,6 +203,7 @@ class Walk(Iterator[BranchPoint]):
         arm.special.extend(special)
         if point is not arm.points[-1]:
             arm.points.append(point)
+            self._known = point, one.near
         arm.step, arm.ended, arm.reason = one.step, ended, reason
 
     def _lose(self) -> None:
@@ -197,7 +229,7 @@ class Walk(Iterator[BranchPoint]):
         guess = z + step * last.tangent
         if len(self._last_two) > 1:
             before = self._last_two[0]
-            bend = _across(last.tangent - before.tangent, last.tangent) / (last.arclength - before.arclength)
+            bend = across(last.tangent - before.tangent, last.tangent) / (last.arclength - before.arclength)
             sideways = 0.5 * step**2 * bend
             if np.linalg.norm(sideways) < _OFF * step:
                 guess += sideways
@@ -213,48 +245,37 @@ class Walk(Iterator[BranchPoint]):
     def _z(self, point: BranchPoint) -> np.ndarray:
         return self.equations.point(point.x, point.knob)
 
-    def between(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
-        """The orbit at a fraction of the way from a to b, near the cubic through both with their tangents."""
-        za, zb = self._z(a), self._z(b)
-        way = float(np.linalg.norm(zb - za))
-        normal = (zb - za) / way
-        guess = za + fraction * (zb - za)  # in the plane that the corrected orbit stays in
-        guess += _across(_cubic(za, zb, way * a.tangent, way * b.tangent, fraction) - guess, normal)
-        return self._corrected(guess, normal, a, a.arclength + fraction * (b.arclength - a.arclength))
-
-    def _corrected(self, guess: np.ndarray, normal: np.ndarray, a: BranchPoint, arclength: float) -> BranchPoint:
-        solved = self.equations.solve(guess, normal, a.slope)
-        return branch_point(self.equations, solved, self.equations.tangent(solved, a.tangent), arclength)
-
     # --- ends ----------------------------------------------------------------------------------------------
 
-    def _end(self, last: BranchPoint, point: BranchPoint) -> tuple[BranchPoint, str, str]:
+    def _end(self, last: BranchPoint, near: Near, point: BranchPoint, its: Near) -> tuple[BranchPoint, Near, str, str]:
         """The step's last point, and how and why the branch ends there, if it does."""
         axis = self.equations.axis
-        closing = self._closing(last, point)
+        closing = self._closing(last, near, point, its)
         if closing is not None:
-            return closing, "closed", (f"closed on itself at {axis.text(closing.knob)} after {closing.arclength:.3g} "
-                                       "of arclength: the orbit there is the seed's")
+            return closing, its, "closed", (f"closed on itself at {axis.text(closing.knob)} after "
+                                            f"{closing.arclength:.3g} of arclength: the orbit there is the seed's")
         if axis.contains(point.knob):
-            return point, "", ""
-        landed, first = self._landed(last, point), self.arm.points[0].knob
+            return point, its, "", ""
+        (landed, near_landed), first = self._landed(last, point), self.arm.points[0].knob
         if landed.knob == first:
-            return landed, "returned", f"came back to {axis.text(first)}"
-        return landed, "reached", f"reached {axis.text(landed.knob)}"
+            return landed, near_landed, "returned", f"came back to {axis.text(first)}"
+        return landed, near_landed, "reached", f"reached {axis.text(landed.knob)}"
 
-    def _landed(self, last: BranchPoint, beyond: BranchPoint) -> BranchPoint:
+    def _landed(self, last: BranchPoint, beyond: BranchPoint) -> tuple[BranchPoint, Near]:
         """The orbit exactly at the end of the axis that was passed."""
         axis = self.equations.axis
         end = axis.high if beyond.knob > axis.high else axis.low
         za, zb = self._z(last), self._z(beyond)
         fraction = (axis.coordinate(end) - za[-1]) / (zb[-1] - za[-1])
         way = float(np.linalg.norm(zb - za))
-        guess = _cubic(za, zb, way * last.tangent, way * beyond.tangent, fraction)
+        guess = cubic(za, zb, way * last.tangent, way * beyond.tangent, fraction)
         guess[-1] = axis.coordinate(end)
         fixed = np.zeros(len(guess))
         fixed[-1] = 1.0
-        point = self._corrected(guess, fixed, last, last.arclength + fraction * (beyond.arclength - last.arclength))
-        return replace(point, knob=end)
+        solved = self.equations.solve(guess, fixed, last.slope)
+        point = branch_point(self.equations, solved, self.equations.tangent(solved, last.tangent),
+                             last.arclength + fraction * (beyond.arclength - last.arclength))
+        return replace(point, knob=end), solved.near
 
     def _merging(self, special: list[SpecialPoint]) -> int | None:
         """Index of a fold that is a merging: the difference of the orbit's two halves changes sign there."""
@@ -269,7 +290,7 @@ class Walk(Iterator[BranchPoint]):
         """Difference of the state half an orbit later from the state now."""
         return self.equations.stroboscopic_map(point.knob, self.equations.period // 2).end(point.x) - point.x
 
-    def _closing(self, last: BranchPoint, point: BranchPoint) -> BranchPoint | None:
+    def _closing(self, last: BranchPoint, near: Near, point: BranchPoint, its: Near) -> BranchPoint | None:
         """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
         if len(self.arm.points) + len(self._ahead) < _AWAY:
             return None
@@ -279,7 +300,7 @@ class Walk(Iterator[BranchPoint]):
         for seed in self._seeds:
             along = float((seed - za) @ way) / length**2
             if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSES * length:
-                found = self.between(last, point, along)
+                found = Between(self.equations, last, point, (near, its)).careful(last, point, along)
                 if np.linalg.norm(self._z(found) - seed) < _CLOSED:
                     return found
         return None
@@ -292,14 +313,3 @@ def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
         images.append(equations.point(x, seed.knob))
         x = equations.stroboscopic_map(seed.knob, 1).end(x)
     return images
-
-
-def _across(vector: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """The part of a vector across a unit normal."""
-    return vector - (vector @ normal) * normal
-
-
-def _cubic(za: np.ndarray, zb: np.ndarray, ta: np.ndarray, tb: np.ndarray, s: float) -> np.ndarray:
-    """Hermite's cubic between two points with their derivatives."""
-    r = 1.0 - s
-    return (1 + 2 * s) * r * r * za + s * r * r * ta + s * s * (3 - 2 * s) * zb - s * s * r * tb

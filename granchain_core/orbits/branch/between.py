@@ -1,0 +1,106 @@
+"""Orbits between two neighbours of a branch, from the cubic through both and the derivatives of the map at both."""
+
+from __future__ import annotations
+
+from bisect import insort
+
+import numpy as np
+
+from ..orbit import sorted_multipliers
+from .equations import BranchEquations, Near, Solved
+from .newton import ROUGH, Newton
+from .point import BranchPoint, branch_point, rough_point
+
+#: Residual that should be left of a rough orbit. Its overlaps are then wrong by about 1e-7, a hundredth of their change
+#: over an interval of a special point.
+_ENOUGH = 1e-8
+
+
+class Between:
+    """The orbits between neighbours a and b; those that are computed help to compute the next ones.
+
+    `near` are P_x and P_p at both. One thread may use it at a time.
+    """
+
+    def __init__(self, equations: BranchEquations, a: BranchPoint, b: BranchPoint, near: tuple[Near, Near]) -> None:
+        self.equations, self.a, self.b = equations, a, b
+        self._known = [(a.arclength, near[0]), (b.arclength, near[1])]
+        self._exact: dict[BranchPoint, BranchPoint] = {a: a, b: b}
+
+    def careful(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
+        """The orbit at a fraction of the way from a to b, near the cubic through both with their tangents."""
+        solved = self.equations.solve(*self._guess(a, b, fraction), a.slope)
+        return self._finished(solved, a.tangent, self._arclength(a, b, fraction))
+
+    def exact(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
+        """The same with few derivatives of its own."""
+        return self._solved(*self._guess(a, b, fraction), a.tangent, self._arclength(a, b, fraction))
+
+    def rough(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
+        """The same by the rough map alone. What is alike at a and b is not computed but taken from a."""
+        guess, normal = self._guess(a, b, fraction)
+        arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, enough=_ENOUGH)
+        near = self._near(arclength)
+        end = newton.approach(near)
+        slope, multipliers, changes = near.slope, a.multipliers, newton.changes
+        if a.turning != b.turning:
+            slope = newton.slope(end)
+        newton.step(end)
+        if a.turning == b.turning and a.unstable == b.unstable:
+            tangent = self.equations.tangent_by(newton.matrix, a.tangent)
+        else:
+            flow = newton.flow(ROUGH)
+            multipliers, changes = sorted_multipliers(flow.derivative), flow.changes
+            tangent = self.equations.tangent_of(flow.derivative, slope, a.tangent)
+            self._remember(arclength, Near(flow.derivative, slope))
+        return rough_point(self.equations, newton.z, tangent, slope, multipliers, changes, newton.residuals, arclength)
+
+    def made_exact(self, point: BranchPoint) -> BranchPoint:
+        """The exact orbit at a rough one; always the same."""
+        if point not in self._exact:
+            z = self.equations.point(point.x, point.knob)
+            self._exact[point] = self._solved(z, point.tangent, point.tangent, point.arclength)
+        return self._exact[point]
+
+    def _solved(self, guess: np.ndarray, normal: np.ndarray, towards: np.ndarray, arclength: float) -> BranchPoint:
+        return self._finished(self.equations.solve_near(guess, normal, self._near(arclength)), towards, arclength)
+
+    def _finished(self, solved: Solved, towards: np.ndarray, arclength: float) -> BranchPoint:
+        self._remember(arclength, solved.near)
+        found = branch_point(self.equations, solved, self.equations.tangent(solved, towards), arclength)
+        self._exact[found] = found
+        return found
+
+    def _arclength(self, a: BranchPoint, b: BranchPoint, fraction: float) -> float:
+        return a.arclength + fraction * (b.arclength - a.arclength)
+
+    def _remember(self, arclength: float, near: Near) -> None:
+        insort(self._known, (arclength, near), key=lambda known: known[0])
+
+    def _guess(self, a: BranchPoint, b: BranchPoint, fraction: float) -> tuple[np.ndarray, np.ndarray]:
+        """The cubic's point in the plane that the corrected orbit stays in, and the normal of that plane."""
+        za, zb = self.equations.point(a.x, a.knob), self.equations.point(b.x, b.knob)
+        way = float(np.linalg.norm(zb - za))
+        normal = (zb - za) / way
+        guess = za + fraction * (zb - za)
+        return guess + across(cubic(za, zb, way * a.tangent, way * b.tangent, fraction) - guess, normal), normal
+
+    def _near(self, arclength: float) -> Near:
+        """P_x and P_p at this arclength, between the two nearest orbits where they are known."""
+        last = len(self._known) - 1
+        after = next((i for i in range(1, last) if self._known[i][0] >= arclength), last)
+        (s0, one), (s1, other) = self._known[after - 1 : after + 1]
+        part = (arclength - s0) / (s1 - s0) if s1 > s0 else 0.5
+        return Near((1.0 - part) * one.derivative + part * other.derivative,
+                    (1.0 - part) * one.slope + part * other.slope)
+
+
+def across(vector: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """The part of a vector across a unit normal."""
+    return vector - (vector @ normal) * normal
+
+
+def cubic(za: np.ndarray, zb: np.ndarray, ta: np.ndarray, tb: np.ndarray, s: float) -> np.ndarray:
+    """Hermite's cubic between two points with their derivatives."""
+    r = 1.0 - s
+    return (1 + 2 * s) * r * r * za + s * r * r * ta + s * s * (3 - 2 * s) * zb - s * s * r * tb
