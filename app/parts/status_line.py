@@ -27,7 +27,8 @@ _REGIMES = {
     "unsettled": "Not settled: so far it neither repeats nor shows by evidence that it never will.",
 }
 _UNDRIVEN = "Nothing drives the chain: what is shown begins at the start of the motion."
-_MULTIPLIER = "|μ|: factor by which a small disturbance changes in one orbit; below 1 the orbit is stable."
+_MULTIPLIER = ("|μ|: factor by which a small disturbance changes in one orbit, that is in as many drive periods as the "
+               "motion needs to repeat; below 1 the orbit is stable.")
 _DECAY = "Decay: factor by which the distance to the orbit was seen to shrink."
 _LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the logarithm of its factor per drive period; "
              "above zero the motion is chaotic.")
