@@ -7,8 +7,8 @@ from bisect import insort
 import numpy as np
 
 from ..orbit import sorted_multipliers
-from .equations import BranchEquations, Near, Solved
-from .newton import ROUGH, Newton
+from .equations import BranchEquations, Solved
+from .newton import ROUGH, Near, Newton
 from .point import BranchPoint, branch_point, rough_point
 
 #: Residual that should be left of a rough orbit. Its overlaps are then wrong by about 1e-7, a hundredth of their change

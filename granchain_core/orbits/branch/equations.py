@@ -16,18 +16,10 @@ from ...steady.returns import least_period
 from ...stop import Stop
 from ..flow import BACK, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
-from .newton import Newton
+from .newton import Near, Newton
 
 #: Difference in p: between the curvature of the map and the noise of its steps (docs/branches.md, Equations).
 _DIFFERENCE = 1e-6
-
-
-@dataclass(frozen=True, eq=False)
-class Near:
-    """P_x (2N, 2N) and P_p (2N,) of an orbit nearby."""
-
-    derivative: np.ndarray
-    slope: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)

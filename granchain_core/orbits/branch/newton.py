@@ -12,16 +12,14 @@ Note       Between two orbits J begins with derivatives known there. A map costs
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from ...errors import NumbersFailed
 from ...steady.returns import relative_change
-from ..flow import TOLERANCE, Flow
-
-if TYPE_CHECKING:
-    from .equations import BranchEquations, Near
+from ..flow import TOLERANCE, Flow, StroboscopicMap
 
 #: Tolerance of the rough map.
 ROUGH = 1e-10
@@ -52,6 +50,33 @@ _NEAR = 1e-4
 _MOST_STEPS = 8
 
 
+@dataclass(frozen=True, eq=False)
+class Near:
+    """P_x (2N, 2N) and P_p (2N,) of an orbit nearby."""
+
+    derivative: np.ndarray
+    slope: np.ndarray
+
+
+class Equations(Protocol):
+    """What Newton's method needs of the equations (equations.py)."""
+
+    def state(self, z: np.ndarray) -> np.ndarray:
+        """The scaled state in z."""
+
+    def value(self, z: np.ndarray) -> float:
+        """The knob's value in z."""
+
+    def matrix(self, derivative: np.ndarray, slope: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """The bordered matrix."""
+
+    def knob_slope(self, z: np.ndarray, end: np.ndarray, tolerance: float) -> np.ndarray:
+        """P_p at z, where the map leads to `end`."""
+
+    def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
+        """The map at a knob value."""
+
+
 class Newton:
     """The iteration from one start: the point `z` it has come to, J, and the residuals of all maps.
 
@@ -59,7 +84,7 @@ class Newton:
     `changes` are the contact events of the last map without derivative, as in `Flow`.
     """
 
-    def __init__(self, equations: BranchEquations, z: np.ndarray, normal: np.ndarray,
+    def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray,
                  farthest: float = np.inf, enough: float = ENOUGH) -> None:
         self.equations, self.start, self.normal = equations, z, normal
         self.farthest, self.enough = farthest, enough

@@ -20,8 +20,8 @@ import numpy as np
 
 from ...errors import Cancelled, NumbersFailed
 from .between import Between, across, cubic
-from .equations import BranchEquations, Near, Solved
-from .newton import formatted
+from .equations import BranchEquations, Solved
+from .newton import Near, formatted
 from .point import BranchPoint, branch_point, recorded, unrecorded
 from .special import SpecialPoint, special_between
 
