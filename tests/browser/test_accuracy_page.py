@@ -34,6 +34,7 @@ def naive_line(page: Page) -> dict[str, Any]:
 def opened(page: Page) -> Locator:
     """The Accuracy page, opened from the status line, with its first points."""
     page.get_by_role("button", name="asked").click()
+    page.get_by_role("button", name="What accuracy costs in time").click()
     sheet = page.locator('[data-overlay="accuracy"]')
     page.wait_for_function(f"Object.keys(({POINTS})()).length > 0", timeout=COMPILED)
     expect(sheet.locator(".work canvas").first).to_be_visible()
