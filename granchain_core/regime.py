@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 #: What a motion can be called.
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
+#: Those of steady states that never repeat; their errors are not stated.
+NEVER_REPEATING = ("quasi-periodic", "chaotic")
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,7 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
     factor, letter = prefixed(float(frames.time[-1]))
     views.trains.name_time(f"time ({letter}s){_periods_shown(frames, picture.run.scene)}")
     _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s",
-          (picture.run.max_input_force, picture.run.max_output_force), final=picture.final,
-          known=_is_known(picture.run))
+          (picture.run.max_input_force, picture.run.max_output_force), _is_known(picture.run), final=picture.final)
     views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
     views.shown = picture
     show_regime(views)
@@ -48,14 +47,14 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
     views.trains.name_time(f"time ({unit} before now)")
     here = frames.extremes
     _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force),
-          live=True, running=running)
+          _is_known(run), live=True, running=running)
     views.curve.now(run.scene.knobs["f"], frames.largest_output)
     views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
-                                   **run_entries(run, views.trains.output_words(run.max_output_force, known=True)))
+                                   **run_entries(run, views.trains.output_words(run.max_output_force, _is_known(run))))
 
 
 def _is_known(run: Run) -> bool:
-    """Whether the error of the largest output force is stated; of a motion that does not repeat it is not."""
+    """Whether the error of the largest output force is stated; of a motion that does not repeat, or runs, it is not."""
     return run.force_errors.output is not None
 
 
@@ -66,8 +65,8 @@ def _periods_shown(frames: Frames, scene: Scene) -> str:
 
 
 def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
-          largest: tuple[float, float], live: bool = False, running: bool = False, final: bool = False,
-          known: bool = True) -> None:
+          largest: tuple[float, float], known: bool, live: bool = False, running: bool = False,
+          final: bool = False) -> None:
     change(views.time, start=float(time[-1]), end=float(time[0]))
     high = views.scales.of(frames, scene)
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))

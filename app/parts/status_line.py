@@ -6,7 +6,7 @@ from typing import Any
 
 from granchain_core import Run, Settled
 from granchain_core.integrate import METHODS
-from granchain_core.regime import Regime
+from granchain_core.regime import NEVER_REPEATING, Regime
 from granchain_core.steady.curve.resonance import STOPS, Place, place_words, push_words, pushes
 
 from ..format import duration, short_error
@@ -99,7 +99,7 @@ def why_no_error(run: Run) -> str:
     """Why no error of the displacements is stated; empty where one is."""
     if run.error_estimate is not None:
         return ""
-    if run.regime.name in ("quasi-periodic", "chaotic"):
+    if run.regime.name in NEVER_REPEATING:
         grows = "grows in every period" if run.regime.name == "chaotic" else "adds up from period to period"
         return f" Why none: in a {run.regime.name} motion the error of an instant {grows}, however small the steps are."
     return " Why none: the motion has not settled, and errors are stated for steady states."

@@ -8,6 +8,7 @@ a part of it, nothing is replaced.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Any
 
 import bokeh.model.util as references
@@ -17,6 +18,16 @@ from bokeh.core.property.wrappers import PropertyValueContainer
 
 #: Types of immutable values: models can share them.
 _CONSTANTS = (type(None), bool, int, float, str, bytes)
+
+
+@dataclass(frozen=True)
+class _Remembered:
+    """What was found of the properties of classes: constants, whether each model has its own, and that it is empty."""
+
+    known: dict[tuple[type, str], Any] = field(default_factory=dict)
+    changing: dict[tuple[type, str], bool] = field(default_factory=dict)
+    empty: dict[tuple[type, str], bool] = field(default_factory=dict)
+    overridden: dict[type, dict[str, Any]] = field(default_factory=dict)
 
 
 def remember_defaults() -> None:
@@ -29,77 +40,106 @@ def remember_defaults() -> None:
     parts = find, unstable, overridden, query, visit, getattr(HasProps, "themed_values", None)
     if None in parts or hasattr(find, "known"):
         return
-    known: dict[tuple[type, str], Any] = {}
-    changing: dict[tuple[type, str], bool] = {}
-    empty: dict[tuple[type, str], bool] = {}
-    of_class: dict[type, dict[str, Any]] = {}
+    found = _Remembered()
+    is_unstable = _asks_once(unstable, found)
+    for where, name, ours in (
+            (PropertyDescriptor, "has_unstable_default", is_unstable),
+            (PropertyDescriptor, "_get_default", _finds_once(find, is_unstable, found)),
+            (HasProps, "themed_values", _theme),
+            (HasProps, "_overridden_defaults", classmethod(_merges_once(overridden, found))),
+            (HasProps, "query_properties_with_values", _tells_what_is_there(query)),
+            (references, "visit_immediate_value_references", _visits_what_is_there(visit, found))):
+        setattr(where, name, ours)
 
-    def theme(model: Any) -> dict[str, Any] | None:
-        """Without a search for an attribute that is hardly ever there."""
-        return model.__dict__.get("__themed_values__")
+
+def _theme(model: Any) -> dict[str, Any] | None:
+    """A model's themed values, without a search for an attribute that is hardly ever there."""
+    themed: dict[str, Any] | None = model.__dict__.get("__themed_values__")
+    return themed
+
+
+def _merges_once(overridden: Any, found: _Remembered) -> Callable[[type], dict[str, Any]]:
+    """The defaults that a class and its bases override; nobody changes them."""
 
     def overrides(cls: type) -> dict[str, Any]:
-        """Those of a class and its bases; nobody changes them."""
-        if cls not in of_class:
-            of_class[cls] = overridden.__func__(cls)
-        return of_class[cls]
+        if cls not in found.overridden:
+            found.overridden[cls] = overridden.__func__(cls)
+        return found.overridden[cls]
+
+    return overrides
+
+
+def _asks_once(unstable: Any, found: _Remembered) -> Callable[[Any, Any], bool]:
+    """Whether each model has a default of its own.
+
+    A new model is told that it has none where it would be empty: it is made when it is asked for, and a browser is not
+    told of it anyway.
+    """
 
     def is_unstable(descriptor: Any, model: Any) -> bool:
-        """Whether each model has a default of its own. A new model is told that it has none where it would be empty:
-        it is made when it is asked for, and a browser is not told of it anyway."""
         key = (model.__class__, descriptor.name)
-        if key not in changing:
-            changing[key] = unstable(descriptor, model)
-            value = descriptor.instance_default(model) if changing[key] else None
-            empty[key] = isinstance(value, PropertyValueContainer) and not value
-        return changing[key] and not (empty[key] and not model._initialized)
+        if key not in found.changing:
+            found.changing[key] = unstable(descriptor, model)
+            value = descriptor.instance_default(model) if found.changing[key] else None
+            found.empty[key] = isinstance(value, PropertyValueContainer) and not value
+        return found.changing[key] and not (found.empty[key] and not model._initialized)
+
+    return is_unstable
+
+
+def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], found: _Remembered) -> Callable[[Any, Any], Any]:
+    """A property's default; a constant that no theme changes is found once for its class."""
 
     def remembered(descriptor: Any, model: Any) -> Any:
-        """A constant that no theme changes."""
-        themed = theme(model)
+        themed = _theme(model)
         if themed and descriptor.name in themed:
             return find(descriptor, model)
         key = (model.__class__, descriptor.name)
-        if key in known:
-            return known[key]
+        if key in found.known:
+            return found.known[key]
         value = find(descriptor, model)
         if isinstance(value, _CONSTANTS) and not is_unstable(descriptor, model):
-            known[key] = value
+            found.known[key] = value
         return value
+
+    remembered.known = found.known  # type: ignore[attr-defined]
+    return remembered
+
+
+def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
+    """What a browser is told of a model, without a look at all its defaults."""
 
     def changed(model: Any, wanted: Callable[[Any], bool], *, include_defaults: bool = True,
                 include_undefined: bool = False) -> dict[str, Any]:
-        """What a browser is told of a model, without a look at all its defaults."""
         if include_defaults or include_undefined:
             return dict(query(model, wanted, include_defaults=include_defaults, include_undefined=include_undefined))
-        themed, own = theme(model) or {}, model._unstable_default_values
+        themed, own = _theme(model) or {}, model._unstable_default_values
         names = {*model._property_values, *own, *themed}
-        found = {}
+        told = {}
         for name in model.properties(_with_props=True):
             descriptor = model.lookup(name) if name in names else None
             if descriptor is not None and wanted(descriptor):
                 value = descriptor.get_value(model)
                 if name in themed or not (name in own and isinstance(value, PropertyValueContainer)):
-                    found[name] = value
-        return found
+                    told[name] = value
+        return told
 
-    def visit_what_is_there(value: Any, visitor: Any) -> None:
-        """The models to which a model refers, without making what would be empty."""
+    return changed
+
+
+def _visits_what_is_there(visit: Any, found: _Remembered) -> Callable[[Any, Any], None]:
+    """Visit the models to which a model refers, without making what would be empty."""
+
+    def visit_model(value: Any, visitor: Any) -> None:
         if not isinstance(value, HasProps):
             visit(value, visitor)
             return
-        kind, themed = value.__class__, theme(value) or {}
+        kind, themed = value.__class__, _theme(value) or {}
         there = value._property_values, value._unstable_default_values, themed
         for name in value.properties_with_refs():
             key = (kind, name)
-            if (key in known or empty.get(key)) and not any(name in one for one in there):
+            if (key in found.known or found.empty.get(key)) and not any(name in one for one in there):
                 continue
             references.visit_value_and_its_immediate_references(getattr(value, name), visitor)
 
-    remembered.known = known  # type: ignore[attr-defined]
-    for where, name, ours in (
-            (PropertyDescriptor, "has_unstable_default", is_unstable), (PropertyDescriptor, "_get_default", remembered),
-            (HasProps, "themed_values", theme), (HasProps, "_overridden_defaults", classmethod(overrides)),
-            (HasProps, "query_properties_with_values", changed),
-            (references, "visit_immediate_value_references", visit_what_is_there)):
-        setattr(where, name, ours)
+    return visit_model

@@ -15,6 +15,7 @@ from typing import Any
 
 from granchain_core import BadInput, Run, Scene, State, pulse, run, scene, settle
 from granchain_core.errors import unknown_name
+from granchain_core.regime import NEVER_REPEATING
 from granchain_core.scene import ASSETS
 from granchain_core.stop import Stop
 
@@ -27,7 +28,6 @@ LOOKS = ("chain", "left", "map", "right", "curve")
 #: How far a computed force may be from the one a story tells, where the motion repeats and where it does not: there the
 #: largest force depends on the periods that are recorded.
 TOLERANCE, IRREGULAR = 5e-3, 0.1
-_IRREGULAR_REGIMES = ("quasi-periodic", "chaotic")
 _STORY = ("title", "about", "order", "steps")
 _STEP = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "expect")
 _EXPECT = ("regime", "period", "output", "input", "pulse", "speed")
@@ -118,7 +118,7 @@ def told_words(story: Story, number: int, words: str) -> str:
         if not 1 <= place <= len(story.steps):
             raise BadInput(f"step {number}: {match[0]} is of step {place}, but there are {len(story.steps)}.")
         step = story.steps[place - 1]
-        repeats = step.expect.regime not in _IRREGULAR_REGIMES
+        repeats = step.expect.regime not in NEVER_REPEATING
         numbers = {"output": _force(step.expect.output, repeats), "input": _force(step.expect.input, repeats),
                    "share": f"{100 * step.expect.output / step.expect.input:.0f} %",
                    "f": f"{step.scene.f:g} Hz"}
@@ -152,7 +152,7 @@ def differences(step: Step, shown: Run) -> list[str]:
         middle = len(first.contact) // 2
         numbers += [("pulse's force", "N", expected.pulse, float(first.force[middle])),
                     ("pulse's speed", "m/s", expected.speed, float(first.speed_in_metres[middle]))]
-    allowed = IRREGULAR if regime in _IRREGULAR_REGIMES else TOLERANCE
+    allowed = IRREGULAR if regime in NEVER_REPEATING else TOLERANCE
     return found + [f"the {name} is {computed:.4g} {unit}, not {number:.4g} {unit}."
                     for name, unit, number, computed in numbers if abs(computed - number) > allowed * computed]
 
@@ -182,7 +182,7 @@ def _step(number: int, data: Any) -> Step:
 
 def _expect(data: dict[str, Any]) -> Expect:
     _known(data, _EXPECT, "expect")
-    regime = _one_of(data, "regime", ("periodic", "quasi-periodic", "chaotic", UNDRIVEN))
+    regime = _one_of(data, "regime", ("periodic", *NEVER_REPEATING, UNDRIVEN))
     period = data.get("period")
     if (period is None) == (regime == "periodic") or not isinstance(period, (int, type(None))):
         raise BadInput("a periodic motion, and no other, has a period, a whole number of drive periods.")

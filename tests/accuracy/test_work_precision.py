@@ -101,7 +101,7 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
         return solve(shown, name, tolerance, periods, samples, stop, located)
 
     monkeypatch.setattr(module, "solve", solver)
-    monkeypatch.setattr(module, "_ROW_LIMIT", 5.0)
+    monkeypatch.setattr(module, "_ROW_LIMIT", 5.0)  # the other rows take tenths of a second on a quiet machine
     found = work_precision(SHORT)
     failures = {row.method: row.failure for row in found.rows if row.failure}
     assert "lost the motion" in failures["scipy LSODA"] and "stopped" in failures["scipy RK45"]
