@@ -58,7 +58,7 @@ def test_the_pictures_are_told_in_words_and_tables(visit: Visit) -> None:
     settled(page)
     summary = page.locator("#summary")
     expect(summary).to_contain_text("At 850 Hz: period 1")
-    expect(summary).to_contain_text("591 mN, and at most 237 mN arrive at the wall, 40.1 % of it. Bead 1 has the most")
+    expect(summary).to_contain_text("591 mN, and at most 237 mN arrive at the wall, 0.401 times as much. Bead 1 has the most")
     expect(page.locator("main")).to_have_attribute("aria-describedby", "summary")
     expect(page.locator("#announced")).to_contain_text("period 1")
     page.get_by_role("tab", name="numbers").click()
