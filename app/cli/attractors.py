@@ -39,7 +39,7 @@ def do(arguments: argparse.Namespace) -> None:
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: attractors(chosen, arguments.random_states, arguments.seed, stop, progress),
                           reports=True)
-    with unbroken():
+    with unbroken(arguments.out):
         if arguments.out:
             save(found, arguments.out)
         write_picture(arguments.picture, f"Attractors of {chosen.name}", found)

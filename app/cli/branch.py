@@ -101,16 +101,17 @@ def _followed(arguments: argparse.Namespace) -> Branch:
     except (Cancelled, KeyboardInterrupt):
         if arguments.out and begun:  # the orbits found so far can be continued
             save_branch(begun[0].branch, arguments.out)
+            written = f"{len(begun[0].branch.points)} orbits are in {arguments.out}; go on with --resume"
+            ending.wrote(written)
             _remove(begun[0].kept)
-            count = len(begun[0].branch.points)
-            raise Cancelled(f"{count} orbits are in {arguments.out}; go on with --resume") from None
+            raise Cancelled(written) from None
         raise
     except NumbersFailed:
         if begun and begun[0].kept is not None:
             begun[0].kept.kept.write()
         raise
     if arguments.out:
-        with unbroken():
+        with unbroken(arguments.out):
             save_branch(found, arguments.out)
             _remove(begun[0].kept)
     return found

@@ -121,9 +121,11 @@ def in_background(work: Callable[[Any], T], reports: bool = False) -> T:
 
 
 @contextmanager
-def unbroken() -> Iterator[None]:
-    """Finish this block, which writes a result, before a signal ends the command."""
+def unbroken(file: str | None) -> Iterator[None]:
+    """Finish this block, which writes a result to `file` if there is one, before a signal ends the command."""
     with ending.asking() as asked:
         yield
+        written = f"the result is in {file}" if file else ""
+        ending.wrote(written)
         if asked():
-            raise Cancelled
+            raise Cancelled(written)

@@ -94,7 +94,7 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
                                                            on_point=count, known=known, amplitude=amplitude,
                                                            scheduler=client), reports=True)
     if kept is not None:
-        with unbroken():
+        with unbroken(arguments.out):
             save_curve(swept, arguments.out)
             kept.remove()
     return swept

@@ -40,7 +40,7 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     if arguments.out:
         from granchain_core.store import save
 
-        with unbroken():
+        with unbroken(arguments.out):
             save(found, arguments.out)
     write_picture(arguments.picture, f"A driven motion of {chosen.name}", found)
     if arguments.json:

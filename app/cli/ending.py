@@ -34,7 +34,8 @@ _WORDS = {130: "Cancelled", 143: "Terminated"}
 class _Asked:
     """What has been asked of this process: the exit status of the first signal, and whom to tell of it.
 
-    `kept` is the folder of what the command has finished so far, if it keeps anything.
+    `kept` is the folder of what the command has finished so far, if it keeps anything; `written` says in words what is
+    in the result's file once that is written.
     """
 
     def __init__(self) -> None:
@@ -42,6 +43,7 @@ class _Asked:
         self.status: int | None = None
         self.tell: Callable[[], None] | None = None
         self.kept = ""
+        self.written = ""
 
 
 _ASKED = _Asked()
@@ -92,10 +94,17 @@ def keeps(folder: str) -> None:
     _ASKED.kept = folder
 
 
+def wrote(words: str) -> None:
+    """Say what the result's file holds now, for a signal that comes while the rest of the command runs."""
+    _ASKED.written = words
+
+
 def _end() -> NoReturn:
-    kept = f": what was finished is kept in {_ASKED.kept}; go on with --resume" if os.path.isdir(_ASKED.kept) else ""
+    there = _ASKED.written
+    if not there and os.path.isdir(_ASKED.kept):
+        there = f"what was finished is kept in {_ASKED.kept}; go on with --resume"
     with suppress(OSError):
-        os.write(2, f"{word()}{kept}.\n".encode())
+        os.write(2, f"{word()}{f': {there}' if there else ''}.\n".encode())
     os._exit(status())
 
 

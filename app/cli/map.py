@@ -83,7 +83,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
         with (compiling_beside(grid.scene, FIXED_STEP),
               keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells")):
             found, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
-    with unbroken():
+    with unbroken(arguments.out):
         save_diagram(found, arguments.out)
         blocks.kept.remove()
     return found, computed

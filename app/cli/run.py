@@ -89,7 +89,7 @@ def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     with keeping(kept.kept, lambda: f"{kept.done} of {arguments.periods} discarded periods of computation "
                                     f"{kept.computation}"):
         result = in_background(lambda stop: computed(stop, kept), reports=True)
-    with unbroken():
+    with unbroken(arguments.out):
         save(result, arguments.out)
         kept.kept.remove()
     return result

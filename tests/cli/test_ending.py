@@ -144,6 +144,18 @@ def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[...
     assert command.err == "Terminated: what was finished is kept in out.h5.blocks; go on with --resume.\n"
 
 
+def test_a_signal_after_the_result_is_written_says_where_it_is(started: Callable[..., Command], tmp_path: Path) -> None:
+    """Its blocks are gone by then, and the table is still to be printed."""
+    program = ("import time\nfrom app.cli import ending\nfrom app.cli.common import unbroken\nending.begin()\n"
+               "ending.keeps('out.h5.blocks')\nwith unbroken('out.h5'):\n    pass\nprint('written', flush=True)\n"
+               "time.sleep(1000)\n")
+    command = started(program=("-c", program))
+    assert command.process.stdout is not None and command.process.stdout.readline() == "written\n"
+    command.send(signal.SIGTERM)
+    assert command.end() == 143
+    assert command.err == "Terminated: the result is in out.h5.\n"
+
+
 @pytest.mark.parametrize("number", SENTENCE)
 def test_a_signal_after_the_command_is_done_changes_nothing(number: signal.Signals, started: Callable[..., Command]) -> None:
     """Python takes some time to leave, in which its default would end the process with another status."""

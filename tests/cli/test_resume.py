@@ -40,7 +40,8 @@ def interrupted(name: str, number: signal.Signals, out: Path, *more: str) -> set
     there = finished_in(name, out)
     assert there > before
     if command.process.returncode != 0 and number is not signal.SIGKILL:
-        assert command.err.splitlines()[-1].endswith("; go on with --resume.") and "Traceback" not in command.err
+        said = command.err.splitlines()[-1]
+        assert said.endswith(("; go on with --resume.", f"the result is in {out}.")) and "Traceback" not in command.err
     return there
 
 

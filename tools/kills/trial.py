@@ -19,7 +19,7 @@ from .processes import HANGS, Command
 COMMANDS = {
     "run": ("run", "sec2", "--periods", "3000", "--record", "5", "--samples", "16"),
     "curve": ("curve", "sec2", "--from", "300", "--to", "1500", "--points", "50", "--start", "up"),
-    "branch": ("branch", "sec2", "--set", "f=1550", "--knob", "f", "--from", "1000", "--to", "2200", "--period", "1", "--both"),
+    "branch": ("branch", "sec2", "--set", "f=1550", "--knob", "f", "--from", "400", "--to", "2200", "--period", "1", "--both"),
     "map": ("map", "sec2", "--x", "f=300:1500:12", "--y", "A0=2e-7:4e-6:12:log"),
 }
 _STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGKILL: -signal.SIGKILL}
