@@ -49,6 +49,7 @@ class Controller:
         self._channel = Channel(document)
         self._left = False
         self._first_start = start
+        self._origin = "rest"
         METERS.visitors += 1
         METERS.opened += 1
         self.session = session
@@ -194,6 +195,9 @@ class Controller:
         ]
 
     def _arrived(self, picture: Settled) -> None:
+        if picture.start != self._origin:
+            self._origin = picture.start
+            self._update_header()
         self.pinned.picture_ready(picture)
         self.files.picture_ready(picture)
         for page in self.pages:
@@ -241,6 +245,7 @@ class Controller:
         session = self.session
         self.views.header.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.look,
+            origin=self._origin, driven=session.scene.is_driven,
             speeds=sorted(SPEEDS), speed=session.speed, playing=session.playing,
             query=session.link, view_fields=list(EXTRAS))
 

@@ -41,6 +41,7 @@ class DisplayChoices:
 
     def _scale(self, message: dict[str, Any]) -> None:
         self._session.set_scale(message.get("value"))
+        self._views.scales.forget()
         self._update_header()
         self._redraw()
 

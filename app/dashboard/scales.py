@@ -2,7 +2,8 @@
 
 *same*: the scale of a scene holds the largest values of its pictures over the whole range of f, from rest, at the
 knobs of its preset (`assets/scales.toml`, computed by `tools/scales.py`). It stays while knobs move: strong motion
-looks strong and weak motion weak. A picture with something larger widens it, until the scene is opened again.
+looks strong and weak motion weak. A picture with something larger widens it, until the scene is opened
+or the scale is chosen again.
 
 *fit*: every picture is drawn to its own largest values.
 """
@@ -42,7 +43,7 @@ class Scales:
         return self._session.scale == "fit"
 
     def forget(self) -> None:
-        """A scene is opened: its own scale again, whatever has widened it before."""
+        """Take the scene's own scale again, whatever has widened it before."""
         self._scene = ""
 
     def of(self, frames: Frames, scene: Scene) -> Extremes:

@@ -18,7 +18,8 @@ from .component import Component, text
 #: The scales of the pictures: what a button says, and what it means.
 _SCALES = {
     "same": ("same scale", "One scale for all pictures of this scene: its axes and colours end at the largest values "
-             "at any drive frequency, so that strong and weak motions can be compared"),
+             "at any drive frequency, so that strong and weak motions can be compared. A larger motion widens it; "
+             "a click takes the scene's own scale again"),
     "fit": ("fit", "Every picture fills its frame: weak motions are visible, but cannot be compared"),
 }
 SCALES = [(scale, *_SCALES[scale]) for scale in EXTRAS["scale"]]

@@ -218,7 +218,8 @@ class Header {
     window.granchain.setTheme(theme, false); // "auto" is none of the themes and changes nothing
   }
 
-  showChoices({ scenes = [], scene = "", speeds = [], speed = 1, mode, start = "rest" }) {
+  showChoices(state) {
+    const { scenes = [], scene = "", speeds = [], speed = 1, mode } = state;
     const options = scenes.map(({ name, title }) => {
       const option = new Option(`${name} — ${title}`, name);
       return Object.assign(option, { title: option.textContent });
@@ -231,9 +232,16 @@ class Header {
     this.speed.value = String(speed);
     window.granchain.emit("speed", speed);
     for (const one of this.modes) one.ariaPressed = String(one.value === mode);
-    this.start.value = start;
-    this.start.style.display = mode === "live" ? "none" : "";
+    this.showStart(state);
     this.layoutControls();
+  }
+
+  // Where the motion on the screen began; a scene without a drive has one start only.
+  showStart({ mode, start = "rest", origin = "rest", driven = true, starts, started_elsewhere }) {
+    const elsewhere = start === "rest" && origin !== "rest";
+    this.start.options[0].textContent = elsewhere ? started_elsewhere : starts[0][1];
+    this.start.value = start;
+    this.start.style.display = mode === "live" || !driven ? "none" : "";
   }
 
   showPlaying({ playing = this.playing }) {

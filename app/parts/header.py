@@ -15,6 +15,8 @@ _MODES = {
     "live": "The run goes on while you move the knobs",
 }
 _STARTS = {"rest": "start: from rest", "previous": "start: previous state"}
+#: In place of the first while a motion is shown that a story, a map or a branch began elsewhere.
+_STARTED_ELSEWHERE = "start: a given state"
 
 
 class Header(Component):
@@ -27,5 +29,6 @@ class Header(Component):
         super().__init__(received, state={
             "modes": [(mode, _MODES[mode]) for mode in EXTRAS["mode"]],
             "starts": [(start, _STARTS[start]) for start in EXTRAS["start"]],
+            "started_elsewhere": _STARTED_ELSEWHERE,
             "files": list(EXPORTS.items()),
         }, **params)

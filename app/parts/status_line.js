@@ -20,6 +20,7 @@ const ENTRIES = [
 // What gives way, in this order, where the line has no room for all: an entry goes, or has fewer words, as often as the
 // server has a shorter form of them.
 const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime"];
+const NOT_ON_PHONE = ["force", "method", "start", "effects"];
 
 // Opens the page that measures what accuracy costs.
 function costButton() {
@@ -65,7 +66,9 @@ class Line {
     explains(this.regime, () => [this.regime.title]);
     this.entries = new Map([["regime", this.regime], ...known.map((entry) => [entry[0], entryOf(entry, state)])]);
     const [, ...others] = this.entries.values();
-    this.el.replaceChildren(this.regime, element("i", { className: "grow" }), ...others);
+    this.rest = element("span", { textContent: "⋯", id: "rest", hidden: true });
+    explains(this.rest, () => [this.rest.title]);
+    this.el.replaceChildren(this.regime, element("i", { className: "grow" }), ...others, this.rest);
     this.fit();
   }
 
@@ -88,9 +91,24 @@ class Line {
       entry.hidden = false;
       if (state[`${name}_shorter`]) entry.textContent = state[name];
     }
-    if (PHONE.matches) return; // there it may have several lines: the page scrolls
+    if (PHONE.matches) this.fitPhone();
+    else this.fitLine();
+    this.nameRest();
+    const { regime = "", regime_hint = "" } = state;
+    this.regime.title = this.regime.textContent === regime ? regime_hint : `${regime}. ${regime_hint}`;
+  }
+
+  // There it may have several lines: the page scrolls.
+  fitPhone() {
+    for (const name of NOT_ON_PHONE) if (this.entries.has(name)) this.entries.get(name).hidden = true;
+  }
+
+  fitLine() {
+    const { state } = this;
     let need = this.gap; // beside what grows
     for (const [name, entry] of this.entries) need += this.widthOf(name, entry);
+    this.rest.hidden = true;
+    if (need > this.room) need += this.widthOf("rest", this.rest);
     const shorter = { accuracy: [...(state.accuracy_shorter ?? [])], regime: [...(state.regime_shorter ?? [])] };
     for (const name of GIVES_WAY) {
       const entry = this.entries.get(name);
@@ -101,8 +119,13 @@ class Line {
       entry.textContent = shorter[name].shift() ?? entry.textContent;
       need += this.widthOf(name, entry);
     }
-    const { regime = "", regime_hint = "" } = state;
-    this.regime.title = this.regime.textContent === regime ? regime_hint : `${regime}. ${regime_hint}`;
+  }
+
+  // Entries that found no room are behind the dots at the end.
+  nameRest() {
+    const hidden = [...this.entries.values()].filter((entry) => entry.hidden);
+    this.rest.hidden = !hidden.length;
+    this.rest.title = `No room for: ${hidden.map((entry) => entry.textContent).join("; ")}.`;
   }
 }
 

@@ -56,7 +56,8 @@ def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[s
         "regime": regime_words(picture, pushed, place, regime),
         "regime_shorter": [regime_words(picture, pushed, place, name), regime_words(picture, pushed, Place(""), name)],
         "regime_hint": regime_hint(picture.regime, pushed, place),
-        "start": f"from {picture.start}",
+        "start": "from its initial velocities" if picture.run.scene.moves_at_start and picture.start == "rest" else
+                 f"from {picture.start}",
         **run_entries(picture.run, force),
     }
 
@@ -92,7 +93,16 @@ def error_words(error: float | None, before: str = "") -> str:
 
 def accuracy_words(run: Run) -> str:
     """The accuracy asked for and reached."""
-    return f"asked {short_error(run.scene.accuracy)} · {error_words(run.error_estimate, 'reached ')}"
+    reached = error_words(run.error_estimate, "reached ")
+    return f"asked {short_error(run.scene.accuracy)} · {reached}{_worse_forces(run)}"
+
+
+def _worse_forces(run: Run) -> str:
+    """The largest error of a largest force, where it misses the accuracy asked for, which is that of displacements."""
+    errors = [error for error in (run.force_errors.output, run.force_errors.input) if error is not None]
+    if run.error_estimate is None or max(errors, default=0.0) <= run.scene.accuracy:
+        return ""
+    return f" (forces {short_error(max(errors))})"
 
 
 def why_no_error(run: Run) -> str:
@@ -120,7 +130,8 @@ def errors_hint(run: Run) -> str:
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
     return ("“Asked” is the knob ε, “reached” the relative error of the displacements, and the time that of the "
             f"computation. Relative errors of the numerical solution: {', '.join(errors)}.{why_no_error(run)} How well "
-            "the model fits an experiment is another question: the tab “data” compares it with yours.")
+            "the model fits an experiment is another question: the tab “data” compares it with yours, "
+            "the page “paper” with what the paper states of its rig.")
 
 
 def run_entries(run: Run, force: str) -> dict[str, Any]:

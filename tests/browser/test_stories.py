@@ -30,6 +30,8 @@ def shows(page: Page, story: Story, number: int) -> None:
     regime = "not driven" if step.expect.regime == UNDRIVEN else step.expect.regime
     period = re.compile(rf"period {step.expect.period}(,|$)")  # the evidence behind it gives way where there is no room
     expect(badge).to_contain_text(period if step.expect.period else regime)
+    began = "start: a given state" if step.via else "start: from rest"
+    expect(page.locator('select[title="where the steady state starts"] option').first).to_have_text(began)
     curve = page.locator("#curvebar")
     words = "there is no resonance curve"
     expect(curve).to_contain_text(words) if regime == "not driven" else expect(curve).not_to_contain_text(words)

@@ -7,6 +7,7 @@ import json
 import threading
 import time
 from concurrent.futures import Future
+from dataclasses import replace
 from functools import partial
 from types import SimpleNamespace
 from typing import Any
@@ -18,6 +19,7 @@ from headless_dashboard import Dashboard
 from app import server
 from app.dashboard import links_and_files, main_picture, measurement
 from app.dashboard.table import PAGES, watched_pages
+from app.frames import Extremes, settled_frames
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
 from app.serve.meters import METERS
@@ -25,7 +27,7 @@ from app.session.budget import Refused
 from app.session.hooks import all_actions
 from app.session.live import LiveRun
 from app.session.message_checks import listed, whole
-from granchain_core import BadInput, run, scene
+from granchain_core import BadInput, run, scene, settle
 from granchain_core.experiment.measured import MOST_BYTES
 
 
@@ -115,6 +117,26 @@ def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, m
     dashboard.received({"do": "scale", "value": "fit"})
     dashboard.run_callbacks_until(lambda: not pictures.busy)
     assert sent[0] is sent[1] and len(sent) == 2 and pictures.live._shown == 7
+
+
+def test_choosing_the_scale_takes_the_scenes_own_again(dashboard: Dashboard) -> None:
+    """Whatever has widened it, and although it was chosen before."""
+    scales, chain = dashboard.views.scales, dashboard.session.scene
+    frames = settled_frames(settle(chain, samples=8).run)
+    first = scales.of(frames, chain)
+    scales._largest = first.widened(Extremes(input_force=2.0 * first.input_force))
+    dashboard.received({"do": "scale", "value": "same"})
+    assert scales.of(frames, chain) == first
+
+
+def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboard) -> None:
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    dashboard.session.scene = chain
+    found = settle(chain, samples=8)
+    for picture in (replace(found, start="previous state"), found):
+        dashboard._arrived(picture)
+        state = dashboard.views.header.state
+        assert (state["origin"], state["start"]) == (picture.start, "rest")
 
 
 def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,

@@ -99,6 +99,8 @@ def _leaves(leading: complex) -> str:
 def no_multipliers(picture: Settled) -> str:
     """Why a motion that does not repeat has no multipliers."""
     regime = picture.regime
+    if not regime.driven:
+        return "No multipliers: nothing drives the chain, and only a motion that repeats has them."
     if regime.lyapunov is None or regime.name == "unsettled":
         return (f"No multipliers: the chain has not settled after {regime.periods_run} periods, and only a motion that "
                 "repeats has them.")
@@ -123,7 +125,7 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
         rows.append({"name": name, "value": value, "meaning": meaning})
 
     kind = regime.name + (f", period {regime.period}" if regime.period else "")
-    row("regime", f"{kind}, {regime.periods_run} periods run from {picture.start}",
+    row("regime", f"{kind}, {regime.periods_run} period{'s' * (regime.periods_run != 1)} run from {picture.start}",
         "The regime, and the number of drive periods after which it was decided.")
     if regime.distance is not None:
         row("distance to the orbit", f"≤ {short_error(regime.distance)}",

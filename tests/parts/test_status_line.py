@@ -1,0 +1,36 @@
+"""The words of the status line."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from app.parts.status_line import accuracy_words, settled_entries
+from granchain_core import Settled, scene, settle
+from granchain_core.result import ForceErrors
+
+
+@pytest.fixture(scope="module")
+def picture() -> Settled:
+    return settle(scene("sec2").evolve(N=2, f=2000.0), samples=8)
+
+
+@pytest.mark.parametrize(("errors", "said"), [
+    (ForceErrors(2e-7, 3e-7, 4e-7), ""), (ForceErrors(2e-4, 3e-7, 4e-7), " (forces 2e-4)"),
+    (ForceErrors(None, 3e-5, None), " (forces 3e-5)"), (ForceErrors(), "")])
+def test_a_force_less_sure_than_asked_is_told_beside_the_displacements(picture: Settled, errors: ForceErrors, said: str) -> None:
+    run = replace(picture.run, force_errors=errors, error_estimate=1e-7)
+    assert accuracy_words(run) == f"asked 1e-6 · reached 1e-7{said}"
+
+
+def test_where_no_error_is_stated_none_is_told_for_the_forces(picture: Settled) -> None:
+    run = replace(picture.run, force_errors=ForceErrors(1e-2, 1e-2, 1e-2), error_estimate=None)
+    assert accuracy_words(run) == "asked 1e-6 · not estimated"
+
+
+def test_where_the_motion_started(picture: Settled) -> None:
+    assert settled_entries(picture, None, "1 N")["start"] == "from rest"
+    assert settled_entries(replace(picture, start="previous state"), None, "1 N")["start"] == "from previous state"
+    struck = settle(scene("impact"), samples=8)
+    assert settled_entries(struck, None, "1 N")["start"] == "from its initial velocities"
