@@ -5,7 +5,12 @@
 # (seconds, once per container) into the same folder, which the user may write to. Build on the kind you run on, or
 # keep the folder with a volume:  -v granchain-kernels:/opt/granchain/kernels
 
-FROM python:3.12-slim AS build
+# The base image is python:3.13-slim of September 2026 (Python 3.13.15, Debian 13.6), for all its platforms, by the digest
+# of its index. Security fixes of Debian come with a newer one: `docker buildx imagetools inspect python:3.13-slim` shows
+# its digest.
+ARG BASE=python:3.13-slim@sha256:9d2e5553305c7c7b0097999bb17187c69b921ccd6bc9d40e4bb5ebe652c00285
+
+FROM ${BASE} AS build
 
 ENV PIP_NO_CACHE_DIR=1 PIP_DISABLE_PIP_VERSION_CHECK=1
 RUN python -m venv /opt/granchain/venv
@@ -26,7 +31,7 @@ ENV GRANCHAIN_CACHE=/opt/granchain/kernels
 RUN granchain warm
 
 
-FROM python:3.12-slim
+FROM ${BASE}
 
 RUN useradd --create-home --uid 10001 granchain
 COPY --from=build /opt/granchain/venv /opt/granchain/venv

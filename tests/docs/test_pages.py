@@ -134,10 +134,12 @@ def test_every_scene_is_in_the_readme_and_every_knob_in_the_model():
     assert [q.symbol for q in QUANTITIES.values() if q.symbol and q.symbol != "ε" and q.symbol not in model] == []
 
 
-def test_dockerfile_copies_what_the_ignore_file_lets_through():
+def test_dockerfile_has_a_pinned_base_and_copies_what_the_ignore_file_lets_through():
     """What is not let through by .dockerignore cannot be copied."""
     allowed = {line[1:] for line in (ROOT / ".dockerignore").read_text().splitlines() if line.startswith("!")}
     docker = (ROOT / "Dockerfile").read_text()
+    base, *stages = re.findall(r"^(?:ARG BASE=|FROM )(\S+)", docker, re.MULTILINE)
+    assert re.fullmatch(r"python:\d\.\d+-slim@sha256:[0-9a-f]{64}", base) and set(stages) == {"${BASE}"}
     copied = {word for line in re.findall(r"^COPY (?!--from)(.+) \S+$", docker, re.MULTILINE) for word in line.split()}
     assert copied == allowed and all((ROOT / name).exists() for name in copied)
     arguments = json.loads(re.sub(r"\\\n\s*", "", docker.split("ENTRYPOINT ")[1]))

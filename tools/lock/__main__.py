@@ -18,7 +18,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 LOCK = ROOT / "requirements.lock"
 #: Python and machine of each; the first decides the versions.
-PLATFORMS = (("3.12", "x86_64"), ("3.11", "x86_64"), ("3.13", "x86_64"), ("3.12", "aarch64"))
+PLATFORMS = (("3.13", "x86_64"), ("3.11", "x86_64"), ("3.12", "x86_64"), ("3.13", "aarch64"))
 _INDEX = "https://pypi.org/simple"
 
 
