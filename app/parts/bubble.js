@@ -1,20 +1,30 @@
 // The bubble that says what something on the page means, beside it: a term, an entry of the status line. It goes with
-// the Escape key, when something is scrolled, and with a click elsewhere.
+// the Escape key, when what it stands beside is scrolled away, and with a click elsewhere.
 
 import { element } from "./dom.js";
 
 const bubble = element("div", { id: "term", className: "bubble", role: "tooltip", hidden: true });
 document.body.append(bubble);
 
+let explained = null; // the element beside which it stands, and where that was
+let place = null;
+
 export const hideMeaning = () => {
   bubble.hidden = true;
 };
+
+function hideIfMoved() {
+  const now = explained?.getBoundingClientRect();
+  if (now && (now.top !== place.top || now.left !== place.left)) hideMeaning();
+}
 
 // Shows `words` below `anchor`, above it where there is more room; `controls` stand under the words.
 export function showMeaning(anchor, words, ...controls) {
   bubble.replaceChildren(words, ...controls);
   bubble.hidden = false;
-  const { left, top, bottom } = anchor.getBoundingClientRect();
+  explained = anchor;
+  place = anchor.getBoundingClientRect();
+  const { left, top, bottom } = place;
   const { offsetWidth: wide, offsetHeight: tall } = bubble;
   bubble.style.left = `${Math.max(8, Math.min(left, innerWidth - wide - 8))}px`;
   bubble.style.top = `${bottom + tall + 12 < innerHeight ? bottom + 6 : Math.max(8, top - tall - 6)}px`;
@@ -31,6 +41,6 @@ export function explains(anchor, meaning) {
 }
 
 document.addEventListener("keydown", ({ key }) => key === "Escape" && hideMeaning());
-document.addEventListener("scroll", hideMeaning, true);
+document.addEventListener("scroll", hideIfMoved, true);
 // Before the click itself, which may show another meaning.
 document.addEventListener("pointerdown", (event) => event.composedPath().includes(bubble) || hideMeaning(), true);

@@ -31,12 +31,8 @@ function costButton() {
   return element("div", { className: "row" }, button("What accuracy costs in time", open));
 }
 
-function entryOf([name, write, meaning], state) {
-  const entry = element(name === "accuracy" ? "button" : "span", {
-    textContent: write(state[name]),
-    title: state[`${name}_hint`] ?? meaning,
-    id: name,
-  });
+function emptyEntry(name, tag = "span") {
+  const entry = element(name === "accuracy" ? "button" : tag, { id: name });
   explains(entry, () => [entry.title, ...(name === "accuracy" ? [costButton()] : [])]);
   return entry;
 }
@@ -47,6 +43,12 @@ class Line {
     this.el = element("div", { className: "line" });
     this.pen = document.createElement("canvas").getContext("2d");
     this.fonts = new Map(); // by the entry's name; asking the browser for them costs a layout
+    // They stay and change their words: a press on one that was replaced meanwhile would be no click.
+    this.regime = emptyEntry("regime", "b");
+    this.others = new Map(ENTRIES.map(([name]) => [name, emptyEntry(name)]));
+    this.rest = emptyEntry("rest");
+    this.rest.textContent = "⋯";
+    this.el.replaceChildren(this.regime, element("i", { className: "grow" }), ...this.others.values(), this.rest);
     onWidth(this.el, () => this.measure());
     window.granchain.on("theme", () => this.measure());
   }
@@ -61,14 +63,15 @@ class Line {
 
   show(state) {
     this.state = state;
-    const known = ENTRIES.filter(([name]) => state[name] !== undefined && state[name] !== "");
-    this.regime = element("b", { textContent: state.regime ?? "", title: state.regime_hint ?? "" });
-    explains(this.regime, () => [this.regime.title]);
-    this.entries = new Map([["regime", this.regime], ...known.map((entry) => [entry[0], entryOf(entry, state)])]);
-    const [, ...others] = this.entries.values();
-    this.rest = element("span", { textContent: "⋯", id: "rest", hidden: true });
-    explains(this.rest, () => [this.rest.title]);
-    this.el.replaceChildren(this.regime, element("i", { className: "grow" }), ...others, this.rest);
+    this.regime.textContent = state.regime ?? "";
+    this.entries = new Map([["regime", this.regime]]);
+    for (const [name, write, meaning] of ENTRIES) {
+      const entry = this.others.get(name);
+      entry.hidden = state[name] === undefined || state[name] === "";
+      if (entry.hidden) continue;
+      Object.assign(entry, { textContent: write(state[name]), title: state[`${name}_hint`] ?? meaning });
+      this.entries.set(name, entry);
+    }
     this.fit();
   }
 
