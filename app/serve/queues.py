@@ -9,18 +9,18 @@ from __future__ import annotations
 
 import heapq
 import logging
-import os
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from itertools import count
 from queue import SimpleQueue
 from typing import TypeVar
 
 from granchain_core import Cancelled
 
 from .meters import METERS
+from .priorities import give_way, gives_way
 from .turns import CpuTime, SchedulerSlot
 
 Result = TypeVar("Result")
@@ -31,8 +31,8 @@ log = logging.getLogger("granchain")
 class Queue:
     """Work of one kind, first come, first served, on at most so many threads, which begin when they are needed.
 
-    The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. On Linux
-    those of a `patient` queue, with the threads that they begin, run when no picture needs the processor.
+    The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
+    `patient` queue give way to others (priorities.py).
 
     Each piece of work has its thread from the beginning, or waits because there is none: a thread that has been given
     something and has not begun yet must not count as free, or what comes then waits for as long as that takes.
@@ -44,6 +44,7 @@ class Queue:
         self._patient = patient
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
+        self._numbers = count()
         self._free = 0  # threads that nothing has been given to
         self.waiting = 0  # work that waits for a thread
         self._lock = threading.Lock()
@@ -68,29 +69,37 @@ class Queue:
             if self._free:
                 self._free -= 1
             elif len(self._threads) < self._workers:
-                thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {len(self._threads)}")
-                self._threads.append(thread)
-                thread.start()
+                self._begin()
             else:
                 self.waiting += 1
         return future
 
+    def _begin(self) -> None:
+        """With the lock held: one thread more."""
+        thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {next(self._numbers)}")
+        self._threads.append(thread)
+        thread.start()
+
     def _serve(self) -> None:
-        if self._patient and sys.platform == "linux":  # elsewhere it would be the whole process
-            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _PATIENT)
+        if self._patient:
+            give_way()
         while True:
             work = self._given.get()
             work()
             del work  # a thread that waits keeps nothing of the visitor it served last
             with self._lock:
+                if gives_way() and not self._patient:  # the next work has one that does not
+                    self._threads.remove(threading.current_thread())
+                    if self.waiting:
+                        self.waiting -= 1
+                        self._begin()
+                    return
                 if self.waiting:
                     self.waiting -= 1
                 else:
                     self._free += 1
 
 
-#: Niceness of threads that let pictures go first.
-_PATIENT = 10
 #: One thread for each visitor whose picture is awaited; default steps, energy accounts and drafts are computed in it.
 VISITORS = Queue("visitors", 1000)
 #: Pictures. More threads than cores: who computes is decided by turns (turns.py), and one that waits for the compiler
@@ -221,20 +230,25 @@ class LatestWins:
 
     def _drain(self) -> None:
         while (work := self._next()) is not None:
-            try:
-                for result in work(self._stop):
-                    if self._closed:
+            self._do(work)
+            if gives_way():
+                VISITORS.submit(self._drain)
+                return
+
+    def _do(self, work: Work) -> None:
+        try:
+            for result in work(self._stop):
+                if self._closed:
+                    break
+                self._deliver(result)
+                with self._lock:
+                    self._refining = True
+                    if self._waiting is not None or self._closed:
                         break
-                    self._deliver(result)
-                    with self._lock:
-                        self._refining = True
-                        if self._waiting is not None or self._closed:
-                            break
-            except Cancelled:
-                METERS.cancelled += 1
-                continue
-            except Exception as error:
-                self._report(error)
+        except Cancelled:
+            METERS.cancelled += 1
+        except Exception as error:
+            self._report(error)
 
     def _report(self, error: Exception) -> None:
         """Tell of a failure; where that fails, too, the next computation must still begin."""

@@ -18,6 +18,8 @@ from typing import TypeVar
 
 from granchain_core.stop import Stop
 
+from .priorities import give_way
+
 Result = TypeVar("Result")
 
 #: Longest processor time for which a computation without a result has just begun [s]: a first picture of ten beads
@@ -207,6 +209,7 @@ class SchedulerSlot(Flag):
         if self._turn is None:
             return
         self._charge()
+        self._give_way()
         if self._scheduler.should_yield(self._turn, self.begins):
             self._leave()
             self._enter()
@@ -248,7 +251,13 @@ class SchedulerSlot(Flag):
             self._spent = math.inf
             yield result
 
+    def _give_way(self) -> None:
+        """What has not just begun is not only later in turn, the system also gives it less of a processor."""
+        if not self.begins:
+            give_way()
+
     def _enter(self) -> None:
+        self._give_way()
         self._turn = self._scheduler.begin(self.cpu_time, self, self.begins)
         self._began = time.thread_time()
 
