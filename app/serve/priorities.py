@@ -2,7 +2,8 @@
 
 On Linux every thread has a niceness of its own; elsewhere it belongs to the whole process, and nothing is changed.
 Without special rights a thread cannot take back what it gave up: one that gives way ends with the work that it does
-(queues.py), and threads that it begins give way too. The main thread, that of the event loop, never gives way.
+(queues.py). The threads that it begins give way too, if they are not begun by `begin`. The main thread, that of the
+event loop, never gives way.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
+from queue import SimpleQueue
 
 #: Niceness of a thread that gives way: beside one that does not it gets a tenth of a processor.
 _PATIENT = 10
@@ -17,9 +19,33 @@ _PATIENT = 10
 _here = threading.local()
 
 
+class _Starter:
+    """A thread that does not give way and begins others."""
+
+    def __init__(self) -> None:
+        self.asked: SimpleQueue[threading.Thread] = SimpleQueue()
+        self._lock = threading.Lock()
+        self._running = False
+
+    def run(self) -> None:
+        """Begin with it, in a thread that does not give way yet."""
+        with self._lock:
+            if not self._running:
+                threading.Thread(target=self._serve, daemon=True, name="starter").start()
+                self._running = True
+
+    def _serve(self) -> None:
+        while True:
+            self.asked.get().start()
+
+
+_STARTER = _Starter()
+
+
 def give_way() -> None:
     """From now on let threads that do not give way have the processor first."""
     if sys.platform == "linux" and not gives_way() and threading.current_thread() is not threading.main_thread():
+        _STARTER.run()
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _PATIENT)
         _here.gives_way = True
 
@@ -27,3 +53,11 @@ def give_way() -> None:
 def gives_way() -> bool:
     """Whether this thread does."""
     return getattr(_here, "gives_way", False)
+
+
+def begin(thread: threading.Thread) -> None:
+    """Start a thread that does not give way, whether or not this one does."""
+    if gives_way():
+        _STARTER.asked.put(thread)
+    else:
+        thread.start()

@@ -20,7 +20,7 @@ from typing import TypeVar
 from granchain_core import Cancelled
 
 from .meters import METERS
-from .priorities import give_way, gives_way
+from .priorities import begin, give_way, gives_way
 from .turns import CpuTime, SchedulerSlot
 
 Result = TypeVar("Result")
@@ -78,7 +78,7 @@ class Queue:
         """With the lock held: one thread more."""
         thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {next(self._numbers)}")
         self._threads.append(thread)
-        thread.start()
+        begin(thread)
 
     def _serve(self) -> None:
         if self._patient:

@@ -94,6 +94,7 @@ class FairScheduler:
         self._running: set[_Turn] = set()
         self._waiting: list[_Turn] = []
         self._waits: deque[tuple[float, float]] = deque(maxlen=_REMEMBERED)
+        self._looked = -math.inf
 
     @property
     def wait(self) -> float:
@@ -121,7 +122,8 @@ class FairScheduler:
                 if stop and mine in self._waiting:
                     self._waiting.remove(mine)
                     break
-                self._grant()
+                if self._clock() - self._looked >= 0.5 * _LONGEST_TURN:  # one of those that wait looks for all
+                    self._grant()
         return mine
 
     def end(self, turn: _Turn) -> None:
@@ -153,12 +155,12 @@ class FairScheduler:
 
     def _grant(self) -> None:
         """With the lock held: give turns to those with the best claims."""
-        now = self._clock()
+        self._looked = now = self._clock()
+        # With many who wait, their order costs more than to see that there is room for none.
+        if not any(self._has_room(one, now) for one in self._waiting):
+            return
         for one in sorted(self._waiting, key=lambda one: one.rank(now)):
-            young = [other.begins for other in self._running if now - other.at < _LONGEST_TURN]
-            room = sum(young) < self._at_once if one.begins else len(young) < self._at_once
-            waited = not one.begins and now - one.at >= _LONGEST_WAIT and young.count(False) < self._at_once
-            if not (room or waited):
+            if not self._has_room(one, now):
                 continue
             if one.begins:
                 self._waits.append((now, now - one.at))
@@ -166,6 +168,14 @@ class FairScheduler:
             self._running.add(one)
             one.at = now
             one.granted.set()
+
+    def _has_room(self, one: _Turn, now: float) -> bool:
+        """Whether a turn could begin beside those that are held."""
+        young = [other.begins for other in self._running if now - other.at < _LONGEST_TURN]
+        if one.begins:
+            return sum(young) < self._at_once
+        waited = now - one.at >= _LONGEST_WAIT and young.count(False) < self._at_once
+        return len(young) < self._at_once or waited
 
 
 TURNS = FairScheduler(max(2, os.cpu_count() or 1))

@@ -59,11 +59,13 @@ def test_work_waiting_for_a_thread_that_ends_is_done_in_its_order() -> None:
     queue.submit(long)
     assert begun.wait(60.0)
     waiting = [queue.submit(done.append, number) for number in range(5)]
-    assert queue.waiting == 5
+    last = queue.submit(niceness)
+    assert queue.waiting == 6
     go.set()
     for one in waiting:
         one.result(60.0)
     assert done == [0, 1, 2, 3, 4] and queue.waiting == 0
+    assert last.result(60.0) == niceness()  # its thread was begun by one that gave way
 
 
 @linux
