@@ -52,3 +52,21 @@ def test_points_that_come_soon_after_each_other_are_drawn_together(monkeypatch: 
     now[0] += seconds
     draw()
     assert len(figure.points("rest")) == 3
+
+
+def test_a_stopped_curve_is_not_under_way_again_when_its_last_points_would_be_drawn(
+        monkeypatch: pytest.MonkeyPatch) -> None:
+    """A page that covers the curve stops it; a map that waits for the curve to end would wait for ever."""
+    now = [100.0]
+    monkeypatch.setattr("app.curve.page.time.monotonic", lambda: now[0])
+    host = Host()
+    curves = CurveController(host, Curve(lambda _: None), CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
+    curves._remaining = ["rest"]
+    for f in (500.0, 600.0):
+        curves._report(point(f))
+        host.call_waiting()
+    assert curves.computing and len(host.later) == 1  # the second waits to be drawn
+    curves.stop()
+    now[0] += CURVE_EVERY
+    host.later[0][1]()
+    assert not curves.computing
