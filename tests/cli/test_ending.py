@@ -57,7 +57,8 @@ def ends_well(command: Command, number: signal.Signals) -> None:
 
 
 #: Every command and both signals; all pairs of them at random instants: `python -m tools.kills`.
-BY_TURNS = [(name, list(SENTENCE)[i % 2]) for i, name in enumerate(LONG)]
+#: With compiled kernels `warm` has nothing to do; it ends while it compiles in the next test.
+BY_TURNS = [(name, list(SENTENCE)[i % 2]) for i, name in enumerate(LONG) if name != "warm"]
 
 
 @pytest.mark.parametrize(("name", "number"), BY_TURNS)
