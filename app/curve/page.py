@@ -110,13 +110,13 @@ class CurveController:
 
     def changed(self, scene: Scene) -> None:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
-        self._forget_reports()
+        self._cancel()
         self._asked = without_frequency(scene)
         self._figure.expected = self._visible and self._wanted["rest"] and self._affordable(scene)
         self._bar.update_state(driven=scene.is_driven)
         self._quiet.start(self._begin_when_compiled, scene)
 
-    def _forget_reports(self) -> None:
+    def _cancel(self) -> None:
         """Cancel the curve, and drop what waits to be drawn: drawn later it would say that a curve is under way."""
         self._task.cancel()
         with self._lock:
@@ -174,7 +174,7 @@ class CurveController:
 
     def stop(self) -> None:
         """Stop computing; the points computed so far stay."""
-        self._forget_reports()
+        self._cancel()
         self._done = -1.0
         self._bar.update_state(done=-1.0)
         if self._figure.expected:

@@ -7,7 +7,7 @@ const WORDS = "largest elastic output force of periodic orbits over drive freque
 // Below this width in pixels the legend stands in two columns.
 const NARROW = 700;
 const ABOUT =
-  "The orbit on the screen is followed in frequency, also where it is unstable and no settled motion shows it. Drawn is the elastic part of the force, which changes smoothly along a branch; the resonance curve draws the whole force, dashpots included.";
+  "The orbit on the screen is followed in frequency, also where it is unstable and no settled motion shows it. The picture shows the elastic part of the force, which changes smoothly along a branch; the resonance curve shows the whole force, dashpots included.";
 const STALE =
   "The knobs have moved: these orbits belong to another chain. Follow again for the present one; a click on an orbit brings the old one back.";
 const FOLLOW = "Follow the orbit on the screen up and down in frequency, through folds, stable or not";
