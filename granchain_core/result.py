@@ -267,17 +267,22 @@ def residual(energy: np.ndarray | None) -> float | None:
 
 def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime, error: float | None,
              cost: Cost, status: str = "done", force_errors: np.ndarray | None = None) -> Run:
-    """The `Run` of recorded samples; time counts from drive phase 0, `first_sample` being the index of row 0."""
+    """The `Run` of recorded samples; time counts from drive phase 0, `first_sample` being the index of row 0.
+
+    The arrays of `samples` become the run's and are scaled in place: of a long chain they have hundreds of megabytes,
+    and copies took up to a third of a second, in which the computation could not be cancelled.
+    """
     scene, scales = engine.scaled.scene, engine.scaled.scales
     index = first_sample + np.arange(len(samples.displacement))
     inside = np.mod(index, engine.samples)
     maxima = np.where(np.isfinite(engine.maxima), engine.maxima, 0.0) * scales.force
+    samples.displacement[:] *= scales.length
+    samples.velocity[:] *= scales.velocity
+    samples.force[:] *= scales.force
     return Run(
         scene=scene, samples=engine.samples,
         time=(index // engine.samples + inside / engine.samples) * scene.period,
-        displacement=samples.displacement * scales.length,
-        velocity=samples.velocity * scales.velocity,
-        force=samples.force * scales.force,
+        displacement=samples.displacement, velocity=samples.velocity, force=samples.force,
         drive_displacement=scene.drive_amplitude * np.sin(2 * np.pi * inside / engine.samples),
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
         status=status, regime=regime, error_estimate=error, energy_residual=residual(samples.energy), cost=cost,
