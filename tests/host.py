@@ -6,11 +6,16 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+from granchain_core import CurvePoint
+
 
 class FakeHost:
     """What a page, a task or a `Debounce` asks of its dashboard; `callbacks` waits, in order, and may be added to from any thread."""
 
     busy = awaiting_picture = curve_computing = False
+
+    def complete_curve(self) -> list[CurvePoint]:
+        return []
 
     def __init__(self) -> None:
         self.callbacks: list[Callable[[], None]] = []

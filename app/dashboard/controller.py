@@ -8,7 +8,7 @@ from typing import Any
 
 from bokeh.document import Document
 
-from granchain_core import BadInput, Scene, Settled, State
+from granchain_core import BadInput, CurvePoint, Scene, Settled, State
 
 from ..curve.page import CurveController
 from ..parts.knobs import beside_knobs, knob_state
@@ -56,7 +56,7 @@ class Controller:
         self.views = views = Views(session, self.received, partial(self._guarded, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
         self.pictures = Pictures(self, views, self.sentences.note, self._arrived)
-        self.curves = CurveController(self, views.curve, views.curvebar, partial(show_regime, views))
+        self.curves = CurveController(self, views.curve, views.curvebar, self._curve_placed)
         self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self._update_header,
                                       self.pictures.redraw)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
@@ -154,6 +154,10 @@ class Controller:
         """Whether a resonance curve is being computed."""
         return self.curves.computing
 
+    def complete_curve(self) -> list[CurvePoint]:
+        """The resonance curve from rest of the present knobs; empty unless all of it is there."""
+        return self.curves.complete(self.session.scene).get("rest", [])
+
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose."""
         self.session.set_mode(mode)
@@ -202,6 +206,12 @@ class Controller:
         self.files.picture_ready(picture)
         for page in self.pages:
             page.picture_ready(picture)
+
+    def _curve_placed(self) -> None:
+        show_regime(self.views)
+        if self.complete_curve():
+            for page in self.pages:
+                page.curve_ready()
 
     def _theme_changed(self, theme: Theme) -> None:
         for page in self.pages:

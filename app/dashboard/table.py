@@ -53,7 +53,8 @@ class PageSpec:
     `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
     tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height.
     `group` is one of `GROUPS`. A page that `works_hidden` goes on while its window is hidden or its tab is scrolled off
-    the screen; the others count as not looked at then (`Page.visibility_changed`).
+    the screen; the others count as not looked at then (`Page.visibility_changed`). While a page that `needs_curve` lies
+    over the pictures, the resonance curve is computed as if it were on the screen.
     """
 
     name: str
@@ -64,6 +65,7 @@ class PageSpec:
     taller: bool = True
     works_hidden: bool = True
     group: str = "try"
+    needs_curve: bool = False
 
 
 #: The groups of tabs; a tab of none of them stands apart at the end.
@@ -80,7 +82,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     PageSpec("map", "map", MapPage, None),
     PageSpec("effects", "effects", EffectsPage, None, group="check"),
     PageSpec("branches", "branches", BranchesPage, Branches,
-        "Periodic orbits followed over the drive frequency, stable and unstable."),
+        "Periodic orbits followed over the drive frequency, stable and unstable.", needs_curve=True),
     PageSpec("analysis", "analysis", AnalysisPage, Analysis,
         "Spectrum, strobes over a knob, basins and Lyapunov exponents of the present scene."),
     PageSpec("observer", "observer", ObserverPage, Observer,
@@ -118,7 +120,8 @@ def described_tabs() -> list[dict[str, Any]]:
 
 def watched_pages() -> dict[str, dict[str, bool]]:
     """What the browser needs to tell which pages are looked at."""
-    return {row.name: {"overlay": row.view is not None, "works_hidden": row.works_hidden} for row in PAGES}
+    return {row.name: {"overlay": row.view is not None, "works_hidden": row.works_hidden,
+                       "needs_curve": row.needs_curve} for row in PAGES}
 
 
 def tab_names() -> tuple[str, ...]:

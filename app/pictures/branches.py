@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from bokeh.models import ColumnDataSource, DataRange1d, HoverTool, Legend, LegendItem, Scatter, Span, TapTool
 from bokeh.plotting import figure
 
+from granchain_core import CurvePoint
 from granchain_core.orbits import Branch, BranchPoint, SpecialPoint
 from granchain_core.regime import modulus_words
 
@@ -28,6 +30,8 @@ _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 _ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
 _MARK = ("x", "y", "tooltip", "place")
+CURVE, _CURVE_LINE = "curve", "curve line"
+"""Sources of the resonance curve behind the branches: its points, and lines between neighbours of which both repeat."""
 _TITLE = "largest elastic output force"
 _TARGET = 13
 """Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one."""
@@ -48,14 +52,14 @@ class BranchRows:
         self._last: dict[int, tuple[str, int]] = {}
         self._pieces = dict.fromkeys(_LINES, 0)
         self._models: dict[str, dict[str, Any]] = {}
+        self._curve_shown = False
         self.orbits: dict[int, list[BranchPoint]] = {}
         self.special: list[SpecialPoint] = []
 
     def add(self, arm: int, branch: Branch, points: list[BranchPoint], special: list[SpecialPoint]) -> dict[str, Any]:
         """New rows by source, line pieces to append as (source, number, x, y), changed properties of other models."""
         new = drawn_orbits(points, special)
-        self._force = self._force or force_scale(_TITLE, new[0].max_output_force_elastic)
-        self._knob = self._knob or knob_scale(branch.axis.knob, (branch.axis.high,))
+        self._choose_scales(branch.axis.knob, branch.axis.high, new[0].max_output_force_elastic)
         before = self.orbits.setdefault(arm, [])
         beside = {p for s in special for p in (s.before, s.after)}
         rows: Columns = {"orbits": _columns(_ORBIT, [
@@ -68,17 +72,42 @@ class BranchRows:
         pieces = self._lines(arm, before[-1:], new)
         before.extend(new)
         self.special.extend(special)
-        models: dict[str, dict[str, Any]] = {
-            **{f"legend of {s.kind}": {"visible": True} for s in special},
-            "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
+        return {"rows": rows, "pieces": pieces,
+                "models": self._fresh({f"legend of {s.kind}": {"visible": True} for s in special})}
+
+    def curve(self, points: Sequence[CurvePoint]) -> dict[str, Any] | None:
+        """What the resonance curve adds, in order of frequency; None if it was added before, or there is none."""
+        points = [point for point in points if np.isfinite(point.max_output_force_elastic)]
+        if self._curve_shown or not points:
+            return None
+        self._curve_shown = True
+        self._choose_scales("f", points[-1].frequency, max(point.max_output_force_elastic for point in points))
+        places = [self._scaled(point.frequency, point.max_output_force_elastic) for point in points]
+        repeats = [point.regime.period is not None for point in points]
+        pieces = [[_CURVE_LINE, number, *map(list, zip(*(places[i] for i in run), strict=True))]
+                  for number, run in enumerate(_runs(repeats))]
+        return {"rows": {CURVE: _columns(("x", "y"), places)}, "pieces": pieces,
+                "models": self._fresh({f"legend of {CURVE}": {"visible": True}})}
+
+    def _choose_scales(self, knob: str, high: float, force: float) -> None:
+        """Units of both axes, unless something is drawn already."""
+        self._force = self._force or force_scale(_TITLE, force)
+        self._knob = self._knob or knob_scale(knob, (high,))
+
+    def _fresh(self, models: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+        """Those of the changed properties, and of the axes' labels, that were not sent before."""
+        assert self._knob is not None and self._force is not None
+        models = {**models, "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
         fresh = {name: properties for name, properties in models.items() if name not in self._models}
         self._models |= fresh
-        return {"rows": rows, "pieces": pieces, "models": fresh}
+        return fresh
 
     def _place(self, point: BranchPoint, knob: float | None = None) -> tuple[float, float]:
+        return self._scaled(point.knob if knob is None else knob, point.max_output_force_elastic)
+
+    def _scaled(self, knob: float, force: float) -> tuple[float, float]:
         assert self._knob is not None and self._force is not None
-        return ((point.knob if knob is None else knob) / self._knob.factor,
-                point.max_output_force_elastic / self._force.factor)
+        return knob / self._knob.factor, force / self._force.factor
 
     def _lines(self, arm: int, last: list[BranchPoint], new: list[BranchPoint]) -> list[list[Any]]:
         """Pieces on which all orbits are stable, or none is; a piece begins where the last one of its arm ended."""
@@ -98,6 +127,17 @@ class BranchRows:
         return pieces
 
 
+def _runs(wanted: Sequence[bool]) -> list[list[int]]:
+    """The places of neighbours that are all wanted, two or more of them."""
+    runs: list[list[int]] = [[]]
+    for place, one in enumerate(wanted):
+        if one:
+            runs[-1].append(place)
+        elif runs[-1]:
+            runs.append([])
+    return [run for run in runs if len(run) > 1]
+
+
 def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, compact: bool = False) -> figure:
     """The largest elastic output force of periodic orbits over the knob of their branches.
 
@@ -105,8 +145,8 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     one row for each orbit, the kinds of special points one for each point; `BranchRows` says what an orbit more adds.
     """
     rows = BranchRows(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
-    data: Columns = {**{name: {"x": [], "y": []} for name in _LINES}, "orbits": _columns(_ORBIT, []),
-                     **{kind: _columns(_MARK, []) for kind in SPECIAL}}
+    data: Columns = {**{name: {"x": [], "y": []} for name in (CURVE, _CURVE_LINE, *_LINES)},
+                     "orbits": _columns(_ORBIT, []), **{kind: _columns(_MARK, []) for kind in SPECIAL}}
     models: dict[str, Any] = {}
     number = 0
     for one in found:
@@ -143,7 +183,9 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
     if not compact:
         plot.xaxis[0].name, plot.yaxis[0].name = "knob", "force"
     sources = {name: ColumnDataSource(columns, name=name) for name, columns in data.items()}
-    items = []
+    grey = [plot.multi_line("x", "y", source=sources[_CURVE_LINE], line_width=1.2, line_color=GREY, line_alpha=0.8),
+            plot.scatter("x", "y", source=sources[CURVE], size=2.5, line_color=None, fill_color=GREY, fill_alpha=0.8)]
+    items = [LegendItem(name=f"legend of {CURVE}", label="resonance curve, from rest", renderers=grey, visible=False)]
     for name, (width, dash) in _LINES.items():
         line = plot.multi_line("x", "y", source=sources[name], line_dash=dash, line_join="round")
         items.append(LegendItem(label=name, renderers=[themed(line, line_color="output", line_width=width)]))
@@ -158,7 +200,7 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
     items += [LegendItem(name=f"legend of {kind}", label=SPECIAL[kind], renderers=[one], visible=False)
               for kind, one in _marks(plot, sources, compact).items()]
     for data_range in (plot.x_range, plot.y_range):
-        data_range.renderers = [targets]
+        data_range.renderers = [targets, grey[1]]
     if not compact:
         _tools(plot, targets, items)
         plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, _TITLE

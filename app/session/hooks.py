@@ -38,6 +38,9 @@ class Page:
     def picture_ready(self, picture: Settled) -> None:
         """A settled picture is ready; a better one for these knobs may follow unless `picture.final`."""
 
+    def curve_ready(self) -> None:
+        """The resonance curve from rest is complete: `Host.complete_curve` has it."""
+
     def theme_changed(self, theme: Theme) -> None:
         """The page is shown in another theme; a view's own figures follow by themselves."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Protocol
 
-from granchain_core import Scene, State
+from granchain_core import CurvePoint, Scene, State
 
 from .activities import Activity
 from .session import Session
@@ -27,6 +27,9 @@ class Host(Protocol):
     @property
     def curve_computing(self) -> bool:
         """Whether a resonance curve is being computed."""
+
+    def complete_curve(self) -> list[CurvePoint]:
+        """The resonance curve from rest of the present knobs, in order of frequency; empty unless it is complete."""
 
     def activities(self) -> list[Activity]:
         """Everything that is computed for this visitor, or could be."""

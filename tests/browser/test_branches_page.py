@@ -25,15 +25,19 @@ def opened(page: Page) -> Locator:
     """The Branches page, opened from its tab."""
     page.get_by_role("tab", name="branches").click()
     page.locator("#tabs").get_by_role("button", name="open the page").click()
-    sheet = page.locator('[data-overlay="branches"]')
+    return page.locator('[data-overlay="branches"]')
+
+
+def stop(sheet: Locator) -> None:
+    """Stop what is followed; where it is complete already, the button is hidden and its click does nothing."""
+    expect(sheet.get_by_role("button", name=re.compile("^(stop|follow from here)$")).first).to_be_visible()
+    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")
     expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
-    return sheet
 
 
 def followed(page: Page) -> Locator:
-    """The page with a branch that has a special point."""
+    """The page with a branch that has a special point; it begins by itself."""
     sheet = opened(page)
-    sheet.get_by_role("button", name="follow from here").click()
     page.wait_for_function(f"{SPECIAL}.length > 0", timeout=COMPILED)
     until(page, lambda: len(source(page, "branches", "orbits").get("x", [])) > 1)
     return sheet
@@ -72,16 +76,48 @@ def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     until(page, lambda: source(page, "branches", "orbits", large=False).get("x") == source(page, "branches", "orbits")["x"])
 
 
+def test_a_link_to_the_page_begins_by_itself_over_the_resonance_curve(visit: Visit) -> None:
+    page = visit(f"{SHORT}&page=branches")
+    sheet = page.locator('[data-overlay="branches"]')
+    page.wait_for_function(f"{ORBITS}?.x.length > 3", timeout=COMPILED)
+    until(page, lambda: len(source(page, "branches", "curve").get("x", [])) > 50)
+    curve = source(page, "branches", "curve")
+    assert curve["x"] == sorted(curve["x"])
+    # the settled motion lies on the curve and on the branch: the same force, in the same unit
+    row = min(range(len(curve["x"])), key=lambda i: abs(curve["x"][i] - 2000))
+    orbits = at_rest(page, ORBITS)
+    near = min(range(len(orbits["x"])), key=lambda i: abs(orbits["x"][i] - curve["x"][row]))
+    assert orbits["y"][near] == pytest.approx(curve["y"][row], rel=0.05)  # neighbours on a grid of some 40 Hz
+    stop(sheet)
+    # another chain has another curve, and greys the branch; nothing begins again by itself
+    damping = field(page, "D")
+    damping.fill("90")
+    damping.press("Enter")
+    expect(sheet.locator(".stale")).to_be_visible()
+    assert source(page, "branches", "curve") == curve
+
+
+def test_a_motion_that_does_not_repeat_is_said_to_lie_on_no_branch(visit: Visit) -> None:
+    page = visit("?v=1&scene=sec2&f=1750&page=branches")
+    sheet = page.locator('[data-overlay="branches"]')
+    expect(sheet).to_contain_text("lies on no branch", timeout=COMPILED)
+    expect(sheet.get_by_role("button", name="follow from here")).to_be_visible()
+    until(page, lambda: len(source(page, "branches", "curve").get("x", [])) > 50)
+
+
 def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=250")
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
     sheet = opened(page)
+    stop(sheet)
     sheet.get_by_label("period of the orbits").select_option("1")
     sheet.get_by_role("button", name="follow from here").click()
     page.wait_for_function(f"{ORBITS} && {SPECIAL}.includes('period_doubling')"
                            f" && {ORBITS}.stable.filter((one, i) => !one && !{ORBITS}.arm[i]).length > 5", timeout=COMPILED)
     sheet.get_by_role("button", name="stop").click()
     expect(sheet).to_contain_text("stopped; the orbits found so far are kept")
+
+    sheet.get_by_role("button", name="zoom in").click()  # beside the whole curve the orbits lie close together
 
     def at(name: str, row: int) -> tuple[float, float]:
         columns = source(page, "branches", name)
@@ -113,7 +149,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
 
 #: The orbit that is farthest from all special points, so that a click means it and no other.
 LONELY = """(stable) => {
-  const { orbits, ...rows } = granchain.pages.get('branches').data.rows;
+  const { orbits, curve, ...rows } = granchain.pages.get('branches').data.rows;
   const special = Object.values(rows).flatMap(({ x }) => x);
   const far = (f) => Math.min(...special.map((one) => Math.abs(one - f)));
   return orbits.x.map((f, row) => [orbits.stable[row] === stable ? far(f) : -1, row]).sort((a, b) => b[0] - a[0])[0][1];
@@ -130,7 +166,7 @@ def test_the_page_fits_and_moved_knobs_grey_the_branch(visit: Visit) -> None:
         assert page.evaluate("document.documentElement.scrollWidth") == width
         box = sheet.locator(".work .picture").bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200
-    sheet.locator("button:text-is('stop')").first.evaluate("one => one.click()")  # hidden where the branch is complete already
+    stop(sheet)
     damping = field(page, "D")
     damping.fill("90")
     damping.press("Enter")
@@ -144,6 +180,7 @@ def test_the_page_fits_and_moved_knobs_grey_the_branch(visit: Visit) -> None:
 def test_a_chain_without_such_an_orbit_is_told_in_a_sentence(visit: Visit) -> None:
     page = visit("?v=1&scene=rig&f=140&k=0")
     sheet = opened(page)
+    stop(sheet)
     sheet.get_by_label("period of the orbits").select_option("1")
     sheet.get_by_role("button", name="follow from here").click()
     expect(sheet.locator(".warn")).to_contain_text("found no orbit of 1 drive periods", timeout=COMPILED)

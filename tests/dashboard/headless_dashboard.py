@@ -16,7 +16,7 @@ class Dashboard(FakeHost, Controller):
     """A dashboard whose callbacks are called when the test says so, and whose messages to the browser are kept."""
 
     busy, awaiting_picture, curve_computing = Controller.busy, Controller.awaiting_picture, Controller.curve_computing
-    call_later, failed = Controller.call_later, Controller.failed
+    call_later, failed, complete_curve = Controller.call_later, Controller.failed, Controller.complete_curve
 
     def __init__(self) -> None:
         FakeHost.__init__(self)

@@ -6,11 +6,15 @@ import { BokehFigure, StreamedData } from "../../parts/bokeh_figure.js";
 const WORDS = "largest elastic output force of periodic orbits over drive frequency";
 // Below this width in pixels the legend stands in two columns.
 const NARROW = 700;
+const MARGIN = 0.05; // beside the branch, as a part of its length
 const ABOUT =
   "The orbit on the screen is followed in frequency, also where it is unstable and no settled motion shows it. The picture shows the elastic part of the force, which changes smoothly along a branch; the resonance curve shows the whole force, dashpots included.";
 const STALE =
   "The knobs have moved: these orbits belong to another chain. Follow again for the present one; a click on an orbit brings the old one back.";
+const ZOOM = "Show the branch as large as there is room; the reset beside the picture shows the whole curve again";
 const FOLLOW = "Follow the orbit on the screen up and down in frequency, through folds, stable or not";
+
+const sentence = (words) => `${words[0].toUpperCase()}${words.slice(1).replace(/\.$/, "")}.`;
 
 function periodChoice(longest) {
   const periods = Array.from({ length: longest }, (_, i) => new Option(`period ${i + 1}`, i + 1));
@@ -66,6 +70,7 @@ class BranchesPage {
     this.period = periodChoice(model.state.longest_period);
     this.start = button("follow from here", () => send(this.request()), { title: FOLLOW });
     this.stop = button("stop", () => send({ do: "branches-stop" }));
+    this.zoom = button("zoom in", () => this.zoomIn(), { title: ZOOM });
     this.on = button("continue", () => send({ do: "branches-continue" }));
     this.status = element("span", { className: "status" });
     this.said = paragraph("", "said");
@@ -73,7 +78,15 @@ class BranchesPage {
     this.choice = new Choice(send);
     this.picture = element("div", { className: "picture" });
     this.work = element("div", { className: "work" }, this.picture);
-    const head = pageHead("Branches of periodic orbits", this.period, this.start, this.stop, this.on, this.status);
+    const head = pageHead(
+      "Branches of periodic orbits",
+      this.period,
+      this.start,
+      this.stop,
+      this.on,
+      this.zoom,
+      this.status,
+    );
     const say = element("div", { className: "say" }, this.said, this.warning, this.choice.root);
     this.root = element("div", { className: "part sheet" }, head, say, this.work);
     this.data = new StreamedData();
@@ -101,15 +114,25 @@ class BranchesPage {
     this.figure.set("legend", { ncols: this.picture.clientWidth < NARROW ? 2 : 6 });
   }
 
+  // The picture from the first to the last orbit; a branch can be short beside the curve.
+  zoomIn() {
+    const plot = this.figure.model("branches");
+    const { x, y } = this.data.rows.orbits;
+    const [left, right] = [Math.min(...x), Math.max(...x)];
+    plot?.x_range.setv({ start: left - MARGIN * (right - left), end: right + MARGIN * (right - left) });
+    plot?.y_range.setv({ start: 0, end: (1 + MARGIN) * Math.max(...y) });
+  }
+
   show() {
     const { state } = this.model;
     const running = Boolean(state.running);
     this.status.textContent = state.progress ?? "";
     this.start.hidden = running;
     this.stop.hidden = !running;
-    this.on.hidden = running || !state.unfinished || !this.data.rows.orbits;
-    const ended = (state.ended ?? []).join("; ");
-    this.said.textContent = [state.words, ended].filter(Boolean).join(". ") || ABOUT;
+    this.zoom.hidden = !this.data.rows.orbits;
+    this.on.hidden = running || !state.unfinished || this.zoom.hidden;
+    const sentences = [state.words, ...(state.ended ?? [])].filter(Boolean);
+    this.said.textContent = sentences.map((one) => sentence(one)).join(" ") || ABOUT;
     this.warning.textContent = state.failure || (state.stale ? STALE : "");
     this.warning.hidden = !this.warning.textContent;
     this.root.classList.toggle("stale", Boolean(state.stale));
@@ -120,7 +143,8 @@ class BranchesPage {
   draw() {
     const { figures, state } = this.model;
     const page = window.granchain;
-    if (page.overlay === "branches" && this.data.rows.orbits) this.figure.load(figures.page, WORDS);
+    const { curve, orbits } = this.data.rows;
+    if (page.overlay === "branches" && (curve || orbits)) this.figure.load(figures.page, WORDS);
     page.publish("branches", {
       data: this.data,
       words: state.words,
@@ -135,7 +159,7 @@ class BranchesPage {
       this.data.clear();
       this.choice.hide();
       for (const one of figures) one.remove();
-    } else if (message.type === "orbits") {
+    } else if (message.type === "add") {
       this.data.add(message, figures);
       this.draw();
     }
@@ -147,10 +171,14 @@ export function render({ model }) {
   model.on("state", () => page.show());
   model.on("figures", () => page.draw());
   model.on("msg:custom", (message) => page.receive(message));
-  window.granchain.on("overlay", (name) => {
-    if (name === "branches") requestAnimationFrame(() => page.draw());
-  });
+  const opened = (name) => {
+    if (name !== "branches") return;
+    model.send_msg({ do: "branches-open" });
+    requestAnimationFrame(() => page.draw());
+  };
+  window.granchain.on("overlay", opened);
   new ResizeObserver(() => page.fit()).observe(page.work);
   page.show();
+  opened(window.granchain.overlay); // by a link
   return page.root;
 }

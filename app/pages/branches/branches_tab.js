@@ -13,7 +13,7 @@ export function branchesTab(_, { placeholder }) {
     const { data, words, small, figures } = known();
     figures[1] = figure;
     said.textContent = words || placeholder;
-    if (host.isConnected && data.rows.orbits) figure.load(small, "branches of periodic orbits");
+    if (host.isConnected && (data.rows.curve || data.rows.orbits)) figure.load(small, "branches of periodic orbits");
   };
   requestAnimationFrame(show);
   return { content: [element("div", { className: "row top" }, said, openButton("branches")), host], show };

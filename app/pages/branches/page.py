@@ -9,7 +9,7 @@ from typing import Any
 
 from panel.io import unlocked
 
-from granchain_core import Scene
+from granchain_core import Scene, Settled
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.stop import Stop
 from granchain_core.warm import ADAPTIVE, BRANCH, FIXED_STEP
@@ -17,6 +17,7 @@ from granchain_core.warm import ADAPTIVE, BRANCH, FIXED_STEP
 from ...pictures.branches import BranchRows
 from ...serve.delays import BRANCH_EVERY
 from ...serve.queues import LONG
+from ...session.budget import curve_affordable
 from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import listed, whole
@@ -26,6 +27,8 @@ from ...session.task import Job, Task
 from .view import LONGEST_PERIOD, Branches
 
 WORDS = StatusWords("the kernels for branches", 40, kept="the orbits found so far")
+NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no branch. Choose a period, and an orbit of "
+                "that period near it is followed.")
 
 
 @dataclass
@@ -50,20 +53,34 @@ class BranchesPage(Page):
         self._special: list[tuple[Branch, Any]] = []
         self._rows = BranchRows()
         self._sent = 0.0
+        self._scene: Scene | None = None
+        self._begun = self._waits = False
         self.status: Status = "none"
         self.actions: Actions = {
-            "branches-start": self._start, "branches-stop": lambda _: self.stop(),
-            "branches-continue": lambda _: self._continue(), "branches-orbit": self._load_orbit,
-            "branches-double": self._double,
+            "branches-open": lambda _: self._opened(), "branches-start": self._start,
+            "branches-stop": lambda _: self.stop(), "branches-continue": lambda _: self._continue(),
+            "branches-orbit": self._load_orbit, "branches-double": self._double,
         }
 
     def scene_changed(self) -> None:
-        """Tell whether the branches still belong to the chain on the screen; without branches nothing is drawn."""
-        if not self._followed:
-            return
+        """Tell whether the branches still belong to the chain on the screen; a curve without branches goes."""
         now = self._host.session.scene
-        stale = without_frequency(self._followed[0].branch.axis.scene) != without_frequency(now)
-        self._view.update_state(now=now.f, stale=stale)
+        stale = self._scene is not None and without_frequency(self._scene) != without_frequency(now)
+        if stale and not self._followed and not self._task.running:
+            self._clear()
+            stale = False
+        if self._begun or self._waits:
+            self._view.update_state(now=now.f, stale=stale)
+
+    def picture_ready(self, picture: Settled) -> None:
+        """Begin by itself where the page was opened before the motion had settled."""
+        if self._waits and picture.final:
+            self._begin()
+
+    def curve_ready(self) -> None:
+        """Draw the curve behind the branches, where somebody has opened the page."""
+        if self._begun or self._waits:
+            self._draw_curve()
 
     def stop(self) -> None:
         """Stop; what has been computed stays and can be continued."""
@@ -76,6 +93,27 @@ class BranchesPage(Page):
 
     # What the visitor does
 
+    def _opened(self) -> None:
+        """The first time, follow the orbit on the screen without being asked."""
+        self._draw_curve()
+        if self._begun:
+            return
+        if self._host.awaiting_picture or self._host.session.picture is None:
+            self._waits = True
+        else:
+            self._begin()
+
+    def _begin(self) -> None:
+        """Follow the orbit on the screen if there is one, and its branch is not too long for what nobody asked for."""
+        self._begun, self._waits = True, False
+        scene, picture = self._host.session.scene, self._host.session.picture
+        if picture is None or not scene.is_driven or not curve_affordable(scene):
+            return
+        if picture.regime.period:
+            self._start({})
+        else:
+            self._view.update_state(words=NOT_PERIODIC)
+
     def _start(self, message: dict[str, Any]) -> None:
         period = message.get("period")
         if period is not None:
@@ -83,7 +121,7 @@ class BranchesPage(Page):
         scene, picture = self._host.session.scene, self._host.session.picture
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)
-        seed = None
+        self._begun, self._waits, seed = True, False, None
         if picture is not None and picture.final and picture.run.scene == scene and picture.regime.period \
                 and period in (None, picture.regime.period):
             seed, period = picture.state, picture.regime.period
@@ -91,8 +129,8 @@ class BranchesPage(Page):
         self._submit(lambda stop: [begin_branch(scene, "f", *axis, period, seed, both=True, stop=stop)], scene)
 
     def _continue(self) -> None:
-        if self._followed and not self._task.running:
-            scene = self._followed[0].branch.axis.scene
+        if self._followed and self._scene is not None and not self._task.running:
+            scene = self._scene
             left = [one.branch for one in self._followed]
             self._clear()
             self._submit(lambda stop: left, scene)
@@ -115,11 +153,13 @@ class BranchesPage(Page):
 
     def _clear(self) -> None:
         self._task.cancel()
-        self._followed, self._drawn, self._special, self._rows = [], [], [], BranchRows()
+        self._followed, self._drawn, self._special, self._rows, self._scene = [], [], [], BranchRows(), None
         self._view.send(type="clear")
 
     def _submit(self, begin: Callable[[Stop], list[Branch]], scene: Scene) -> None:
         self._task.cancel()
+        self._scene = scene
+        self._draw_curve()
         self._say("waiting")
         self._task.start(lambda job: self._follow(begin, scene, job))
 
@@ -148,6 +188,19 @@ class BranchesPage(Page):
         self.scene_changed()
         self._draw()
 
+    def _draw_curve(self) -> None:
+        """Draw the resonance curve behind the branches of the same chain, or alone while there are none."""
+        now = self._host.session.scene
+        if self._scene is not None and without_frequency(self._scene) != without_frequency(now):
+            return
+        added = self._rows.curve(self._host.complete_curve())
+        if added is not None:
+            self._scene = self._scene or now
+            self.scene_changed()
+            with unlocked():
+                self._view.need_figures()
+                self._view.send(type="add", **added)
+
     def _draw(self) -> None:
         """Send what is new; a special point goes before the orbit that follows it on its arm."""
         with unlocked():
@@ -160,7 +213,7 @@ class BranchesPage(Page):
                 drawn.points += len(points)
                 drawn.special += len(special)
                 self._view.need_figures()
-                self._view.send(type="orbits", **self._rows.add(number, drawn.branch, points, special))
+                self._view.send(type="add", **self._rows.add(number, drawn.branch, points, special))
             self._say(self.status if self.status in ("stopped", "done") else "following")
 
     def _say(self, status: Status, sentence: str = "") -> None:
