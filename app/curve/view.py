@@ -15,7 +15,7 @@ from granchain_core.steady.curve.resonance import Place, place_of
 from ..format import prefixed
 from ..frames import round_up
 from ..parts.figure_style import OUTPUT, quiet_axis, quiet_plot, together
-from ..pictures.curve import DASHES, curve_columns, curve_tooltips
+from ..pictures.curve import DASHES, FILLS, curve_columns, curve_tooltips
 from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..pictures.theme import GREY
 from ..serve.changes import change
@@ -72,8 +72,8 @@ class Curve:
             line_width=1.5, line_alpha=0.45 if grey else 0.9))]
         if not grey:
             marks = self.figure.add_glyph(source, Scatter(
-                x="frequency", y="force", marker="marker", size="size", fill_color="colour", line_color="colour",
-                line_width=1.5))
+                x="frequency", y="force", marker="marker", size="size", line_color="colour", line_width=1.5,
+                fill_color=FILLS[direction]))
             made.append(marks)
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(direction)))
         for renderer in made:

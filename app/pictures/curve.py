@@ -22,10 +22,12 @@ DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 """Dashes of the line by the start of a sweep."""
 WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
 """The same in words."""
-LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈"}
+LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈○"}
 """The same for a choice beside the curve, with a piece of the line."""
-KEY = "Solid line: from rest; dashed: frequency rising; dotted: frequency falling."
+KEY = "Solid line: from rest; dashed: frequency rising; dotted, with hollow marks: frequency falling."
 """What the dashes mean, in a sentence."""
+FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
+"""What fills the marks, by the start of a sweep: a column, or nothing, so that both sweeps show where they differ."""
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 """A tooltip's lines for the columns of `forces_in_words`."""
 
@@ -44,8 +46,8 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
         source = ColumnDataSource(name=one.start, data=curve_columns(points, scale.factor, 3, drawn))
         line = plot.line("frequency", "force", source=source, line_dash=DASHES[one.start] or "solid")
-        marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", fill_color="colour",
-                             line_color="colour", line_width=1.5, legend_group="regime")
+        marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", line_color="colour",
+                             fill_color=FILLS[one.start], line_width=1.5, legend_group="regime")
         themed(line, line_color="output", line_width=1.8)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(one.start)))
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label

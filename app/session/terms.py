@@ -12,7 +12,7 @@ FILE = next(path for path in (ASSETS / "glossary.md", ASSETS.parent / "docs" / "
 #: Terms of the glossary that the page's own texts use, longest first so that "anti-resonance" is not "resonance".
 SHOWN = ("quasi-periodic", "anti-resonance", "Floquet multiplier", "Lyapunov exponent", "sonic vacuum", "stop band",
          "stated error", "output force", "energy residual", "adaptive method", "fixed-step method", "special point",
-         "time step", "attractor", "resonance",
+         "time step", "tangent flow", "attractor", "resonance",
          "multiplier", "transient", "observer", "preload", "overlap", "regime", "strobe",
          "dashpot", "kernel", "basin")
 _ROW = re.compile(r"^\| [^|]+ \| ([^|]+) \| ((?:[^|\\]|\\.)+) \|", re.MULTILINE)

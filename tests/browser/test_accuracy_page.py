@@ -65,6 +65,7 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     assert {"rk4", "rk4-split", "rk4-naive", "verlet-naive", "dop853", "scipy LSODA"} <= set(methods)
     expect(sheet).to_contain_text("The cheapest way to 1e-6 is")
     expect(sheet).to_contain_text("Two independent references agree to")
+    expect(sheet).to_contain_text("against the reference; the status line has no reference and states an estimate on the safe side")
     assert marked(page, "cheapest") == 1
     assert marked(page, "now") == 1
     # another accuracy: other words, no new measurement, and nothing is greyed

@@ -41,6 +41,7 @@ class AccuracyPage {
     this.meter = meter("progress of the measurement");
     this.status = element("span", { className: "status" });
     this.line = element("b");
+    this.used = element("span", { className: "used" });
     this.agreement = element("span", { className: "soft" });
     this.machine = element("span", { className: "soft", title: "The processor that the kernels are compiled for" });
     this.warning = element("span", { className: "warn" });
@@ -52,7 +53,7 @@ class AccuracyPage {
       "div",
       { className: "part sheet" },
       pageHead("What accuracy costs", this.status, this.meter, this.stop, this.again),
-      element("div", { className: "say" }, this.line, this.agreement, this.machine, this.warning),
+      element("div", { className: "say" }, this.line, " ", this.used, this.agreement, this.machine, this.warning),
       element("div", { className: "work" }, this.picture),
       this.naive.root,
       this.methods,
@@ -87,6 +88,7 @@ class AccuracyPage {
     this.known = { drawn, running, progress, done, small: model.figures.small, asked };
     this.root.classList.toggle("stale", Boolean(asked?.stale));
     this.line.textContent = asked?.sentence ?? "";
+    this.used.textContent = asked?.used ?? "";
     this.warning.textContent = model.state.failure || (asked?.stale ? STALE : "");
     this.warning.hidden = !this.warning.textContent;
     if (window.granchain.overlay === "accuracy") showAccuracy(this.figure, model.figures.page, this.known);

@@ -16,7 +16,7 @@ from granchain_core.warm import ACCURACY, ADAPTIVE, FIXED_STEP
 from ...format import duration, short_error
 from ...pictures.accuracy import Annotations
 from ...serve.queues import MEASUREMENTS
-from ...session.active_setting import locate, page_setting
+from ...session.active_setting import PlacedSetting, locate, page_setting
 from ...session.activities import Activity
 from ...session.hooks import Actions, Page
 from ...session.host import Host
@@ -78,7 +78,8 @@ class AccuracyPage(Page):
         stale = bool(self._measured) and self._measured != measured_for(scene)
         self._view.mark(self.rows, Annotations(
             scene.accuracy, self._agreement, None if best is None else (best.wall_s, best.error),
-            None if now is None else (now.wall_s, now.error)), stale=stale, sentence=self._sentence(best))
+            None if now is None else (now.wall_s, now.error)), stale=stale, sentence=self._sentence(best),
+            used=self._used(now))
 
     def stop(self) -> None:
         """Stop measuring; the rows measured so far stay."""
@@ -136,6 +137,18 @@ class AccuracyPage(Page):
     def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
         self._view.update_state(**WORDS.of(status), failure=sentence, done=self.done)
+
+    def _used(self, now: PlacedSetting | None) -> str:
+        """What the page uses, and why the error in the status line is another number."""
+        picture = self._host.session.picture
+        if now is None:
+            return ""
+        words = f"This page uses {now.method}, {now.label}: error {short_error(now.error)} against the reference"
+        if picture is None or picture.run.error_estimate is None:
+            return f"{words}."
+        stated = picture.run.error_estimate
+        side = " on the safe side" if stated >= now.error else ""
+        return f"{words}; the status line has no reference and states an estimate{side}, {short_error(stated)}."
 
     def _sentence(self, best: Row | None) -> str:
         asked = short_error(self._host.session.scene.accuracy)
