@@ -27,8 +27,8 @@ QUICK = (
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """`-n auto`: one worker more than processors, because one that tests the dashboard mostly waits for browser and server."""
-    return (os.cpu_count() or 1) + 1
+    """`-n auto`: two workers more than processors, because one that tests the dashboard mostly waits for browser and server."""
+    return (os.cpu_count() or 1) + 2
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -22,9 +22,8 @@ from ..serve.socket_tuning import disable_nagle
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.hooks import Actions, Page, all_actions
 from ..session.live import LiveRun
-from ..session.message_checks import is_number, quoted
-from ..session.session import Session, presets, slider_range
-from ..session.share import EXTRAS, SPEEDS
+from ..session.message_checks import quoted
+from ..session.session import Session, clicked_frequency
 from .addresses import take_address
 from .display_choices import DisplayChoices
 from .gallery import cards
@@ -252,12 +251,7 @@ class Controller:
         self.pictures.compute(start)
 
     def _update_header(self) -> None:
-        session = self.session
-        self.views.header.update_state(
-            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.look,
-            origin=self._origin, driven=session.scene.is_driven,
-            speeds=sorted(SPEEDS), speed=session.speed, playing=session.playing,
-            query=session.link, view_fields=list(EXTRAS))
+        self.views.header.show_session(self.session, self._origin)
 
     def _tell_pages(self) -> None:
         scene = self.session.scene
@@ -293,11 +287,7 @@ class Controller:
         self.curves.moved(self.session.scene)
 
     def _choose_frequency(self, frequency: object) -> None:
-        """Go to the clicked frequency; the knob refuses anything that is not a number."""
-        if is_number(frequency):
-            low, high = slider_range(self.session.scene, "f")
-            frequency = round(min(max(frequency, low), high), 1)
-        self.session.change("f", frequency)
+        self.session.change("f", clicked_frequency(self.session.scene, frequency))
         self._send_knob_values()
         self._scene_changed()
 

@@ -7,7 +7,8 @@ from typing import Any
 
 from ..scripts import module
 from ..session.export import EXPORTS
-from ..session.share import EXTRAS
+from ..session.session import Session, presets
+from ..session.share import EXTRAS, SPEEDS
 from .component import Component, text
 
 _MODES = {
@@ -31,4 +32,12 @@ class Header(Component):
             "starts": [(start, _STARTS[start]) for start in EXTRAS["start"]],
             "started_elsewhere": _STARTED_ELSEWHERE,
             "files": list(EXPORTS.items()),
+            "speeds": sorted(SPEEDS), "view_fields": list(EXTRAS),
         }, **params)
+
+    def show_session(self, session: Session, origin: str) -> None:
+        """Show what the session chose; `origin` is the start of the picture on the screen."""
+        self.update_state(
+            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.look,
+            origin=origin, driven=session.scene.is_driven, speed=session.speed, playing=session.playing,
+            query=session.link)

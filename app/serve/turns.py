@@ -32,6 +32,9 @@ _SLICE = 0.02
 _REMEMBERED, _LATELY = 200, 10.0
 #: After so long a wait a computation has a slice although others use all cores [s].
 _LONGEST_WAIT = 0.5
+#: How often those that wait look whether there is room, which also comes as time passes [s]; each waits longer the more
+#: there are, up to so many times as long.
+_LOOK, _MOST_LOOKS = 0.05, 20
 
 #: Time in which half of what a visitor has used is forgotten [s].
 _HALF_LIFE = 5.0
@@ -77,8 +80,9 @@ class SharedCpuTime(CpuTime):
 class _Turn:
     """One thread that waits for its turn or has it; `at` is when it began to."""
 
-    def __init__(self, cpu_time: CpuTime, begins: bool, at: float) -> None:
-        self.cpu_time, self.begins, self.at, self.granted = cpu_time, begins, at, threading.Event()
+    def __init__(self, cpu_time: CpuTime, stop: Stop, begins: bool, at: float) -> None:
+        self.cpu_time, self.stop, self.begins, self.at = cpu_time, stop, begins, at
+        self.granted = threading.Event()
 
     def rank(self, now: float) -> tuple[bool, bool, float]:
         """Of those that wait, who has the lowest is next."""
@@ -113,18 +117,25 @@ class FairScheduler:
 
         `begins` says whether the computation has just begun.
         """
-        mine = _Turn(cpu_time, begins, self._clock())
+        mine = _Turn(cpu_time, stop, begins, self._clock())
         with self._lock:
             self._waiting.append(mine)
             self._grant()
-        while not mine.granted.wait(0.5 * _LONGEST_TURN):
-            with self._lock:
-                if stop and mine in self._waiting:
-                    self._waiting.remove(mine)
-                    break
-                if self._clock() - self._looked >= 0.5 * _LONGEST_TURN:  # one of those that wait looks for all
+        # One of those that wait looks for all; more often would take the interpreter from the loop and the pictures.
+        while not mine.granted.wait(_LOOK * min(len(self._waiting), _MOST_LOOKS)):
+            if stop:
+                self.stopped(stop)
+            elif self._clock() - self._looked >= _LOOK:
+                with self._lock:
                     self._grant()
         return mine
+
+    def stopped(self, stop: Stop) -> None:
+        """This stop flag is set: whoever waits with it need not wait longer."""
+        with self._lock:
+            for one in [one for one in self._waiting if one.stop is stop]:
+                self._waiting.remove(one)
+                one.granted.set()
 
     def end(self, turn: _Turn) -> None:
         """The turn is over."""
@@ -213,6 +224,11 @@ class SchedulerSlot(Flag):
     def begins(self) -> bool:
         """Whether the computation has just begun: there is no result yet, and it has not taken long."""
         return self._spent < _BEGINNING
+
+    def set(self) -> None:
+        """Ask for the end, also while this waits for its turn."""
+        super().set()
+        self._scheduler.stopped(self)
 
     def pause(self) -> None:
         """Between two parts of the computation: let a visitor go first who has used less."""

@@ -147,6 +147,14 @@ def slider_range(current: Scene, name: str) -> tuple[float, float]:
     return QUANTITIES[name].low, QUANTITIES[name].high
 
 
+def clicked_frequency(current: Scene, frequency: object) -> object:
+    """The frequency of a click on the curve, inside the slider's range; the knob refuses what is no number."""
+    if not is_number(frequency):
+        return frequency
+    low, high = slider_range(current, "f")
+    return round(min(max(frequency, low), high), 1)
+
+
 def without_frequency(current: Scene) -> Scene:
     """The scene with f at a fixed value. It identifies a curve or branch over f, whatever the knob f is set to."""
     return current.evolve(f=slider_range(current, "f")[0])

@@ -9,7 +9,7 @@ from playwright.sync_api import Locator, Page, expect
 #: The fixture `visit` of conftest.py.
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile kernels, on a machine that runs tests [ms].
-COMPILED = 20_000
+COMPILED = 240_000
 
 
 def field(page: Page, name: str) -> Locator:

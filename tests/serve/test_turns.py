@@ -5,6 +5,8 @@ from __future__ import annotations
 import threading
 import time
 
+import pytest
+
 from app.serve.turns import CpuTime, FairScheduler, SchedulerSlot, SharedCpuTime
 from granchain_core import Stop
 
@@ -35,6 +37,30 @@ def test_a_party_pays_together_and_has_the_claim_of_its_poorest() -> None:
     assert party.used == 0.0
     party.charge(2.0)
     assert (rich.used, poor.used, party.used) == (9.0, 1.0, 1.0)
+
+
+def test_who_is_stopped_while_waiting_does_not_wait_for_the_next_look(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.serve.turns._LOOK", 3600.0)
+    turns = FairScheduler(1)
+    held = turns.begin(CpuTime(), Stop())
+    slots = [SchedulerSlot(CpuTime(), turns) for _ in range(3)]
+    begun: list[SchedulerSlot] = []
+
+    def wait(slot: SchedulerSlot) -> None:
+        with slot.held():
+            begun.append(slot)
+
+    threads = [threading.Thread(target=wait, args=(slot,), daemon=True) for slot in slots]
+    for number, thread in enumerate(threads, 1):
+        thread.start()
+        until(lambda number=number: turns.waiting == number)
+    slots[1].set()
+    threads[1].join(20)
+    assert not threads[1].is_alive() and turns.waiting == 2 and begun == [slots[1]]
+    turns.end(held)
+    for thread in threads:
+        thread.join(20)
+    assert len(begun) == 3 and turns.waiting == 0
 
 
 def test_of_those_who_wait_the_one_that_has_used_least_is_next() -> None:
