@@ -133,7 +133,8 @@ _TABLE = (
              0.0, 100.0, "cubic", 1e-5, main=True, short="k / (K√A₀)"),
     Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
              1, 10_000, "linear", 1, whole=True, short="beads"),
-    Quantity("F0", "F₀", "N", "F_0", "preload", "Static force that presses the chain together; 0 is the sonic vacuum.",
+    Quantity("F0", "F₀", "N", "F_0", "preload",
+             "Force at rest in every contact; the wall stays in place. 0 is the sonic vacuum.",
              0.0, 1e4, "linear", 0.1, at_zero="nothing presses the beads"),
     Quantity("dimer", "m₂/m₁", "1", "m_2/m_1", "mass of every second bead",
              "Mass of beads 2, 4, … over that of the others; of the same material, so the radius goes with its cube "

@@ -50,7 +50,7 @@ COST_ACCOUNT = "cost account"
 
 def structure(shown: Scene) -> str:
     """Name of a scene's structure: its set of effects and the vectors its bodies fit into."""
-    width = next((f"{lanes} lanes" for lanes in WIDTHS if lanes >= shown.N + 2), "long")
+    width = next((f"vector of {width}" for width in WIDTHS if width >= shown.N + 2), "long")
     effects = [effect.key(shown) for effect in effects_of(shown)]
     law = [] if shown.has_dissipation else ["none"]
     beads = [] if is_uniform(scale_chain(shown)) else ["unequal beads"]

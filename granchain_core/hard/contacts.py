@@ -16,10 +16,10 @@ from .oracle import Plain, solved
 def brushed(quick: bool) -> list[Measurement]:
     """Random grazing touches: none missed, none invented, and the times of contact exact."""
     count = 4_000 if quick else 100_000
-    driver, random_count = (touches.draw(count // 2, 11, True), touches.draw(count // 2, 12, False))
-    by_driver, by_throw = touches.run(driver, True), touches.run(random_count, False)
-    wrong = len(touches.missed(driver, by_driver)) + len(touches.missed(random_count, by_throw))
-    touched, hit = driver[:, touches.DEPTH] > 0.0, random_count[:, touches.DEPTH] > 0.0
+    driver, thrown = (touches.draw(count // 2, 11, True), touches.draw(count // 2, 12, False))
+    by_driver, by_throw = touches.run(driver, True), touches.run(thrown, False)
+    wrong = len(touches.missed(driver, by_driver)) + len(touches.missed(thrown, by_throw))
+    touched, hit = driver[:, touches.DEPTH] > 0.0, thrown[:, touches.DEPTH] > 0.0
     still = touched & (touches.moved(driver) < 1e-10)
     onset = max(by_driver[touched, touches.ONSET_ERROR].max(), by_throw[hit, touches.ONSET_ERROR].max())
     return [
@@ -66,9 +66,9 @@ def reordered(beads: int, time: float, seed: int) -> float:
     velocity = np.random.default_rng(seed).choice([-1.0, 0.0, 1.0], beads)
     velocity[0] = 1.0
     kept = []
-    for random_count in (velocity, -velocity[::-1]):
+    for thrown in (velocity, -velocity[::-1]):
         bench = Bench(beads, time, 64, LinearDashpot(0.1), tolerance=3e-15)
-        bench.throw(random_count)
+        bench.throw(thrown)
         kept.append(bench.record().displacement)
     return float(np.abs(kept[0] + kept[1][:, ::-1]).max() / np.abs(kept[0]).max())
 

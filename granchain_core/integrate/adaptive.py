@@ -49,8 +49,8 @@ class Adaptive:
 
     def trajectory(self, y: np.ndarray) -> Trajectory:
         """The state y with all that its kernels need."""
-        lo = self.scaled
-        return Trajectory(lo.slots, Cycle(lo.beta, lo.period), y, self.work)
+        scaled = self.scaled
+        return Trajectory(scaled.slots, Cycle(scaled.beta, scaled.period), y, self.work)
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute driver state and dy/dt for y."""

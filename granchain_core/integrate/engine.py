@@ -90,9 +90,10 @@ class Engine:
     @property
     def state(self) -> State:
         """The present state in SI."""
-        lo = self.scaled
+        scaled = self.scaled
         self.place(from_velocity=False)
-        return State(lo.rows(self.y)[0] * lo.scales.length, lo.rows(self.stepper.work.k[0])[0] * lo.scales.velocity,
+        displacement, velocity = scaled.rows(self.y)[0], scaled.rows(self.stepper.work.k[0])[0]
+        return State(displacement * scaled.scales.length, velocity * scaled.scales.velocity,
                      self.grid_index / self.grid)
 
     # --- motion --------------------------------------------------------------------------------------------

@@ -63,11 +63,11 @@ class FixedStep:
 
     def new_simd_workspace(self) -> LongChain | ShortChain | None:
         """The workspace of SIMD steps: a driven chain with no effect that they do not know."""
-        lo, slots = self.scaled, self.scaled.slots
+        scaled, slots = self.scaled, self.scaled.slots
         if not self._simd or not all_in_simd_kernels(slots) or slots.driver is None:
             return None
-        width = next((lanes for lanes in WIDTHS if lo.bodies <= lanes), 0)
-        return _short_chain(lo, width) if width else _long_chain(lo)
+        width = next((lanes for lanes in WIDTHS if scaled.bodies <= lanes), 0)
+        return _short_chain(scaled, width) if width else _long_chain(scaled)
 
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""

@@ -43,7 +43,7 @@ class Computations:
       - the difference of the last two, times a factor;
       - the previous difference, reduced by the method's order;
       - the typical error of a method with such steps;
-      - the rounding of the steps, magnified as the errors of the first computation were.
+      - the rounding of the steps, times the largest growth of errors that any of the computations showed.
     The first quantity determines how errors grow.
     """
 

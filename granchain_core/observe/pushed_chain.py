@@ -70,23 +70,24 @@ class ChainInPieces:
 
     def run(self, start: State, halvings: int) -> Samples:
         """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
-        lo, n, row = self.scaled, self.scaled.beads, self.scaled.bodies
+        scaled, n, row = self.scaled, self.scaled.beads, self.scaled.bodies
         if len(start.displacement) != n:
             raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
         if self.steps(halvings) > MOST_STEPS:
             raise BadInput(f"The record needs {self.steps(halvings):.1e} steps; at most {MOST_STEPS:.0e} are allowed: "
                            "give a shorter record or ask for less accuracy.")
-        y = np.zeros(lo.size)
-        displacement, velocity = lo.rows(y)
-        displacement[:], velocity[:] = start.displacement / lo.scales.length, start.velocity / lo.scales.velocity
-        stages = Stages(np.zeros((4, lo.size)), np.zeros(lo.size), np.zeros(lo.size), np.zeros((ENDS, row - 1)),
-                        lo.forces(), None)
-        lo.slots.driver.piece[:] = self._pieces[0]
-        place(lo.slots, 0.0, y, stages.k[0], stages.forces, True)
+        y = np.zeros(scaled.size)
+        displacement, velocity = scaled.rows(y)
+        displacement[:] = start.displacement / scaled.scales.length
+        velocity[:] = start.velocity / scaled.scales.velocity
+        stages = Stages(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
+                        np.zeros((ENDS, row - 1)), scaled.forces(), None)
+        scaled.slots.driver.piece[:] = self._pieces[0]
+        place(scaled.slots, 0.0, y, stages.k[0], stages.forces, True)
         reset_peaks(self._log.peaks)
-        samples = empty_samples(lo, len(self._spans) + 1)
+        samples = empty_samples(scaled, len(self._spans) + 1)
         nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)
-        status, done = run_observed(Rk4Split(0), Trajectory(lo.slots, nothing, y, stages),
+        status, done = run_observed(Rk4Split(0), Trajectory(scaled.slots, nothing, y, stages),
                                     SampledForce(self._spans, self._pieces, self._substeps * 2**halvings), samples,
                                     Output(self._log, self.counts.array, self._stop.flag))
         if status == CANCELLED:

@@ -99,14 +99,14 @@ class StroboscopicMap:
         stay importable, because every process that reads compiled kernels imports their types.
         Raises `BadInput` for a damping that is not the linear dashpot's.
         """
-        lo = self.engine.scaled
-        if lo.slots.dissipation is not None and not isinstance(lo.slots.dissipation, LinearDashpot):
-            raise BadInput(f"dissipation = {lo.scene.dissipation} has no constant saltation; the second route knows "
-                           "linear and none.")
-        before = velocity_from_w(lo, x)
-        tangent = new_velocity_tangent(before, lo.bodies, float(jumps))
+        scaled = self.engine.scaled
+        if scaled.slots.dissipation is not None and not isinstance(scaled.slots.dissipation, LinearDashpot):
+            raise BadInput(f"dissipation = {scaled.scene.dissipation} has no constant saltation; the second route "
+                           "knows linear and none.")
+        before = velocity_from_w(scaled, x)
+        tangent = new_velocity_tangent(before, scaled.bodies, float(jumps))
         self._run(x, tangent)
-        return np.linalg.solve(velocity_from_w(lo, self.inner(self.engine.y)), tangent.matrix)
+        return np.linalg.solve(velocity_from_w(scaled, self.inner(self.engine.y)), tangent.matrix)
 
     def end(self, x: np.ndarray) -> np.ndarray:
         """The state n periods after x, without tangents: with none of them, by the kernel that has their code."""

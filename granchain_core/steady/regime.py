@@ -199,7 +199,7 @@ def _shrinks(first: float, second: float, third: float) -> bool:
 
 
 def neither_converges_nor_departs(strobes: np.ndarray) -> bool:
-    """Whether a record that is long enough shows a motion that neither slows down nor leaves an orbit."""
+    """Whether a record that is long enough shows a motion that neither converges nor leaves an orbit."""
     seen = _windows(strobes)
     return len(seen) > 0 and not _converging(seen) and not _departing(seen)
 

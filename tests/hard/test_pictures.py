@@ -82,7 +82,7 @@ def test_least_squares_leaves_contacts_open_and_calls_it_success() -> None:
 
 
 def test_scipys_defaults_round_a_pulse_and_slow_it() -> None:
-    """The table's line, in metres: a bead random_count at section 2's driver speed, 1 mm/s, and the 51st bead of 60."""
+    """The table's line, in metres: a bead thrown at section 2's driver speed, 1 mm/s, and the 51st bead of 60."""
     chosen, beads, speed, place = scene("sec2"), 60, 1e-3, 50
     length = (chosen.bead(1).mass * speed**2 / chosen.K) ** 0.4
     times = length / speed * np.linspace(0.0, 70.0, 281)

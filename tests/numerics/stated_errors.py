@@ -2,7 +2,7 @@
 
     python -m tests.numerics.stated_errors --count 1000 [--seed 1] [--few]
 
-Drive, amplitude, damping, foundation, 1 to 20 beads, wall, law, tension, preload, a bead that is random_count and the accuracy
+Drive, amplitude, damping, foundation, 1 to 20 beads, wall, law, tension, preload, a bead that is thrown and the accuracy
 asked for are drawn at random. True is the adaptive method at 3e-15 per step; what it changes against 3e-14 is how
 well the truth is known, and an error is judged to within three times that.
 """
@@ -68,8 +68,8 @@ def random_scene(rng: np.random.Generator, structures: list) -> Scene:
         chosen = chosen.evolve(F0=10.0 ** rng.uniform(-2.0, 1.3))
     if rng.random() < 0.4:
         fast = chosen.A0 * np.sqrt(chosen.K * np.sqrt(chosen.A0) / chosen.bead(1).mass)
-        random_count = (int(rng.integers(1, chosen.N + 1)), float(fast * rng.uniform(-1.0, 1.0)))
-        chosen = replace(chosen, start_velocity=(random_count,))
+        thrown = (int(rng.integers(1, chosen.N + 1)), float(fast * rng.uniform(-1.0, 1.0)))
+        chosen = replace(chosen, start_velocity=(thrown,))
     return chosen
 
 
@@ -125,7 +125,7 @@ def main() -> None:
             s = v.scene
             print(f"  true {v.error:.2e} stated {v.stated:.2e} asked {v.asked:.1e} known {v.known:.0e} {v.status}: f={s.f!r} "
                   f"A0={s.A0!r} D={s.D!r} k={s.k!r} N={s.N} {s.wall} {s.dissipation} {s.tension} F0={s.F0!r} "
-                  f"random_count={s.start_velocity}")
+                  f"thrown={s.start_velocity}")
 
 
 if __name__ == "__main__":

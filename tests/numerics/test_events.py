@@ -15,7 +15,7 @@ from granchain_core.kernels.dop853 import run as dop853
 def grazing(depth: float, method: str, tolerance: float = 1e-9):
     """One bead at rest `depth` (scaled) below the top of a slow driver's stroke, held apart from both sides.
 
-    The bead is random_count by a touch that lasts only while the driver is above 1 − depth.
+    The bead is thrown by a touch that lasts only while the driver is above 1 − depth.
     """
     chain = scene("sec2").evolve(N=1, f=500.0, D=100.0)
     engine = Engine(chain, Setting(method, refine=1, tolerance=tolerance), 64)

@@ -45,10 +45,10 @@ def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is():
 def test_a_collision_with_the_wall_has_the_peak_of_hertz():
     """1.1432626 K^{2/5} m^{3/5} v^{6/5}, known to its eight digits; half a period holds the first collision only."""
     one = scene("sec2").evolve(N=1, dissipation="none", f=1000.0, A0=1e-9)
-    random_count = replace(one, start_velocity=((1, 1e-3),))
+    thrown = replace(one, start_velocity=((1, 1e-3),))
     peak = 1.1432626 * one.K**0.4 * one.bead(1).mass ** 0.6 * 1e-3**1.2
     # at its end the bead meets the driver, 1e-9 m × 2π × 1000 Hz = 6e-6 m/s slow, and does not come back in this period
-    assert located(random_count, 0, 1).maxima[1:] == pytest.approx([peak, peak], rel=5e-8)
+    assert located(thrown, 0, 1).maxima[1:] == pytest.approx([peak, peak], rel=5e-8)
 
 
 def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing():

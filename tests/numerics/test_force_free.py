@@ -15,8 +15,8 @@ LAW = "tsuji"
 SAMPLES = 4096
 
 
-def random_count() -> Scene:
-    """Beads pressed together, the last one random_count at the wall: the contact behind it stops pushing at once, and pushes
+def thrown() -> Scene:
+    """Beads pressed together, the last one thrown at the wall: the contact behind it stops pushing at once, and pushes
     again before it opens."""
     pressed = scene("sec2").evolve(N=3, f=300.0, A0=1.2e-8, F0=0.18, D=850.0, dissipation=LAW, tension="cut")
     return replace(pressed, start_velocity=((3, 1e-3),))
@@ -25,7 +25,7 @@ def random_count() -> Scene:
 def test_a_force_free_contact_pushes_again() -> None:
     """Against RK4 with steps so short that the one kink, which it does not see, costs it less than 1e-8: its own change
     from half as many steps."""
-    chain = random_count()
+    chain = thrown()
     found, fine, finer = (Engine(chain, setting, SAMPLES).record(SAMPLES // 8) for setting in (
         Setting("dop853", 1.0, 1e-12), Setting("rk4", 32.0), Setting("rk4", 64.0)))
     largest = np.abs(finer.displacement).max()

@@ -25,7 +25,7 @@ def found(driven: bool) -> tuple[np.ndarray, np.ndarray]:
 def test_no_touch_is_missed_and_none_is_invented(driven):
     """By 1e-7 to 1e-2 of an amplitude, or short of it by as much: exactly those with amplitude above the gap touch.
 
-    A random_count bead's own motion is computed to 1e-11 at the worst, a ten-thousandth of the least depth.
+    A thrown bead's own motion is computed to 1e-11 at the worst, a ten-thousandth of the least depth.
     """
     cases, seen = found(driven)
     assert len(touches.missed(cases, seen)) == 0

@@ -39,7 +39,7 @@ __all__ = ["DEPTH", "ONSETS", "ONSET_ERROR", "RELEASE_ERROR", "TOLERANCE", "draw
 
 @kernel
 def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
-    """Times at which two beads on springs, random_count apart with amplitude 1, reach standing driver and wall."""
+    """Times at which two beads on springs, thrown apart with amplitude 1, reach standing driver and wall."""
     static[0], static[1], static[2] = -gaps[0], -1e3, -gaps[1]
     slots = Slots(chain, None, None, Foundation(rate * rate), Preload(static), Harmonic(0.0, rate), None)
     end = 0.5 * pi / rate
@@ -90,7 +90,7 @@ def main() -> None:
         found = run(cases, driven)
         wrong, touches = missed(cases, found), cases[:, DEPTH] > 0.0
         onset = found[touches, ONSET_ERROR]
-        print(f"{'driver' if driven else 'random_count bead'}: {touches.sum()} touches and {(~touches).sum()} near misses, "
+        print(f"{'driver' if driven else 'thrown bead'}: {touches.sum()} touches and {(~touches).sum()} near misses, "
               f"{len(wrong)} wrong, onset within {np.median(onset):.1e} (median), {onset.max():.1e} (worst) of a period, "
               f"{(onset > 1e-12).sum()} above 1e-12, {time.perf_counter() - began:.1f} s")
         if driven:

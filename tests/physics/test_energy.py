@@ -113,9 +113,9 @@ def test_without_damping_nothing_is_lost_and_the_chain_keeps_what_the_driver_gav
 
 def test_a_moving_bead_brings_its_energy_along():
     """A start velocity is stored energy before anything is driven."""
-    random_count = replace(chain("linear", "allowed", 0.0, 0.0), start_velocity=((3, 0.01),))
-    engine = Engine(random_count, Setting("dop853", tolerance=1e-10), 8, balance=True)
+    thrown = replace(chain("linear", "allowed", 0.0, 0.0), start_velocity=((3, 0.01),))
+    engine = Engine(thrown, Setting("dop853", tolerance=1e-10), 8, balance=True)
     energy = engine.record(8).energy * engine.scaled.scales.energy
-    assert energy[0, 0] == pytest.approx(0.5 * random_count.bead(3).mass * 0.01**2, rel=1e-12)  # nothing else moves at t = 0
+    assert energy[0, 0] == pytest.approx(0.5 * thrown.bead(3).mass * 0.01**2, rel=1e-12)  # nothing else moves at t = 0
     stored, work, lost = energy[-1] - energy[0]
     assert work - lost == pytest.approx(stored, abs=1e-8 * energy[0, 0])  # the method's tolerance times its steps

@@ -80,9 +80,9 @@ CHANCE = [
 ]
 
 
-@pytest.mark.parametrize(("knobs", "random_count"), CHANCE, ids=["pressed", "random_count"])
-def test_scenes_in_which_two_computations_agreed_by_chance_are_bounded(knobs, random_count) -> None:
-    chosen = replace(scene("sec2").evolve(**knobs), start_velocity=random_count)
+@pytest.mark.parametrize(("knobs", "thrown"), CHANCE, ids=["pressed", "thrown"])
+def test_scenes_in_which_two_computations_agreed_by_chance_are_bounded(knobs, thrown) -> None:
+    chosen = replace(scene("sec2").evolve(**knobs), start_velocity=thrown)
     found, true = run(chosen, periods=0, record=3, samples=16), located(chosen, 0, 3, 16).displacement
     assert np.abs(found.displacement - true).max() <= found.error_estimate * np.abs(true).max()
 

@@ -72,10 +72,10 @@ def mirrored(scene: Scene, rng: np.random.Generator, stop: Stop) -> tuple[float,
     """The scene made its own mirror image, its driver at rest: how far a symmetric start leads from symmetry, how far
     a start and its mirror image do from one another, and what the method's own error makes of the latter motion."""
     symmetric = _symmetric(scene)
-    random_count = rng.uniform(-1.0, 1.0, scene.N)
-    even = _thrown(symmetric, random_count - random_count[::-1], 1e-15, stop)
-    one, two = (_thrown(symmetric, v, 1e-15, stop) for v in (random_count, -random_count[::-1]))
-    return distance(-even[:, ::-1], even), distance(-two[:, ::-1], one), distance(_thrown(symmetric, random_count, 1e-13, stop), one)
+    thrown = rng.uniform(-1.0, 1.0, scene.N)
+    even = _thrown(symmetric, thrown - thrown[::-1], 1e-15, stop)
+    one, two = (_thrown(symmetric, v, 1e-15, stop) for v in (thrown, -thrown[::-1]))
+    return distance(-even[:, ::-1], even), distance(-two[:, ::-1], one), distance(_thrown(symmetric, thrown, 1e-13, stop), one)
 
 
 def _symmetric(scene: Scene) -> ScaledChain:

@@ -9,10 +9,10 @@ import numpy as np
 
 from granchain_core import Scene, scene
 
-#: Decades: f [Hz], A0 [m], D [N s/m], κ, preload [N], accuracy, wall (times K), random_count beads (in A0 φ), bead sizes
+#: Decades: f [Hz], A0 [m], D [N s/m], κ, preload [N], accuracy, wall (times K), thrown beads (in A0 φ), bead sizes
 #: (times section 2's).
 RANGES = {"f": (1.5, 4.0), "A0": (-9.0, -5.0), "D": (-0.5, 3.0), "kappa": (-4.0, -0.5), "F0": (-3.0, 2.0),
-          "accuracy": (-9.0, -3.0), "wall": (-1.0, 1.0), "random_count": (-1.0, 1.0), "size": (-0.4, 0.4)}
+          "accuracy": (-9.0, -3.0), "wall": (-1.0, 1.0), "thrown": (-1.0, 1.0), "size": (-0.4, 0.4)}
 MOST_BEADS = 40
 #: Law, tension, foundation, preload: each combination has its own set of kernels.
 STRUCTURES = [("linear", "allowed", False, False), ("tsuji", "allowed", False, False), ("linear", "cut", False, False),
@@ -64,7 +64,7 @@ def draw(seed: int, index: int, structures: list[tuple[str, str, bool, bool]]) -
 
 
 def _special(rng: np.random.Generator, base: Scene, decade: Any) -> dict[str, Any]:
-    """A dimer, an impurity, random_count beads: each in some scenes, as fields of a scene."""
+    """A dimer, an impurity, thrown beads: each in some scenes, as fields of a scene."""
     found: dict[str, Any] = {}
     bead = base.bead(1)
 
@@ -79,5 +79,5 @@ def _special(rng: np.random.Generator, base: Scene, decade: Any) -> dict[str, An
     if rng.random() < 0.4:
         unit = base.A0 * np.sqrt(base.K * np.sqrt(base.A0) / bead.mass)
         places = sorted(rng.choice(np.arange(1, base.N + 1), size=min(base.N, int(rng.integers(1, 4))), replace=False))
-        found["start_velocity"] = tuple((int(p), float(unit * decade("random_count") * rng.choice([-1.0, 1.0]))) for p in places)
+        found["start_velocity"] = tuple((int(p), float(unit * decade("thrown") * rng.choice([-1.0, 1.0]))) for p in places)
     return found

@@ -64,8 +64,8 @@ def special_between(between: Between) -> list[SpecialPoint]:
     try:
         rough = _brackets(axis, a, b, between)
         brackets = [(between.made_exact(one), between.made_exact(other)) for one, other in rough]
-        kept = all(it.signature == its.signature for bracket, its_bracket in zip(rough, brackets, strict=True)
-                   for it, its in zip(bracket, its_bracket, strict=True))
+        kept = all(rough_end.signature == end.signature for pair, exact in zip(rough, brackets, strict=True)
+                   for rough_end, end in zip(pair, exact, strict=True))
     except NumbersFailed:
         kept = False
     if not kept:
@@ -131,7 +131,7 @@ def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
     if depth % _MIDDLE == _MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:
         return 0.5, False
     root, beside, is_end = values[0] / (values[0] - values[1]), _BESIDE, False
-    better = None if beyond is None else _parabola_root(a, b, values, beyond)
+    better = None if beyond is None else _inverse_quadratic_root(a, b, values, beyond)
     if better is not None:
         near, unsure = _OF_WIDTH * _wanted(axis, a, b) / _width(axis, a, b), _OF_ERROR * abs(better - root)
         root, beside, is_end = better, min(near + unsure, _BESIDE), unsure <= 0.5 * near
@@ -139,17 +139,18 @@ def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
     return min(max(fraction, 0.5 * beside), 1.0 - 0.5 * beside), is_end
 
 
-def _parabola_root(a: BranchPoint, b: BranchPoint, values: tuple[float, float], beyond: BranchPoint) -> float | None:
-    """Fraction at which the parabola of the way over the test function's three values has its zero; None outside."""
+def _inverse_quadratic_root(a: BranchPoint, b: BranchPoint, values: tuple[float, float],
+                            beyond: BranchPoint) -> float | None:
+    """Root of the test function by inverse quadratic interpolation of the arclength, from a (0) to b (1); else None."""
     one, other = (a, beyond) if beyond.arclength > b.arclength else (beyond, b)
     outer = None if one.signature == other.signature else _test_values(one, other)
     if outer is None:
         return None
     value = outer[1] if outer[0] == values[0] else outer[0] if outer[1] == values[1] else np.nan
-    way, (f, g) = b.arclength - a.arclength, values
-    if way == 0.0 or not np.isfinite(value) or value in (f, g):
+    length, (f, g) = b.arclength - a.arclength, values
+    if length == 0.0 or not np.isfinite(value) or value in (f, g):
         return None
-    place = (beyond.arclength - a.arclength) / way
+    place = (beyond.arclength - a.arclength) / length
     root = float(f * value / ((g - f) * (g - value)) + place * f * g / ((value - f) * (value - g)))
     return root if 0.0 < root < 1.0 else None
 
@@ -176,8 +177,8 @@ def _turning_values(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float
     others = others[(others[:, 1] == mine[1]) & (others[:, 3] * mine[3] < 0.0)]
     if not len(others):
         return None
-    its = others[np.argmin(np.abs(others[:, 2] - mine[2]))]
-    return (float(mine[3]), float(its[3])) if more is a else (float(its[3]), float(mine[3]))
+    other = others[np.argmin(np.abs(others[:, 2] - mine[2]))]
+    return (float(mine[3]), float(other[3])) if more is a else (float(other[3]), float(mine[3]))
 
 
 def _turns(point: BranchPoint, contact: int) -> np.ndarray:

@@ -142,13 +142,13 @@ class Walk(Iterator[BranchPoint]):
         """Compute the next orbit ahead; halve the step where it is too long."""
         last, tried, near = self._last_two[-1], self._step, self._near_last
         try:
-            point, changes, its, ended, reason = self._next_orbit(last, near)
+            point, changes, derivatives, ended, reason = self._next_orbit(last, near)
         except (NumbersFailed, np.linalg.LinAlgError) as problem:
             self._step, self._failure = 0.5 * tried, problem
             return
         before = self._ahead[-1].found if self._ahead else last
-        found = self._pool.submit(self._completed, before, point, changes, (near, its))
-        self._ahead.append(_Ahead(point, its, ended, reason, tried, self._step, found))
+        found = self._pool.submit(self._completed, before, point, changes, (near, derivatives))
+        self._ahead.append(_Ahead(point, derivatives, ended, reason, tried, self._step, found))
 
     def _completed(self, before: BranchPoint | Future[tuple[BranchPoint, list[SpecialPoint]]], point: BranchPoint,
                    changes: np.ndarray | None, near: tuple[Near, Near]) -> tuple[BranchPoint, list[SpecialPoint]]:
@@ -181,11 +181,11 @@ class Walk(Iterator[BranchPoint]):
         if cosine < _BENT:
             raise NumbersFailed(f"the branch turns by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step",
                                 "no-convergence")
-        way = float(np.linalg.norm(solved.z - self._z(last)))
-        point, its = unrecorded(equations, solved, tangent, last.arclength + way), solved.near
-        ending, its, ended, reason = self._end(last, near, point, its)
+        chord = float(np.linalg.norm(solved.z - self._z(last)))
+        point = unrecorded(equations, solved, tangent, last.arclength + chord)
+        ending, derivatives, ended, reason = self._end(last, near, point, solved.near)
         self._adapt(solved, cosine)
-        return ending, solved.flow.changes if ending is point else None, its, ended, reason
+        return ending, solved.flow.changes if ending is point else None, derivatives, ended, reason
 
     # --- the arm -------------------------------------------------------------------------------------------
 
@@ -247,15 +247,16 @@ class Walk(Iterator[BranchPoint]):
 
     # --- ends ----------------------------------------------------------------------------------------------
 
-    def _end(self, last: BranchPoint, near: Near, point: BranchPoint, its: Near) -> tuple[BranchPoint, Near, str, str]:
+    def _end(self, last: BranchPoint, near: Near, point: BranchPoint,
+             derivatives: Near) -> tuple[BranchPoint, Near, str, str]:
         """The step's last point, and how and why the branch ends there, if it does."""
         axis = self.equations.axis
-        closing = self._closing(last, near, point, its)
+        closing = self._closing(last, near, point, derivatives)
         if closing is not None:
-            return closing, its, "closed", (f"closed on itself at {axis.text(closing.knob)} after "
+            return closing, derivatives, "closed", (f"closed on itself at {axis.text(closing.knob)} after "
                                             f"{closing.arclength:.3g} of arclength: the orbit there is the seed's")
         if axis.contains(point.knob):
-            return point, its, "", ""
+            return point, derivatives, "", ""
         (landed, near_landed), first = self._landed(last, point), self.arm.points[0].knob
         if landed.knob == first:
             return landed, near_landed, "returned", f"came back to {axis.text(first)}"
@@ -290,7 +291,7 @@ class Walk(Iterator[BranchPoint]):
         """Difference of the state half an orbit later from the state now."""
         return self.equations.stroboscopic_map(point.knob, self.equations.period // 2).end(point.x) - point.x
 
-    def _closing(self, last: BranchPoint, near: Near, point: BranchPoint, its: Near) -> BranchPoint | None:
+    def _closing(self, last: BranchPoint, near: Near, point: BranchPoint, derivatives: Near) -> BranchPoint | None:
         """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
         if len(self.arm.points) + len(self._ahead) < _AWAY:
             return None
@@ -300,7 +301,7 @@ class Walk(Iterator[BranchPoint]):
         for seed in self._seeds:
             along = float((seed - za) @ way) / length**2
             if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSES * length:
-                found = Between(self.equations, last, point, (near, its)).careful(last, point, along)
+                found = Between(self.equations, last, point, (near, derivatives)).careful(last, point, along)
                 if np.linalg.norm(self._z(found) - seed) < _CLOSED:
                     return found
         return None

@@ -1,7 +1,7 @@
 """1:n resonances as the paper counts them: strong pushes per drive period, and peaks and valleys of the curve.
 
 Source: Zhang et al. 2016, sections 2 and 3: a 1:n resonance has one strong push in n periods, at a local peak of the
-largest transmitted force; an anti-resonance is a local valley with one weak pulse in every period.
+largest transmitted force; an anti-resonance is a local valley with one push in every period, all about equally strong.
 """
 
 from __future__ import annotations

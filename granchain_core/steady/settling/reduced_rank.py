@@ -1,8 +1,8 @@
 """Reduced rank extrapolation: shortening a slow transient without leaving the attractor's basin.
 
 Reduced rank extrapolation (kernels/strobes/extrapolation.py) takes out the slowest modes. It is used only where changes
-are already small and shrinking. An extrapolation is accepted only if the change after it is smaller and if it goes no
-further than the decay predicts: so the orbit is the one that the chain approaches.
+are already small and shrinking. An extrapolation is accepted only if the change after it is smaller and if it goes at
+most three times as far as the decay predicts: so the orbit is the one that the chain approaches.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def reduced_rank(states: np.ndarray) -> np.ndarray:
 
 
 def within_reach(here: np.ndarray, there: np.ndarray, change: float, rate: float) -> bool:
-    """Whether `there` is no further from `here` than the decay predicts."""
+    """Whether `there` is at most `FARTHEST_EXTRAPOLATION` times as far from `here` as the decay predicts."""
     if not np.isfinite(there).all() or not 0.0 < rate < 1.0:
         return False
     return float(np.abs(there - here).max()) <= FARTHEST_EXTRAPOLATION * change / (1.0 - rate)

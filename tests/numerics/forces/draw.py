@@ -17,8 +17,8 @@ STRUCTURES = [
 ]
 #: Those that the test suite has time to compile.
 FEW = STRUCTURES[:3]
-#: Decades: f [Hz], A0 [m], λ = D/(mφ), κ, preload [N], random_count beads (in A0 φ).
-RANGES = {"f": (0.0, 3.7), "A0": (-9.0, -5.0), "lambda": (-2.3, 0.7), "kappa": (-4.0, -1.0), "F0": (-2.0, 1.3), "random_count": (-1.0, 0.5)}
+#: Decades: f [Hz], A0 [m], λ = D/(mφ), κ, preload [N], thrown beads (in A0 φ).
+RANGES = {"f": (0.0, 3.7), "A0": (-9.0, -5.0), "lambda": (-2.3, 0.7), "kappa": (-4.0, -1.0), "F0": (-2.0, 1.3), "thrown": (-1.0, 0.5)}
 ACCURACIES = (1e-4, 1e-6, 1e-8)
 MOST_BEADS, MOST_PERIODS, MOST_RECORDED = 40, 20, 3
 #: A run of several periods is not longer than so many times 1/φ: its truth takes a hundred thousand steps.
@@ -46,7 +46,7 @@ def draw(seed: int, index: int, structures: list) -> Draw:
         dissipation=law, tension=tension, accuracy=float(rng.choice(ACCURACIES)),
         **({"kappa": _decade(rng, "kappa")} if founded else {}), **({"F0": _decade(rng, "F0")} if pressed else {}))
     if rng.random() < 0.3:
-        speed = _rate(chosen) * chosen.A0 * _decade(rng, "random_count") * rng.choice([-1.0, 1.0])
+        speed = _rate(chosen) * chosen.A0 * _decade(rng, "thrown") * rng.choice([-1.0, 1.0])
         chosen = replace(chosen, start_velocity=((int(rng.integers(1, chosen.N + 1)), float(speed)),))
     return Draw(index, chosen, *_shortened(chosen, int(rng.integers(0, MOST_PERIODS + 1)), int(rng.integers(1, MOST_RECORDED + 1))))
 
