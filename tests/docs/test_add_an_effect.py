@@ -113,7 +113,7 @@ for on in (False, True):
 print(scene("sec2").c, [one.scene.c for one in variants("drag", scene("sec2"))])
 print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name"] == "c"], "c" in KNOBS, "c" in CONTINUOUS)
 """).splitlines()
-    assert told == ["ground drag | True", "0.0 linear, 16 lanes", "20.0 linear+drag, 16 lanes", "0.0 [10.0, 0.0]",
+    assert told == ["ground drag | True", "0.0 linear, vector of 16", "20.0 linear+drag, vector of 16", "0.0 [10.0, 0.0]",
                     "[True] True True"]
 
 
