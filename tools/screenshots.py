@@ -82,6 +82,11 @@ def shot(page: Page, path: Path) -> None:
     print(path, flush=True)
 
 
+def changed(page: Page) -> None:
+    """The page has just changed: its rest is counted from now."""
+    page.evaluate("() => { window.changes.at = performance.now(); }")
+
+
 def walk(page: Page, story: Story, path: Callable[[int], Path]) -> None:
     """A screenshot of every step of a story, its answer shown."""
     tab = page.locator("#tabs")
@@ -90,7 +95,9 @@ def walk(page: Page, story: Story, path: Callable[[int], Path]) -> None:
         tab.get_by_text(f"{number} of {len(story.steps)}").wait_for()
         if story.steps[number - 1].answer:
             tab.get_by_role("button", name="answer").click()
-        page.evaluate("() => { window.changes.at = performance.now(); }")
+        page.mouse.move(0, 0)  # no term is explained by the way
+        page.get_by_text("Compiling the kernels").wait_for(state="hidden")
+        changed(page)
         shot(page, path(number))
         if number < len(story.steps):
             tab.get_by_role("button", name="next").click()
@@ -119,6 +126,9 @@ def main() -> None:
             for view, query in views().items():
                 if options.only in view:
                     with opened(browser, address + query, size) as page:
+                        if view.startswith("tab-"):  # below the pictures on a phone
+                            page.locator("#tabs").evaluate("(one) => one.scrollIntoView()")
+                            changed(page)
                         shot(page, options.all / f"{view}-{size_name}.png")
             for story in stories()[0]:
                 if options.only in f"story-{story.name}":
