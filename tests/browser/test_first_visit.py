@@ -73,6 +73,19 @@ def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromi
         page.close()
 
 
+def test_pictures_of_another_scene_are_grey_until_its_own_come(visit: Visit) -> None:
+    page = visit()
+    page.evaluate("""() => {
+      window.greyed = [];
+      const one = document.getElementById("page");
+      new MutationObserver(() => greyed.push(one.classList.contains("another"))).observe(one, { attributeFilter: ["class"] });
+    }""")
+    page.locator("select.scene").select_option("fig3b")
+    page.wait_for_function("granchain.shown.scene === 'fig3b'")
+    assert page.evaluate("greyed.includes(true)")
+    expect(page.locator("#page.another")).to_have_count(0)
+
+
 def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:
     first = "addEventListener('DOMContentLoaded', () => { localStorage.removeItem('granchain-toured'); }, { once: true });"
     page = visit(script=f"if (!sessionStorage.getItem('again')) {{ sessionStorage.setItem('again', 1); {first} }}")
