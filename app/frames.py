@@ -65,7 +65,9 @@ class Frames:
             output_force=self.largest_output,
             kinetic_energy=float(self.kinetic_energy.max()),
             displacement=float(np.abs(places).max()),
-            overlap=float(max((places[:, :-1] - places[:, 1:]).max(), 0.0)))
+            overlap=float(max((places[:, :-1] - places[:, 1:]).max(), 0.0)),
+            input_pull=float(max(-self.input_force.min(), 0.0)),
+            output_pull=float(max(-min(self.output_force.min(), self.output_force_elastic.min()), 0.0)))
 
     @cached_property
     def chain(self) -> np.ndarray:
@@ -85,13 +87,18 @@ class Frames:
 
 @dataclass(frozen=True)
 class Extremes:
-    """The largest values of one picture or of many [N, N, J, m, m]; an overlap is that of two bodies that touch."""
+    """The largest values of one picture or of many [N, N, J, m, m, N, N].
+
+    An overlap is that of two bodies that touch; a pull is how far a force is below zero.
+    """
 
     input_force: float = 0.0
     output_force: float = 0.0
     kinetic_energy: float = 0.0
     displacement: float = 0.0
     overlap: float = 0.0
+    input_pull: float = 0.0
+    output_pull: float = 0.0
 
     def widened(self, other: Extremes) -> Extremes:
         """The larger of both, value by value."""

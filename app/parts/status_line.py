@@ -97,10 +97,14 @@ def accuracy_words(run: Run) -> str:
     return f"asked {short_error(run.scene.accuracy)} · {reached}{_worse_forces(run)}"
 
 
+#: Errors of forces up to this factor above that of displacements are not told apart in the line.
+_ALIKE = 1.5
+
+
 def _worse_forces(run: Run) -> str:
-    """The largest error of a largest force, where it misses the accuracy asked for, which is that of displacements."""
+    """The largest error of a largest force, where it is larger than what is reached, which is that of displacements."""
     errors = [error for error in (run.force_errors.output, run.force_errors.input) if error is not None]
-    if run.error_estimate is None or max(errors, default=0.0) <= run.scene.accuracy:
+    if run.error_estimate is None or max(errors, default=0.0) <= _ALIKE * run.error_estimate:
         return ""
     return f" (forces {short_error(max(errors))})"
 

@@ -90,9 +90,9 @@ class Trains:
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
         drive_high = round_up(moved)
         pinned, measured = self._pinned.largest, self._measured.largest
-        input_range = _span(max(high.input_force, pinned[0], measured[0]), frames.input_force,
+        input_range = _span(max(high.input_force, pinned[0], measured[0]), high.input_pull, frames.input_force,
                             frames.input_jumps[:, 1])
-        output_range = _span(max(high.output_force, pinned[1], measured[1]), frames.output_force,
+        output_range = _span(max(high.output_force, pinned[1], measured[1]), high.output_pull, frames.output_force,
                              frames.output_jumps[:, 1], frames.output_force_elastic)
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
@@ -166,8 +166,8 @@ def _glyph(look: Look, column: str = "force") -> Line:
     return Line(x=column, y="time", line_color=look.colour, line_width=look.width, line_dash=list(look.dash))
 
 
-def _span(largest: float, *series: np.ndarray) -> tuple[float, float]:
-    """A range up to `largest` that holds all values, zero included, and keeps still while they change a little."""
+def _span(largest: float, pull: float, *series: np.ndarray) -> tuple[float, float]:
+    """A range from −`pull` to `largest` that holds all values, and keeps still while they change a little."""
     high = round_up(max(largest, *(float(s.max(initial=0.0)) for s in series)))
-    low = min(float(s.min(initial=0.0)) for s in series)
-    return (-0.06 * high if low > -0.02 * high else -round_up(-low)), 1.04 * high
+    pull = max(pull, *(float(-s.min(initial=0.0)) for s in series))
+    return (-0.06 * high if pull < 0.02 * high else -round_up(pull)), 1.04 * high

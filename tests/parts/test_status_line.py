@@ -17,9 +17,10 @@ def picture() -> Settled:
 
 
 @pytest.mark.parametrize(("errors", "said"), [
-    (ForceErrors(2e-7, 3e-7, 4e-7), ""), (ForceErrors(2e-4, 3e-7, 4e-7), " (forces 2e-4)"),
+    (ForceErrors(1.4e-7, 1e-8, 4e-7), ""), (ForceErrors(2e-7, 3e-7, 4e-7), " (forces 3e-7)"),
+    (ForceErrors(2e-4, 3e-7, 4e-7), " (forces 2e-4)"),
     (ForceErrors(None, 3e-5, None), " (forces 3e-5)"), (ForceErrors(), "")])
-def test_a_force_less_sure_than_asked_is_told_beside_the_displacements(picture: Settled, errors: ForceErrors, said: str) -> None:
+def test_a_force_less_sure_than_the_displacements_is_told_beside_them(picture: Settled, errors: ForceErrors, said: str) -> None:
     run = replace(picture.run, force_errors=errors, error_estimate=1e-7)
     assert accuracy_words(run) == f"asked 1e-6 · reached 1e-7{said}"
 

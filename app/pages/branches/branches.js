@@ -8,7 +8,7 @@ const WORDS = "largest elastic output force of periodic orbits over drive freque
 const NARROW = 700;
 const MARGIN = 0.05; // beside the branch, as a part of its length
 const ABOUT =
-  "The orbit on the screen is followed in frequency, also where it is unstable and no settled motion shows it. The picture shows the elastic part of the force, which changes smoothly along a branch; the resonance curve shows the whole force, dashpots included.";
+  "Each point is a motion that repeats, followed in frequency: solid where a small disturbance dies out, dashed where it grows, so that no chain settles there. Grey: where the chain settles from rest. Drawn is the elastic part of the force, which changes smoothly along a branch; the main page shows the whole force.";
 const STALE =
   "The knobs have moved: these orbits belong to another chain. Follow again for the present one; a click on an orbit brings the old one back.";
 const ZOOM = "Show the branch as large as there is room; the reset beside the picture shows the whole curve again";
@@ -74,6 +74,7 @@ class BranchesPage {
     this.on = button("continue", () => send({ do: "branches-continue" }));
     this.status = element("span", { className: "status" });
     this.said = paragraph("", "said");
+    this.about = paragraph(ABOUT, "about");
     this.warning = element("p", { className: "warn", hidden: true });
     this.choice = new Choice(send);
     this.picture = element("div", { className: "picture" });
@@ -87,7 +88,7 @@ class BranchesPage {
       this.zoom,
       this.status,
     );
-    const say = element("div", { className: "say" }, this.said, this.warning, this.choice.root);
+    const say = element("div", { className: "say" }, this.said, this.about, this.warning, this.choice.root);
     this.root = element("div", { className: "part sheet" }, head, say, this.work);
     this.data = new StreamedData();
     this.figure = new BokehFigure(this.picture, (one) => this.fill(one));
@@ -132,7 +133,7 @@ class BranchesPage {
     this.zoom.hidden = !this.data.rows.orbits;
     this.on.hidden = running || !state.unfinished || this.zoom.hidden;
     const sentences = [state.words, ...(state.ended ?? [])].filter(Boolean);
-    this.said.textContent = sentences.map((one) => sentence(one)).join(" ") || ABOUT;
+    this.said.textContent = sentences.map((one) => sentence(one)).join(" ");
     this.warning.textContent = state.failure || (state.stale ? STALE : "");
     this.warning.hidden = !this.warning.textContent;
     this.root.classList.toggle("stale", Boolean(state.stale));

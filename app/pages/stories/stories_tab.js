@@ -56,8 +56,10 @@ function telling(model, story) {
 function comeUp(story) {
   const step = story ? `${story.name} ${story.step}` : "";
   if (step === told) return;
+  const before = told;
   told = step;
-  if (step && PHONE.matches) requestAnimationFrame(() => document.getElementById("tabs").scrollIntoView());
+  // The list of stories as well, which stands below the pictures: but not when the page is opened.
+  if ((step || before) && PHONE.matches) requestAnimationFrame(() => document.getElementById("tabs").scrollIntoView());
 }
 
 export function storiesTab(model) {
