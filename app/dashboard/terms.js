@@ -9,8 +9,12 @@ const TEXTS = "p, h3, dd, .explained";
 function termOf(words, name, meaning) {
   const term = element("dfn", { textContent: words, tabIndex: 0, ariaDescription: meaning });
   term.dataset.meaning = `${name}: ${meaning}`;
-  for (const begin of ["pointerenter", "focus", "click"])
-    term.addEventListener(begin, () => showMeaning(term, term.dataset.meaning));
+  const show = () => showMeaning(term, term.dataset.meaning);
+  for (const begin of ["focus", "click"]) term.addEventListener(begin, show);
+  // A pointer that rests while the page moves under it asks for nothing.
+  term.addEventListener("pointermove", ({ movementX, movementY }) => {
+    if (movementX || movementY) show();
+  });
   for (const end of ["pointerleave", "blur"]) term.addEventListener(end, hideMeaning);
   return term;
 }

@@ -1,5 +1,6 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
+import { markAnotherScene } from "./another_scene.js";
 import { button, download, element, onWidth } from "./dom.js";
 import { wholePage } from "./iframe_link.js";
 import { Gallery } from "./gallery.js";
@@ -198,18 +199,10 @@ class Header {
     this.takeTheme(state.theme);
     this.showChoices(state);
     this.showPlaying(state);
-    this.markAnother();
     if (!state.query) return;
     window.granchain.linkReceived(state.query, ["scene", ...state.view_fields], state.view_fields);
     if (!this.begun) this.begin();
     this.begun = true;
-  }
-
-  // The pictures of another scene than the chosen one are grey until its own come; its kernels may have to be compiled.
-  markAnother() {
-    const { shown } = window.granchain;
-    const another = Boolean(shown) && shown.scene !== this.model.state.scene;
-    document.getElementById("page").classList.toggle("another", another);
   }
 
   // Time goes as it went before a lost connection; for those who asked their browser for less motion it begins paused.
@@ -300,7 +293,7 @@ export function render({ model }) {
     if (!event.composedPath().includes(header.root)) header.popovers.close();
   });
   model.on("state", () => header.show());
-  window.granchain.on("shown", () => header.markAnother());
+  markAnotherScene(model);
   model.on("msg:custom", (message) => header.receive(message));
   header.show();
   return header.root;

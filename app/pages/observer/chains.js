@@ -69,11 +69,11 @@ function drawForce(canvas, { message, chain }, row) {
   const { context: g, width, height } = cleared(canvas);
   const { rows, beads } = message;
   const force = (r) => chain.force[r * (beads + 1)];
-  let largest = 1e-30;
-  for (let r = 0; r < rows; r++) largest = Math.max(largest, Math.abs(force(r)));
+  let [low, high] = [0, 1e-30];
+  for (let r = 0; r < rows; r++) [low, high] = [Math.min(low, force(r)), Math.max(high, force(r))];
   const left = Math.min(130, 0.2 * width);
   const X = (r) => left + (r / (rows - 1)) * (width - left - 12);
-  const Y = (r) => height - 6 - (force(r) / largest) * (height - 14);
+  const Y = (r) => height - 6 - ((force(r) - low) / (high - low)) * (height - 14);
   g.strokeStyle = g.fillStyle = getComputedStyle(canvas).getPropertyValue("--input").trim();
   g.lineWidth = 2.5;
   g.beginPath();

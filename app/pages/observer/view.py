@@ -61,7 +61,7 @@ def first_state() -> dict[str, Any]:
 
 def step_message(step: Step, scene: Scene, began: bool) -> dict[str, Any]:
     """One drive period for the browser, all series in one array: rows of the chain's, then of the observer's."""
-    push = float(np.abs(step.chain_force[:, 0]).max())
+    push = step.largest_input
     factor, letter = prefixed(push)
     series = [*chain_series(step.chain, step.chain_force, step.chain_energy, step.drive),
               *chain_series(step.observer, step.observer_force, step.observer_energy, step.drive), step.distance]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
+from granchain_core.kernels.forces.peaks import next_period
 from granchain_core.observe.drift import observer_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import (
@@ -29,7 +31,10 @@ _REMEMBERED = 400
 
 @dataclass(frozen=True)
 class Step:
-    """One drive period: T rows of chain and observer in SI, of their distance, and the period's number at its start."""
+    """One drive period: T rows of chain and observer in SI, of their distance, and the period's number at its start.
+
+    `largest_input` is the largest input force [N], also where it jumps between two rows.
+    """
 
     number: int
     samples: int
@@ -41,6 +46,7 @@ class Step:
     chain_energy: np.ndarray
     observer_energy: np.ndarray
     distance: np.ndarray
+    largest_input: float
 
 
 class ObserverRun:
@@ -104,10 +110,18 @@ class ObserverRun:
     @property
     def measured(self) -> float | None:
         """The same factor measured since the last start; None until enough periods were linear."""
-        if len(self.strobes) < 8 * self._every:
+        linear = self._linear
+        if len(self.strobes) < 8 * self._every or len(linear) < self._orbits_needed:
             return None
-        _, found = rates(self._linear)
+        _, found = rates(linear)
         return max((abs(z) ** (1.0 / self._every) for z in found), default=None)
+
+    @property
+    def _orbits_needed(self) -> float:
+        """How many orbits are measured at least: in half of the leading mode's time the faster ones have died out."""
+        if self.leading is None or abs(self.leading) in (0.0, 1.0):
+            return 0.0
+        return min(0.5 / abs(math.log(abs(self.leading))), 0.5 * _REMEMBERED / self._every)
 
     @property
     def _every(self) -> int:
@@ -124,6 +138,7 @@ class ObserverRun:
     def step(self) -> Step:
         """Compute the next drive period."""
         engine, n = self.pair.engine, self.scene.N
+        next_period(engine.log.peaks)
         rows = engine.record(self.samples)
         difference = self.pair.difference(rows)
         if not self.strobes:
@@ -140,6 +155,7 @@ class ObserverRun:
             chain=u[:, :n], observer=u[:, n + 1 :], chain_force=force[:, : n + 1],
             observer_force=np.hstack([force[:, :1], force[:, n + 2 :]]), chain_energy=half_mass * v[:, :n] ** 2,
             observer_energy=half_mass * v[:, n + 1 :] ** 2, distance=np.sqrt((difference**2).sum(axis=1)),
+            largest_input=float(engine.maxima[0] * scales.force),
         )
 
     @property
