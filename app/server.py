@@ -44,7 +44,7 @@ IDLE = 60
 BODY, LARGEST_BODY = 30, 100_000
 #: Between two pings of a websocket, and until the answer must have come [s].
 PING = 20
-#: Until a page that was loaded must have its websocket [ms], and between two looks who has left [ms].
+#: Within which a loaded page must open its websocket [ms], and between two checks for sessions that have ended [ms].
 UNCONNECTED, LOOK = 60_000, 1000
 
 

@@ -14,7 +14,7 @@ settings.load_profile("granchain")
 
 HERE = Path(__file__).parent
 #: Folders and files of the inner loop, `python -m pytest -m quick`: below 90 s once the kernels are compiled.
-#: Each part of the core has one that fails where that part is wrong; orders, random scenes and browsers are for the whole suite.
+#: Most parts of the core have one that fails where that part is wrong; the refill of a batch, orders, random scenes and browsers are for the whole suite.
 QUICK = (
     "architecture", "public", "scene", "experiment", "store/test_files.py", "store/test_hdf5_border.py", "dashboard", "session", "integrate", "run/test_peaks.py",
     "kernels/equations", "kernels/effects", "kernels/rk4", "kernels/dop853", "kernels/test_absent_effects.py",
@@ -24,6 +24,13 @@ QUICK = (
     "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py", "test_format.py",
 )
 
+#: Files whose tests take longest, some of them half a minute to two minutes each.
+LONG = {
+    "test_work_precision", "test_axe", "test_branches_page", "test_room",
+    "test_stories", "test_resume", "test_site", "test_machine_code",
+    "test_force_errors", "test_paper_pictures",
+}
+
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
@@ -32,7 +39,15 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the quick tests."""
+    """Mark the quick tests, and let each worker begin with its share of the long ones: else one of them ends alone.
+
+    `--dist worksteal` first gives every worker the same number of tests in a row.
+    """
     for item in items:
         if any(item.path.is_relative_to(HERE / one) for one in QUICK):
             item.add_marker(pytest.mark.quick)
+    workers = pytest_xdist_auto_num_workers()
+    long = [item for item in items if item.path.stem in LONG]
+    others = [item for item in items if item.path.stem not in LONG]
+    items[:] = [one for i in range(workers)
+                for one in (*long[i::workers], *others[i * len(others) // workers : (i + 1) * len(others) // workers])]

@@ -125,10 +125,7 @@ class CurveController:
     @staticmethod
     def _affordable(scene: Scene) -> bool:
         """Whether there is a curve, and it is short enough to be computed without being asked for."""
-        if not scene.is_driven:
-            return False
-        low, high = slider_range(scene, "f")
-        return curve_affordable(scene.evolve(f=0.5 * (low + high)))
+        return scene.is_driven and curve_affordable(scene)
 
     def _begin_when_compiled(self, scene: Scene) -> None:
         if not self._affordable(scene):

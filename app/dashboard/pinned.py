@@ -20,7 +20,7 @@ from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.message_checks import listed
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
-from ..session.session import slider_range, without_frequency
+from ..session.session import without_frequency
 from ..session.starts import MOST_BEADS
 from ..session.task import Job, Task, say_nothing
 from .layout import Views
@@ -59,7 +59,7 @@ class Pinned:
     def scene_changed(self) -> None:
         """Knobs have moved: the curve of a pin is drawn where it is not the present one."""
         others = self._other_curves()
-        missing = [key for key in others if key and key not in self._curves and _affordable(key)]
+        missing = [key for key in others if key and key not in self._curves and curve_affordable(key)]
         if missing:
             self._curve_task.start(partial(self._sweep, missing))
         elif self._session.pins:
@@ -170,8 +170,3 @@ def _key(pin: Pin) -> str:
     """What tells a pin from others: its link, and the start itself where that is too long for a link."""
     short = pin.start is None or len(pin.start.displacement) <= MOST_BEADS
     return pin.text if short else f"{pin.text} {id(pin.start)}"
-
-
-def _affordable(key: Scene) -> bool:
-    low, high = slider_range(key, "f")
-    return curve_affordable(key.evolve(f=0.5 * (low + high)))

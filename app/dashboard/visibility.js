@@ -23,7 +23,7 @@ export function watchVisibility(pages, tell) {
   const check = () => {
     const before = page.visible;
     const now = new Set(Object.keys(pages).filter(isVisible));
-    if (page.overlay ? pages[page.overlay].needs_curve : shown.curve) now.add(CURVE);
+    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve) now.add(CURVE);
     const [gone, come] = [[...before].filter((name) => !now.has(name)), [...now].filter((name) => !before.has(name))];
     if (!gone.length && !come.length) return;
     page.visible = now;

@@ -76,7 +76,7 @@ window.granchain = (() => {
     scrollTo({ top: 0 });
     emit("curved", shown);
   };
-  // The name of the page that lies over the pictures, or null; the curve is not computed while there is one.
+  // The name of the page that lies over the pictures, or null; the curve is computed then only if that page needs it.
   let overlay = null;
   const openPage = (name) => {
     if (name === overlay) return;

@@ -98,11 +98,11 @@ def accuracy_words(run: Run) -> str:
 
 
 #: Errors of forces up to this factor above that of displacements are not told apart in the line.
-_ALIKE = 1.5
+_ALIKE = 10.0
 
 
 def _worse_forces(run: Run) -> str:
-    """The largest error of a largest force, where it is larger than what is reached, which is that of displacements."""
+    """The largest error of a largest force, where it is far from what is reached, which is that of displacements."""
     errors = [error for error in (run.force_errors.output, run.force_errors.input) if error is not None]
     if run.error_estimate is None or max(errors, default=0.0) <= _ALIKE * run.error_estimate:
         return ""
@@ -124,7 +124,8 @@ def force_hint(run: Run) -> str:
     return ("The largest output force in the periods shown, the dashpot's part included; relative error "
             f"{error_words(run.force_errors.output)}. A force is positive where the bodies push each other; below zero "
             "the dashpot of an opening contact pulls. The force at the wall may be larger than that of the driver: a "
-            f"wave presses harder where it is turned back.{why_no_error(run)}")
+            f"wave presses harder where it is turned back."
+            f"{why_no_error(run) if run.force_errors.output is None else ''}")
 
 
 def errors_hint(run: Run) -> str:

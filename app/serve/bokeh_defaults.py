@@ -2,7 +2,7 @@
 
 Bokeh finds a default anew for each of a page's models, some 8000 times, and makes ten empty lists and dictionaries for
 each model: more than half of the making of a page. What is replaced here is not public in Bokeh; where a release lacks
-a part of it, nothing is replaced.
+one of the functions that are replaced, none is.
 """
 
 from __future__ import annotations

@@ -135,13 +135,15 @@ class Shared(Generic[Item]):
                 one.stop.check()
         except Exception as problem:
             error = problem
-        with self._lock:
-            self._forget(key, one)
-            if error is None and key is not None:
-                self._keep(key, self._kept(one.items))
-        with one.changed:
-            one.done, one.error = True, error
-            one.changed.notify_all()
+        try:
+            with self._lock:
+                self._forget(key, one)
+                if error is None and key is not None:
+                    self._keep(key, self._kept(one.items))
+        finally:
+            with one.changed:  # whatever became of it: others wait
+                one.done, one.error = True, error
+                one.changed.notify_all()
 
     def _keep(self, key: Hashable, items: list[Item]) -> None:
         """With the lock held: keep them, and drop the oldest while there is too much."""

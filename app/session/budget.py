@@ -8,6 +8,7 @@ from granchain_core import BadInput, Scene
 from granchain_core.run.budget import check_picture, picture_seconds
 
 from ..frames import PERIODS, samples_for
+from .session import slider_range
 
 #: Most that a first picture may take unless the visitor insists [s].
 FIRST_PICTURE = 5.0
@@ -45,5 +46,6 @@ class TooLong(BadInput):
 
 @functools.lru_cache(maxsize=64)
 def curve_affordable(scene: Scene) -> bool:
-    """Whether the page computes the curve by itself; `scene` has the frequency in the middle of its range."""
-    return picture_seconds(scene, _CURVE_PERIODS, 1) <= CURVE
+    """Whether the page computes the curve by itself; it is judged by the frequency in the middle of its range."""
+    low, high = slider_range(scene, "f")
+    return picture_seconds(scene.evolve(f=0.5 * (low + high)), _CURVE_PERIODS, 1) <= CURVE

@@ -19,7 +19,7 @@ def test_the_core_knows_no_dashboard_and_no_command_line(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", ALL, ids=lambda p: str(p.relative_to(ROOT)))
-def test_a_file_can_be_held_and_says_what_it_is(path: Path) -> None:
+def test_a_file_is_short_and_has_docstrings(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     tree = ast.parse(text)
     assert text.count("\n") - lines_of_docstrings(tree) <= 300
@@ -31,7 +31,7 @@ def test_a_file_can_be_held_and_says_what_it_is(path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "app").rglob("*.js")), ids=lambda p: p.name)
-def test_a_script_can_be_held_and_says_what_it_is(path: Path) -> None:
+def test_a_script_is_short_and_begins_with_a_comment(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     assert text.count("\n") <= 300 and text.startswith("//")
 
@@ -48,8 +48,8 @@ def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:
     assert CACHE_FOLDER is not None and sources_hash() in CACHE_FOLDER.name
 
 
-def test_code_inlined_by_numba_is_called_at_one_place() -> None:
-    """In two it would be compiled twice, in place of once for itself. Steps in t and steps of the flow have each one."""
+def test_code_inlined_by_numba_has_one_caller_or_one_of_each_kind_of_step() -> None:
+    """Inlined into two callers, code is compiled twice. Two kernels of which a scene needs one may share it."""
     parts: set[str] = set()
     calls: list[tuple[str, str]] = []
     for path in CORE:

@@ -1,4 +1,4 @@
-"""An effect that is off leaves no trace in the code of the SIMD kernels and of the flow, nor in the arrays of the former.
+"""An absent effect leaves no trace in the code of short chains, batches and the flow: damping, foundation and preload.
 
 What is counted is code for a processor whose registers hold a whole vector of eight doubles. It is compiled for that
 processor wherever the test runs, and not run. With narrower registers the compiler has too few of them for a step and

@@ -17,7 +17,7 @@ def picture() -> Settled:
 
 
 @pytest.mark.parametrize(("errors", "said"), [
-    (ForceErrors(1.4e-7, 1e-8, 4e-7), ""), (ForceErrors(2e-7, 3e-7, 4e-7), " (forces 3e-7)"),
+    (ForceErrors(2e-7, 3e-7, 4e-7), ""), (ForceErrors(1.1e-6, 3e-7, 4e-7), " (forces 1e-6)"),
     (ForceErrors(2e-4, 3e-7, 4e-7), " (forces 2e-4)"),
     (ForceErrors(None, 3e-5, None), " (forces 3e-5)"), (ForceErrors(), "")])
 def test_a_force_less_sure_than_the_displacements_is_told_beside_them(picture: Settled, errors: ForceErrors, said: str) -> None:

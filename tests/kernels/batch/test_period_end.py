@@ -55,7 +55,7 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 
 
 @pytest.mark.parametrize(("before", "kept"), [(1e-3, True), (1e-9, False)])
-def test_a_jump_is_kept_only_if_changes_are_smaller_behind_it(before: float, kept: bool) -> None:
+def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before: float, kept: bool) -> None:
     """Else the chain goes back to where it was extrapolated from, and waits twice as long."""
     batch = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
     state = batch.state
