@@ -24,13 +24,6 @@ QUICK = (
     "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py", "test_format.py",
 )
 
-#: Files whose tests take longest, some of them half a minute to two minutes each.
-LONG = {
-    "test_work_precision", "test_axe", "test_branches_page", "test_room",
-    "test_stories", "test_resume", "test_site", "test_machine_code",
-    "test_force_errors", "test_paper_pictures",
-}
-
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
@@ -39,15 +32,7 @@ def pytest_xdist_auto_num_workers() -> int:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the quick tests, and let each worker begin with its share of the long ones: else one of them ends alone.
-
-    `--dist worksteal` first gives every worker the same number of tests in a row.
-    """
+    """Mark the quick tests."""
     for item in items:
         if any(item.path.is_relative_to(HERE / one) for one in QUICK):
             item.add_marker(pytest.mark.quick)
-    workers = pytest_xdist_auto_num_workers()
-    long = [item for item in items if item.path.stem in LONG]
-    others = [item for item in items if item.path.stem not in LONG]
-    items[:] = [one for i in range(workers)
-                for one in (*long[i::workers], *others[i * len(others) // workers : (i + 1) * len(others) // workers])]
