@@ -97,14 +97,15 @@ def accuracy_words(run: Run) -> str:
     return f"asked {short_error(run.scene.accuracy)} · {reached}{_worse_forces(run)}"
 
 
-#: Errors of forces up to this factor above that of displacements are not told apart in the line.
+#: Where the accuracy asked for is reached, errors of forces up to this factor above that of displacements are left to
+#: the hint: the line has room for one number.
 _ALIKE = 10.0
 
 
 def _worse_forces(run: Run) -> str:
-    """The largest error of a largest force, where it is far from what is reached, which is that of displacements."""
+    """The largest error of a largest force, where it misses the accuracy asked for or is far above that reached."""
     errors = [error for error in (run.force_errors.output, run.force_errors.input) if error is not None]
-    if run.error_estimate is None or max(errors, default=0.0) <= _ALIKE * run.error_estimate:
+    if run.error_estimate is None or max(errors, default=0.0) <= min(run.scene.accuracy, _ALIKE * run.error_estimate):
         return ""
     return f" (forces {short_error(max(errors))})"
 

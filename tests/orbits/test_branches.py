@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import NumbersFailed, Scene, State, run, scene, settled
+from granchain_core import BadInput, NumbersFailed, Scene, State, run, scene, settled
 from granchain_core.orbits import (
     Branch,
     BranchPoint,
@@ -119,6 +119,8 @@ def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Br
     last = found.special[-1]
     widths = [s.interval[1] - s.interval[0] for s in (last, meeting)]
     assert last.kind == "period_doubling" and last.knob == pytest.approx(meeting.knob, abs=sum(widths))
+    with pytest.raises(BadInput, match="merges with that of half its period"):
+        switch_to_doubled(found, last)
     middle = min(found.points, key=lambda p: abs(p.knob - 247.0))
     settled_there = settled(found.axis.scene_at(middle.knob).evolve(accuracy=_ASKED))
     assert settled_there.regime.period == 2

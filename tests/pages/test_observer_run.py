@@ -42,6 +42,19 @@ def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
     assert run.measured == pytest.approx(run.predicted, rel=0.02)
 
 
+def test_a_rate_is_told_when_the_fast_modes_are_gone_and_the_force_is_the_largest_of_the_motion() -> None:
+    shown = scene("sec2").evolve(f=2500.0)  # a slow pair of multipliers, and an input force that jumps at closing
+    picture = settled(shown)
+    run = ObserverRun(shown, picture, Stop(), None)
+    run.predict(picture)
+    steps = [run.step() for _ in range(18)]
+    assert run.predicted is not None and run.predicted > 0.98 and run.measured is None
+    assert steps[0].largest_input == pytest.approx(picture.run.max_input_force, rel=picture.run.force_errors.input)
+    for _ in range(82):
+        run.step()
+    assert run.measured == pytest.approx(run.predicted, rel=0.02)  # as for the orbit of two periods
+
+
 def test_without_multipliers_it_says_why_and_runs() -> None:
     cut = FOUNDED.evolve(f=340.0, dissipation="tsuji", tension="cut")
     run = ObserverRun(cut, None, Stop(), None)

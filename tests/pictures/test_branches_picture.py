@@ -8,7 +8,7 @@ import pytest
 
 from app.pictures.branches import BranchRows, branches, drawn_orbits, special_words
 from app.pictures.theme import THEMES
-from granchain_core import scene
+from granchain_core import resonance_curve, scene
 from granchain_core.orbits import Branch, continue_branch
 
 
@@ -72,6 +72,21 @@ def test_what_grows_piece_by_piece_is_what_is_drawn_at_once(branch: Branch) -> N
     assert {column: orbits[column] for column in rows} == rows
     assert [lines["stable", 0], lines["unstable", 0]] == data(whole, "stable")["x"] + data(whole, "unstable")["x"]
     assert len(growth.special) == len(branch.special)
+
+
+def test_the_curve_behind_a_branch_joins_neighbours_that_repeat_and_no_others(branch: Branch) -> None:
+    frequencies = [250.0, 260.0, 1700.0, 2000.0, 2100.0]  # 1700 Hz is quasi-periodic
+    points = resonance_curve(scene("sec2"), frequencies).points
+    assert [point.regime.period is None for point in points] == [False, False, True, False, False]
+    rows = BranchRows()
+    added = rows.curve(points)
+    assert added is not None and added["rows"]["curve"]["x"] == frequencies
+    assert [piece[2] for piece in added["pieces"]] == [[250.0, 260.0], [2000.0, 2100.0]]
+    assert rows.curve(points) is None  # it is there
+    # one unit for both: an orbit of the branch lies where the curve has the same motion
+    orbits = rows.add(0, branch, branch.points, branch.special)["rows"]["orbits"]
+    row = min(range(len(orbits["x"])), key=lambda i: abs(orbits["x"][i] - 260.0))
+    assert orbits["y"][row] == pytest.approx(added["rows"]["curve"]["y"][1], rel=0.03)  # within 2 Hz of it
 
 
 @pytest.mark.parametrize("compact", [False, True])
