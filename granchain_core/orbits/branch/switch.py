@@ -29,11 +29,11 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
 
     Raises `BadInput` for another kind of point and `NumbersFailed` where no doubled orbit is found.
     """
-    if special.kind == "period_doubling" and special.multiplier is not None and special.multiplier.real > 0.0:
+    if special.kind != "period_doubling":
+        raise BadInput(f"A doubled branch begins at a period_doubling, not at a {special.kind}.")
+    if special.multiplier is None:
         raise BadInput(f"At {branch.axis.text(special.knob)} this branch merges with that of half its period; "
                        "no orbit of twice its own begins there.")
-    if special.kind != "period_doubling" or special.multiplier is None:
-        raise BadInput(f"A doubled branch begins at a period_doubling of multiplier −1, not at a {special.kind}.")
     once = BranchEquations(branch.axis, branch.period, stop)
     twice = BranchEquations(branch.axis, 2 * branch.period, stop)
     foot = special.before
