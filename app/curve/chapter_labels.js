@@ -50,6 +50,13 @@ class Room {
     this.offPoints = (box) => this.alone(box) && this.points.every(([x, y]) => apart(box, around(x, y)));
   }
 
+  // A peak's name that had to move up keeps a line down to its point.
+  tie(label, x, y) {
+    const { left, bottom } = this.kept.at(-1);
+    label.style.setProperty("--tie", `${Math.max(0, y - bottom)}px`);
+    label.style.setProperty("--tie-left", `${x - left}px`);
+  }
+
   // Puts a name where the first of these functions of its width and height has a box, or hides it; returns whether it
   // has a place.
   place(label, ways) {
@@ -77,13 +84,17 @@ class Room {
 
   put(label, { f, height, kind }, free) {
     const { left, right, top, bottom } = this.bbox;
-    return this.place(label, [
+    const above = this.y_scale.compute(height) - ABOVE[kind];
+    const middle = this.x_scale.compute(f);
+    const placed = this.place(label, [
       (wide, tall) => {
-        const lowest = Math.min(bottom, this.y_scale.compute(height) - ABOVE[kind]) - tall;
-        const x = this.x_scale.compute(f) - wide / 2;
+        const lowest = Math.min(bottom, above) - tall;
+        const x = middle - wide / 2;
         return freeBox({ left, right: right - wide, top, x, lowest, sideways: ASIDE[kind] }, free, wide, tall);
       },
     ]);
+    if (placed && kind === "peak") this.tie(label, middle, above);
+    return placed;
   }
 
   // Off the points of the curve, with a shorter name if the whole one finds no such place.

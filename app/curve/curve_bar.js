@@ -25,8 +25,9 @@ function keyOf(kinds) {
     element(
       "span",
       { className: "periods" },
-      "period",
+      "repeats after",
       ...periods.map((one) => mark(one, one.name.slice(PERIOD.length))),
+      " periods",
     ),
     ...kinds.filter((one) => !periods.includes(one)).map((one) => mark(one, one.name)),
     element(

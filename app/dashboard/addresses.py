@@ -24,11 +24,13 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
 
     Returns the state in which the motion begins, None for rest, and a sentence for every field that was refused.
     """
-    places = {"tab": tab_names(), "page": overlay_names(), "embed": ("1",)}
+    places = {"tab": tab_names(), "page": tab_names(), "embed": ("1",)}
     scene, fields, sentences = decode(query, {**places, "story": story_places()})
     session.scene = scene
     session.take_view(fields)
     session.place = {name: fields[name] for name in places if name in fields}
+    if session.place.get("page", "") not in ("", *overlay_names()):  # it has no more than its tab
+        session.place["tab"] = session.place.pop("page")
     session.story = fields.get("story", "")
     session.pins = tuple(_pins([fields[name] for name in PINS if name in fields], sentences))
     session.question = fields.get(QUESTION, "")

@@ -72,5 +72,5 @@ def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndar
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
     views.trains.update(frames, time, high, scene.is_driven)
     views.energy.update(frames, time, unit, high.kinetic_energy)
-    peaks = views.trains.peak_words(largest, known)
+    peaks = views.trains.peak_words(frames, largest, known)
     views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, peaks, live, running, final))

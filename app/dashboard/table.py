@@ -39,6 +39,7 @@ class TabSpec:
     group: str
     taller: bool = False
     placeholder: str = ""
+    tallest: bool = False
 
     @property
     def title(self) -> str:
@@ -51,10 +52,11 @@ class PageSpec:
     """One page: its name in messages, the title of its tab, what is computed and how it is drawn.
 
     `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
-    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height.
-    `group` is one of `GROUPS`. A page that `works_hidden` goes on while its window is hidden or its tab is scrolled off
-    the screen; the others count as not looked at then (`Page.visibility_changed`). While a page that `needs_curve` lies
-    over the pictures, the resonance curve is computed as if it were on the screen.
+    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height. A
+    tab that is `tallest` takes the place of the curve. `group` is one of `GROUPS`. A page that `works_hidden` goes on
+    while its window is hidden or its tab is scrolled off the screen; the others count as not looked at then
+    (`Page.visibility_changed`). While a page that `needs_curve` lies over the pictures, the resonance curve is computed
+    as if it were on the screen.
     """
 
     name: str
@@ -66,6 +68,7 @@ class PageSpec:
     works_hidden: bool = True
     group: str = "try"
     needs_curve: bool = False
+    tallest: bool = False
 
 
 #: The groups of tabs; a tab of none of them stands apart at the end.
@@ -79,7 +82,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     PageSpec("probe", "probe", ProbePage, Probe),
     PageSpec("stability", "stability", StabilityPage, Stability, works_hidden=False),
     PageSpec("accuracy", "accuracy", AccuracyPage, Accuracy, group="check"),
-    PageSpec("map", "map", MapPage, None),
+    PageSpec("map", "map", MapPage, None, tallest=True),
     PageSpec("effects", "effects", EffectsPage, None, group="check"),
     PageSpec("branches", "branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable.", needs_curve=True),
@@ -114,7 +117,7 @@ def described_tabs() -> list[dict[str, Any]]:
     """What the browser needs of the table, in the order of the groups."""
     order = (*GROUPS, "")
     return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller,
-             "group": row.group}
+             "tallest": row.tallest, "group": row.group}
             for row in sorted(TABS, key=lambda row: order.index(row.group))]
 
 

@@ -11,7 +11,7 @@ import { observerTab } from "../pages/observer/observer_tab.js";
 import { leaveStories, storiesTab } from "../pages/stories/stories_tab.js";
 import { probeTab } from "../pages/probe/probe_tab.js";
 import { stabilityTab } from "../pages/stability/stability_tab.js";
-import { button, element, openButton, paragraph } from "../parts/dom.js";
+import { button, element, openButton, paragraph, PHONE } from "../parts/dom.js";
 import { dataTab, saveSample } from "./data_tab.js";
 import { lookAtTab, regimesTab } from "./scene_tabs.js";
 import { explainTerms } from "./terms.js";
@@ -47,17 +47,23 @@ function plainTab(_, { name, placeholder }) {
 const READABLE = 250; // ms between two changes of the numbers
 
 // The button that gives the tabs the place of the curve, and back.
-function largerButton() {
-  const larger = button(
-    "⤢",
-    () => {
-      const tall = document.getElementById("curves").classList.toggle("tall");
-      larger.title = tall ? "Smaller, the curve comes back" : "Larger, over the curve";
-      larger.ariaPressed = String(tall);
-    },
-    { title: "Larger, over the curve", className: "larger" },
-  );
-  return larger;
+class LargerButton {
+  constructor() {
+    this.wanted = false; // by the visitor
+    const change = () => {
+      this.wanted = !this.tall;
+      this.set(this.wanted);
+    };
+    this.el = button("⤢", change, { className: "larger" });
+    this.set(false);
+  }
+
+  set(tall) {
+    this.tall = tall;
+    document.getElementById("curves").classList.toggle("tall", tall);
+    this.el.title = tall ? "Smaller, the curve comes back" : "Larger, over the curve";
+    this.el.ariaPressed = String(tall);
+  }
 }
 
 class Tabs {
@@ -72,7 +78,8 @@ class Tabs {
     this.tabs = groups.flatMap((group) => [...group.querySelectorAll("[role=tab]")]);
     this.list = element("div", { role: "tablist", ariaLabel: "what stands below" }, ...groups);
     // The larger button floats, so it comes first: the second line of tabs has the whole width.
-    const top = element("div", { className: "tabs" }, largerButton(), this.list);
+    this.larger = new LargerButton();
+    const top = element("div", { className: "tabs" }, this.larger.el, this.list);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
     this.body = element("div", { className: "body", role: "tabpanel", tabIndex: 0 });
     this.below = button("▼ more", () => this.body.scrollBy(0, 0.8 * this.body.clientHeight), {
@@ -111,7 +118,9 @@ class Tabs {
   choose(name) {
     this.chosen = name;
     if (name !== "stories") leaveStories();
-    document.getElementById("curves").classList.toggle("taller", Boolean(this.rows.get(name).taller));
+    const { taller, tallest } = this.rows.get(name);
+    document.getElementById("curves").classList.toggle("taller", Boolean(taller));
+    this.larger.set(this.larger.wanted || (Boolean(tallest) && !PHONE.matches));
     this.show();
     window.granchain.setLocation({ tab: name === this.first ? "" : name });
     window.granchain.emit("tab", name);

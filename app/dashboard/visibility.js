@@ -12,6 +12,7 @@ export function watchVisibility(pages, tell) {
   const page = window.granchain;
   const shown = { tabs: true, curve: true }; // what is on the screen
   let tab = "";
+  let telling = false; // a story names the place on the curve, on the screen or not
   page.visible = new Set([CURVE]); // what the server starts with
 
   const isOpen = (name) => (page.overlay ?? tab) === name;
@@ -23,7 +24,7 @@ export function watchVisibility(pages, tell) {
   const check = () => {
     const before = page.visible;
     const now = new Set(Object.keys(pages).filter(isVisible));
-    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve) now.add(CURVE);
+    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve || telling) now.add(CURVE);
     const [gone, come] = [[...before].filter((name) => !now.has(name)), [...now].filter((name) => !before.has(name))];
     if (!gone.length && !come.length) return;
     page.visible = now;
@@ -43,6 +44,10 @@ export function watchVisibility(pages, tell) {
       if (isOpen(name) && !page.visible.has(name)) check();
     });
   page.on("overlay", check);
+  page.on("telling", (now) => {
+    telling = now;
+    check();
+  });
   page.on("tab", (name) => {
     tab = name;
     check();

@@ -9,7 +9,8 @@ import { button, element } from "./dom.js";
 import { Sound } from "./sound.js";
 import { colourOf, Steel } from "./steel.js";
 
-const PEAK = "The largest force in this picture. How far its axis goes is said below the map: “same scale” or “fit”.";
+const PEAK =
+  "The largest force in this picture, and the smallest where the contact pulls or is always pressed: below zero the dashpot of an opening contact pulls. How far the axis goes is said below the map: “same scale” or “fit”.";
 
 // Calls `act` after the present animation frame: messages posted during a frame are delivered after it.
 function afterFrame(act) {
@@ -101,7 +102,8 @@ class Chain {
     this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
     this.scales[1].replaceChildren(...(fit ? more("fitted", " to each picture") : ["fit"]));
     this.peaks.forEach((place, i) => {
-      place.textContent = peaks[i];
+      const [most, least] = peaks[i];
+      place.replaceChildren(most, ...(least ? [element("span", { className: "roomy", textContent: least })] : []));
     });
   }
 

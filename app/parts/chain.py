@@ -33,11 +33,11 @@ class Chain(Component):
 
 
 def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool,
-                   peaks: list[str], live: bool, running: bool, final: bool) -> dict[str, Any]:
+                   peaks: list[list[str]], live: bool, running: bool, final: bool) -> dict[str, Any]:
     """What the browser needs to draw the chain at every instant; a running chain only has a now.
 
     `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own. `peaks`
-    are the largest input and output force in words. No better picture of these knobs follows a
+    are the largest and the smallest input and output force in words. No better picture of these knobs follows a
     `final` one.
     """
     return {

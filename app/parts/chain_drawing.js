@@ -17,6 +17,7 @@ export class ChainDrawing {
     this.steel = new Steel(palette);
     this.chosen = 0; // the bead that is marked, 0 for none
     this.pointed = 0; // the one that the pointer is on, or in whose column
+    this.hasLeftBody = true; // a driver or a plate, which cuts the first bead where they meet
   }
 
   readTheme() {
@@ -170,7 +171,7 @@ export class ChainDrawing {
     const meets = (n, side) => {
       const far = end(n, -side), // the neighbour's end that faces this bead
         own = x + side * radius;
-      if (side * (own - far) <= 0) return side * half;
+      if (side * (own - far) <= 0 || (n === 0 && !this.hasLeftBody)) return side * half;
       return (n === 0 || n > beads ? far : 0.5 * (own + far)) - x;
     };
     const from = Math.max(-half, meets(i - 1, -1)),

@@ -6,7 +6,7 @@ from typing import Any
 
 from granchain_core import Run, Settled
 from granchain_core.integrate import METHODS
-from granchain_core.regime import NEVER_REPEATING, Regime
+from granchain_core.regime import NEVER_REPEATING, Regime, modulus_words
 from granchain_core.steady.curve.resonance import STOPS, Place, place_words, push_words, pushes
 
 from ..format import duration, short_error
@@ -27,8 +27,7 @@ _REGIMES = {
     "unsettled": "Not settled: so far it neither repeats nor shows by evidence that it never will.",
 }
 _UNDRIVEN = "Nothing drives the chain: what is shown begins at the start of the motion."
-_MULTIPLIER = ("|μ|: factor by which a small disturbance changes in one orbit, that is in as many drive periods as the "
-               "motion needs to repeat; below 1 the orbit is stable.")
+_NOT_ITS_PLACE = "The ratio counts pushes, not peaks: every anti-resonance is 1:1, whatever peaks it lies between."
 _DECAY = "Decay: factor by which the distance to the orbit was seen to shrink."
 _LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the logarithm of its factor per drive period; "
              "above zero the motion is chaotic.")
@@ -75,6 +74,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
     if pushed is not None:
         meanings.append(f"{pushed[0]}:{pushed[1]}: {push_words(pushed)}.")
         meanings.append(_PLACES.get(place.kind, "") if place is not None else "")
+        meanings.append(_NOT_ITS_PLACE if place is not None and place.kind == "valley" else "")
     if regime.name == "periodic":
         meanings.append(_FOLLOWED if regime.followed else _SETTLED)
     else:
@@ -82,8 +82,15 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
     if regime.lyapunov is not None and regime.name != "periodic":
         meanings.append(_LYAPUNOV)
     if regime.evidence:
-        meanings.append(_DECAY if regime.multiplier is None else _MULTIPLIER)
+        meanings.append(_DECAY if regime.multiplier is None else multiplier_words(regime.multiplier, regime.period))
     return " ".join(one for one in meanings if one)
+
+
+def multiplier_words(modulus: float, period: int | None) -> str:
+    """What |μ| says of a small disturbance of an orbit of `period` drive periods."""
+    orbit = "drive period" if period in (None, 1) else f"{period} drive periods"
+    return (f"|μ| {modulus_words(modulus)}: after every {orbit} {100.0 * modulus:.3g} % of a small disturbance is "
+            "left; below 1 the orbit is stable.")
 
 
 def error_words(error: float | None, before: str = "") -> str:

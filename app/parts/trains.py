@@ -32,6 +32,8 @@ _AXES = (DRIVE, INPUT, OUTPUT)
 _TICKS = (3, 6)
 #: The smallest number that is written in the unit of an axis.
 _READABLE = 0.01
+#: The smallest force is told where it is a pull above this part of the largest, or a pressure above that part of it.
+_PULLS, _PRESSED = 0.02, 0.2
 WIDEST_TITLES = {"left": INPUT.label("mN"), "right": OUTPUT.label("mN")}
 """By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`)."""
 
@@ -115,11 +117,21 @@ class Trains:
         """The title of the axis of time."""
         change(self._time_axis, axis_label=title)
 
-    def peak_words(self, largest: tuple[float, float], known: bool) -> list[str]:
-        """The largest input and output force [N] of the picture; two figures where their errors are not known."""
+    def peak_words(self, frames: Frames, largest: tuple[float, float], known: bool) -> list[list[str]]:
+        """The largest input and output force [N] of the picture; two figures where their errors are not known.
+
+        With it the smallest of the rows where it says something: a contact pulls, or is never free of force.
+        """
         figures = 3 if known else 2
-        return [f"max {force / factor:#.{figures}g}".rstrip(".") + f"\N{NO-BREAK SPACE}{unit}"
-                for force, factor, unit in zip(largest, self._factors, self._units[1:], strict=True)]
+        words = []
+        for series, force, factor, unit in zip((frames.input_force, frames.output_force), largest, self._factors,
+                                               self._units[1:], strict=True):
+            least = float(series.min())
+            told = least < -_PULLS * force or least > _PRESSED * force
+            words.append([f"max {force / factor:#.{figures}g}".rstrip(".") + f"\N{NO-BREAK SPACE}{unit}",
+                          f"min ≈ {least / factor:.{1 if least < 0.0 else figures}g}\N{NO-BREAK SPACE}{unit}".replace(
+                              "-", "\N{MINUS SIGN}") if told else ""])
+        return words
 
     def output_words(self, force: float, known: bool) -> str:
         """A force at the wall [N] in the unit of its axis; in its own where it is too small for that.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -147,8 +148,19 @@ def scale_models(cells: np.ndarray) -> dict[str, dict[str, Any]]:
     if len(forces):
         low, high = float(forces.min()), float(max(forces.max(), 1.0001 * forces.min()))
         models["force colours"] = {"low": low, "high": high}
-        models["force ticks"] = {"ticks": [float(f"{value:.2g}") for value in np.geomspace(low, high, 5)[1:-1]]}
+        models["force ticks"] = {"ticks": _round_values(low, high)}
     return models
+
+
+def _round_values(low: float, high: float) -> list[float]:
+    """Ticks of a logarithmic scale: powers of ten, or 1, 2 and 5 times them where there are fewer than three."""
+    powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
+    for steps in ((1,), (1, 3), (1, 2, 5)):
+        ticks = [float(f"{step}e{power}") for power in powers for step in steps]
+        inside = [value for value in ticks if low <= value <= high]
+        if len(inside) >= 3:
+            return inside
+    return inside or [low]
 
 
 def now_row(grid: Grid, x: float | None = None, y: float | None = None) -> dict[str, list[float]]:

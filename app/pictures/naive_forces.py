@@ -35,7 +35,7 @@ def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | Non
             (options.get("legend_label", "naive − accurate"), f"@{what}{{0.000e}} {unit}")]))
     above.x_range.update(renderers=[above.renderers[0]], range_padding=0.0)
     above.xaxis.visible = False
-    above.yaxis.axis_label = f"output force ({unit})"
+    above.yaxis.axis_label = f"force ({unit})"  # the figure is low: a longer title would be cut
     below.xaxis.axis_label = f"time ({time_unit})"
     below.yaxis.axis_label = f"error ({unit})"
     above.legend.update(orientation="horizontal", padding=1, margin=2, click_policy="hide")

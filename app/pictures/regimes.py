@@ -8,8 +8,8 @@ from .theme import GREY, THEMES
 REGIMES = {
     "period 1": ("circle", THEMES["light"].output, 7), "period 2": ("diamond", "#a855f7", 11),
     "period 3": ("triangle", "#f59e0b", 10), "period 4": ("square", "#06b6d4", 8),
-    "period 5+": ("star", "#ec4899", 12), "quasi-periodic": ("circle_dot", "#8b8bf0", 9),
-    "chaotic": ("x", "#e879f9", 9), "unsettled": ("dash", GREY, 10),
+    "period 5+": ("star", "#ec4899", 12), "quasi-periodic": ("circle_dot", "#3b82f6", 9),
+    "chaotic": ("x", "#ef4444", 9), "unsettled": ("dash", GREY, 10),
 }
 
 #: The markers as characters, for a legend in words.

@@ -22,13 +22,21 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
     sheet = page.locator('[data-overlay="analysis"]')
     words, compute = sheet.locator(".words"), sheet.get_by_role("button", name="compute")
 
-    sheet.get_by_role("button", name="Which frequencies?").click()
-    compute.click()
+    expect(sheet.get_by_role("button", name="Which frequencies?")).to_have_attribute("aria-pressed", "true")  # it begins
     found = spectrum(settle(scene("sec2").evolve(f=1130.0), samples=256).run)
     for sentence in found.summary():
         expect(words).to_contain_text(sentence, timeout=COMPILED)
     expect(sheet.get_by_role("img", name="Spectrum of the output force, sec2 at 1130 Hz")).to_be_visible()
     expect(sheet.locator("code")).to_have_text("granchain spectrum sec2 --set f=1130.0 --force output")
+    assert "question" not in page.url  # nobody has asked
+    type_into(page, "f", "1140")
+    expect(sheet.get_by_role("img", name="Spectrum of the output force, sec2 at 1140 Hz")).to_be_visible(timeout=COMPILED)
+    type_into(page, "f", "1130")
+    expect(sheet.get_by_role("img", name="Spectrum of the output force, sec2 at 1130 Hz")).to_be_visible(timeout=COMPILED)
+    sheet.get_by_role("button", name="Which frequencies?").click()
+    expect(sheet.locator(".picture")).to_be_hidden()
+    compute.click()
+    expect(sheet.get_by_role("img", name="Spectrum of the output force, sec2 at 1130 Hz")).to_be_visible(timeout=COMPILED)
     page.evaluate("window.kept = granchain.pages.get('analysis').figure.document; granchain.nextTheme()")
     until(page, lambda: bool(page.evaluate(
         "granchain.pages.get('analysis').figure.document && kept !== granchain.pages.get('analysis').figure.document")))

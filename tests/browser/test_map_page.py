@@ -11,11 +11,9 @@ from server import until
 SMALL = "?v=1&scene=sec2&N=2"
 
 
-def opened(page: Page, large: bool = True) -> Locator:
+def opened(page: Page) -> Locator:
     """The tab with its picture."""
     page.get_by_role("tab", name="map", exact=True).click()
-    if large:
-        page.get_by_title("Larger, over the curve").click()
     picture = page.locator("#tabs .maphost")
     expect(picture).to_be_visible()
     until(page, lambda: len(source(page, "map", "cells").get("number", [])) > 0, seconds=COMPILED / 1000)
@@ -36,6 +34,7 @@ def overflow(page: Page) -> int:
 def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     page = visit(SMALL)
     picture = opened(page)
+    expect(page.locator("#curve")).to_be_hidden()  # the map has its place
     expect(page.locator('#tabs .maphost[data-done="1"]')).to_be_visible(timeout=COMPILED)  # complete
     cells = source(page, "map", "cells")
     assert len(set(cells["number"])) == len(cells["number"]) == 60 * 40
@@ -89,7 +88,7 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
 
 def test_the_tab_fits_a_phone_attractors_are_listed_and_one_is_loaded(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=893", viewport={"width": 390, "height": 844})
-    box = opened(page, large=False).bounding_box()
+    box = opened(page).bounding_box()
     assert page.evaluate("document.documentElement.scrollWidth") == 390 and overflow(page) <= 0
     assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["height"] >= 150
     page.set_viewport_size({"width": 1280, "height": 800})
@@ -106,6 +105,7 @@ def test_the_tab_fits_a_phone_attractors_are_listed_and_one_is_loaded(visit: Vis
     expect(page.locator("#foot")).to_contain_text("quasi-periodic")
     # what is not looked at is not computed, and what there is stays
     page.get_by_role("tab", name="regimes").click()
+    expect(page.locator("#curve")).to_be_visible()
     page.get_by_role("tab", name="map", exact=True).click()
     until(page, lambda: len(source(page, "map", "cells").get("number", [])) > 0)
     expect(rows).to_have_count(3)

@@ -6,9 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from app.parts.status_line import accuracy_words, settled_entries
+from app.parts.status_line import accuracy_words, multiplier_words, regime_hint, settled_entries
 from granchain_core import Settled, scene, settle
 from granchain_core.result import ForceErrors
+from granchain_core.steady.curve.resonance import Place
 
 
 @pytest.fixture(scope="module")
@@ -33,6 +34,18 @@ def test_a_force_that_misses_what_was_asked_is_told_however_near_it_is_to_the_di
 def test_where_no_error_is_stated_none_is_told_for_the_forces(picture: Settled) -> None:
     run = replace(picture.run, force_errors=ForceErrors(1e-2, 1e-2, 1e-2), error_estimate=None)
     assert accuracy_words(run) == "asked 1e-6 · not estimated"
+
+
+def test_the_multiplier_is_told_as_what_is_left_of_a_disturbance() -> None:
+    assert multiplier_words(0.36, 1) == ("|μ| 0.36: after every drive period 36 % of a small disturbance is left; below 1 the "
+                                         "orbit is stable.")
+    assert "after every 3 drive periods 99.5 % of" in multiplier_words(0.995, 3)
+
+
+def test_an_anti_resonance_says_that_its_ratio_is_no_place_among_the_peaks(picture: Settled) -> None:
+    told = regime_hint(picture.regime, (1, 1), Place("valley"))
+    assert "every anti-resonance is 1:1" in told and "every anti-resonance is 1:1" not in regime_hint(
+        picture.regime, (1, 1), Place("peak", 340.0, 1))
 
 
 def test_where_the_motion_started(picture: Settled) -> None:

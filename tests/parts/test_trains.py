@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from bokeh.models import Range1d
 
 from app.frames import LiveWindow, settled_frames, with_jumps
+from app.parts.trains import Trains
 from granchain_core import LiveChain, scene, settled
 
 CHAIN = scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-4)
@@ -35,6 +37,23 @@ def test_the_largest_value_drawn_is_the_largest_force_stated() -> None:
     copies = round(frames.time[-1] * CHAIN.f)
     phases = np.sort((frames.output_jumps[:, 0] * CHAIN.f) % 1.0).reshape(-1, copies)
     assert np.ptp(phases, axis=1).max() < 1e-9
+
+
+def test_a_pull_and_a_lasting_pressure_are_told_beside_the_largest_force() -> None:
+    """The driver's contact pulls when it opens at 340 Hz; at 2500 Hz the wall is pressed all the time."""
+    for f, told in ((340.0, (True, False)), (2500.0, (True, True))):
+        run = settled(scene("sec2").evolve(f=f)).run
+        frames, trains = settled_frames(run), Trains(Range1d())
+        trains.update(frames, frames.time, frames.extremes, True)
+        words = trains.peak_words(frames, (run.max_input_force, run.max_output_force), True)
+        assert tuple(bool(least) for _, least in words) == told
+        for (most, least), series in zip(words, (frames.input_force, frames.output_force), strict=True):
+            number, unit = most.removeprefix("max ").split("\N{NO-BREAK SPACE}")
+            assert float(number) * {"N": 1.0, "mN": 1e-3}[unit] == pytest.approx(series.max(), rel=1e-2)
+            if least:
+                number = least.removeprefix("min ≈ ").split("\N{NO-BREAK SPACE}")[0].replace("\N{MINUS SIGN}", "-")
+                low = float(number) * {"N": 1.0, "mN": 1e-3}[unit]
+                assert low == pytest.approx(series.min(), rel=0.5 if low < 0.0 else 1e-2)  # a pull has one figure
 
 
 def test_live_jumps_move_with_the_picture() -> None:

@@ -60,4 +60,4 @@ def test_a_naive_force_is_drawn_with_its_difference_or_not_at_all() -> None:
     both = naive_forces(time, force, None, "ms", "mN", THEMES["light"])
     assert all(len(column) == 0 for column in both.select_one({"name": "naive"}).data.values())
     above, below = both.children
-    assert above.x_range is below.x_range and above.yaxis[0].axis_label == "output force (mN)"
+    assert above.x_range is below.x_range and above.yaxis[0].axis_label == "force (mN)"

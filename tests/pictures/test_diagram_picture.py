@@ -53,6 +53,15 @@ def test_only_what_is_computed_is_drawn() -> None:
     assert rows["force"] == [None] and rows["regime"] == ["failed"] and rows["tooltip"] == ["2000 Hz, 1 µm: computation failed"]
 
 
+@pytest.mark.parametrize(("low", "high", "ticks"), [
+    (2e-3, 30.0, [0.01, 0.1, 1.0, 10.0]), (0.05, 3.0, [0.1, 0.3, 1.0, 3.0]), (0.2, 1.0, [0.2, 0.5, 1.0]),
+    (0.31, 0.33, [0.31])])
+def test_the_scale_of_forces_has_round_ticks(low: float, high: float, ticks: list[float]) -> None:
+    cells = filled(4).cells[:2].copy()
+    cells["regime"], cells["max_output_force"] = 1, [low, high]
+    assert scale_models(cells)["force ticks"]["ticks"] == ticks
+
+
 def test_a_cell_is_told_with_its_error_or_without_a_claim() -> None:
     cell = filled(4).cells[4]
     assert cell_words(GRID, cell) == "2000 Hz, 1 µm: period 2, largest output force 2.5 N, largest observed, no error estimate"

@@ -158,6 +158,12 @@ def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, am
     assert len(back.pins) == pins_in(left.link) and (len(back.pins) == pins) == (left.pins_left_out == "")
 
 
+def test_a_page_that_is_only_a_tab_is_opened_by_either_name() -> None:
+    session = Session()
+    assert take_address(session, "v=1&page=map")[1] == [] and session.place == {"tab": "map"}
+    assert take_address(session, "v=1&page=stability")[1] == [] and session.place == {"page": "stability"}
+
+
 def test_pins_without_room_are_left_out_with_a_sentence() -> None:
     rng = np.random.default_rng(3)
     long = scene("sec2").evolve(N=MOST_BEADS)

@@ -1,6 +1,6 @@
 // The Accuracy page, over the pictures: what accuracy costs here and now, and what naive steps would have drawn.
 
-import { button, element, meter, pageHead, table } from "../../parts/dom.js";
+import { button, element, meter, pageHead, paragraph, table } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";
 import { fillAccuracy, showAccuracy } from "./accuracy_tab.js";
 import { NaiveForces } from "./naive_forces.js";
@@ -31,6 +31,9 @@ function methodTable(ways, failures) {
   );
   return table(["method", "what it is", "order", "restrictions", "reference"], element("tbody", {}, ...rows));
 }
+
+const SYMBOLS =
+  "u, v: displacement and velocity of each bead; w: how far neighbours are pressed together, of which fewer digits are lost. Order n: half the step, 2ⁿ times less error.";
 
 class AccuracyPage {
   constructor(model) {
@@ -78,7 +81,7 @@ class AccuracyPage {
     this.agreement.textContent = state.agreement_words ?? "";
     this.agreement.title = state.reference ? `Reference: ${state.reference}. Second: ${state.second}.` : "";
     this.machine.textContent = state.machine ? `on this machine: ${state.machine}` : "";
-    this.methods.replaceChildren(methodTable(state.ways ?? [], state.rows ?? []));
+    this.methods.replaceChildren(paragraph(SYMBOLS, "symbols"), methodTable(state.ways ?? [], state.rows ?? []));
     this.redraw();
   }
 

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
+from granchain_core import BadInput, Settled
+
 from ...serve.queues import LONG
 from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .questions import (
+    QUESTIONS,
     Field,
     Plan,
     Question,
@@ -32,7 +35,8 @@ class AnalysisPage(Page):
     """An answer stays, with the scene that it is about in its title, until another question is asked.
 
     The question and the values with which it was last computed are in the address. A page that is opened with them
-    offers them again; it computes when it is asked to.
+    offers them again; it computes when it is asked to. One that is opened without answers the first question, which
+    takes no time, and goes on doing so for every picture until the visitor asks something.
     """
 
     def __init__(self, host: Host, view: Analysis) -> None:
@@ -42,6 +46,7 @@ class AnalysisPage(Page):
         self._question: Question | None = None
         self._text = ""
         self._fields: tuple[Field, ...] = ()
+        self._unasked = False
         self.actions: Actions = {
             "analysis-ask": self._ask, "analysis-compute": self._begin, "analysis-stop": lambda _: self._stop()}
         self.address_taken()
@@ -57,6 +62,25 @@ class AnalysisPage(Page):
             self._fields = offered_fields(self._question, self._host.session.scene, self._fields)
             self._view.offer(self._fields)
 
+    def visibility_changed(self, visible: bool) -> None:
+        """Somebody opens the page: without a question it begins with the first."""
+        self._unasked = visible and (self._unasked or self._question is None)
+        self._begin_unasked()
+
+    def picture_ready(self, picture: Settled) -> None:
+        """The knobs stand still."""
+        if picture.final:
+            self._begin_unasked()
+
+    def _begin_unasked(self) -> None:
+        if self._unasked and self._host.session.picture is not None:
+            question = next(iter(QUESTIONS.values()))
+            self._offer(question, question.fields(self._host.session.scene), "")
+            try:
+                self._compute_chosen({})
+            except BadInput as problem:  # too long a chain, or one without a drive
+                self._say("none", str(problem))
+
     def address_taken(self) -> None:
         """The address says what is asked, and with which values; what is on the page already stays."""
         text = self._host.session.question
@@ -65,6 +89,7 @@ class AnalysisPage(Page):
             self._offer(question, fields, text)
 
     def _ask(self, message: dict[str, Any]) -> None:
+        self._unasked = False
         question = question_of(message.get("question"))
         self._offer(question, question.fields(self._host.session.scene), question_text(question))
         self._keep()
@@ -82,11 +107,17 @@ class AnalysisPage(Page):
     def _begin(self, message: dict[str, Any]) -> None:
         if self._question is None:
             return
-        scene, values = self._host.session.scene, message.get("values")
-        plan = planned(self._question, scene, values)
-        self._fields = chosen_fields(self._question, scene, values)
+        self._unasked = False
+        self._compute_chosen(message.get("values"))
         self._text = question_text(self._question, self._fields)
         self._keep()
+
+    def _compute_chosen(self, values: object) -> None:
+        """Begin to compute the question with these values of its fields."""
+        assert self._question is not None
+        scene = self._host.session.scene
+        plan = planned(self._question, scene, values)
+        self._fields = chosen_fields(self._question, scene, values)
         self._view.clear()
         self._say("waiting")
         self._task.start(lambda job: self._compute(plan, job))

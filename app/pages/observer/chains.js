@@ -15,6 +15,11 @@ class WholeChain extends ChainDrawing {
 
 // The observer: instead of the driver an arrow that is as long as the force.
 class PushedChain extends WholeChain {
+  constructor(...words) {
+    super(...words);
+    this.hasLeftBody = false;
+  }
+
   bodies(place, pitch, radius, y, beads) {
     const wall = place(beads + 1);
     const { context: g } = this;

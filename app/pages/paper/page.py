@@ -24,6 +24,8 @@ _KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
     "6": (("rig", (*_MOTION, CURVE)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
     "11": tuple((name, (*_MOTION, ORBIT, OBSERVER)) for name in ("fig11-free", "fig11-founded")),
 }
+#: The figure that the page begins with: the resonance curve of section 2, which takes a second.
+_FIRST = "2"
 #: Parts of a computation between two reports of how far it is.
 _STEPS = 50
 
@@ -37,7 +39,13 @@ class PaperPage(Page):
         self._view = view
         self._task = Task(host, LONG, self._say, "The figure")
         self._found: dict[str, Result] = {}
+        self._chosen = False
         self.actions: Actions = {"paper-show": self._show, "paper-stop": lambda _: self._stop()}
+
+    def visibility_changed(self, visible: bool) -> None:
+        """Somebody opens the page: it begins with a figure rather than empty."""
+        if visible and not self._chosen:
+            self._show({"figure": _FIRST})
 
     def close(self) -> None:
         """The visitor left."""
@@ -50,6 +58,7 @@ class PaperPage(Page):
     def _show(self, message: dict[str, Any]) -> None:
         figure = figure_of(str(message.get("figure")))
         self._task.cancel()
+        self._chosen = True
         self._view.choose(figure)
         if figure.number in self._found:
             self._say("done")

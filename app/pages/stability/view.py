@@ -170,14 +170,15 @@ def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
             "Relative distance of the orbit from the settled picture, in which Newton's method was started.")
     why = ("the smallest multipliers are below rounding" if len(orbit.multipliers) == 2 * orbit.scene.N
            else f"only the {len(orbit.multipliers)} leading multipliers are computed")
-    row("Liouville", why if orbit.liouville is None else short_error(orbit.liouville),
-        "Liouville's theorem: the logarithm of the multipliers' product against the integral of the equations' trace, "
-        "relative difference.")
-    row("disturbance carried", f"{short_error(max(analysis.mode.closure, 1e-16))} off",
+    row("product of all μ", why if orbit.liouville is None else short_error(orbit.liouville),
+        "Liouville's theorem: the logarithm of the multipliers' product and the integral of the equations' trace are "
+        "equal; their relative difference.")
+    row("disturbance followed", f"{short_error(max(analysis.mode.closure, 1e-16))} off",
         "A small disturbance along the eigenvector, integrated over one orbit: the relative distance of its end from "
         "μ times its start.")
-    row("multipliers by", f"tangent flow on dop853, {duration(analysis.wall_s)}",
-        "Method and computing time of orbit, multipliers and mode.")
+    row("multipliers by", f"linearised equations, {duration(analysis.wall_s)}",
+        "The equations linearised along the orbit are integrated with it (the tangent flow, by dop853); computing time "
+        "of orbit, multipliers and mode.")
 
 
 def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:

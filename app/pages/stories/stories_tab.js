@@ -10,6 +10,7 @@ let told = ""; // the step that was shown last
 // The part of the page that a step is about has a frame.
 function point(look, telling = false) {
   document.getElementById("curves").classList.toggle("telling", telling);
+  window.granchain.emit("telling", telling);
   for (const one of document.querySelectorAll(".looked-at")) one.classList.remove("looked-at");
   if (look) document.getElementById(look).classList.add("looked-at");
 }
@@ -48,7 +49,7 @@ function telling(model, story) {
   const leaving = "Leave the story";
   const leave = button("✕", () => model.send_msg({ do: "story-close" }), { title: leaving, ariaLabel: leaving });
   const count = element("span", { textContent: `${step} of ${steps}` });
-  const row = element("div", { className: "row" }, before, count, next, reveal, leave);
+  const row = element("div", { className: "row steps" }, before, count, next, reveal, leave);
   return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), answered];
 }
 
