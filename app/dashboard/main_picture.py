@@ -22,7 +22,7 @@ from ..serve.pacing import FramePacer
 from ..serve.queues import PICTURES, LatestWins
 from ..serve.shared import Shared
 from ..serve.turns import SchedulerSlot
-from ..session.budget import WHOLE_PICTURE, Refused, TooLong, check_first_picture
+from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_residual import with_account
 from ..session.host import Host
 from ..session.live import LivePicture, LiveRun
@@ -62,7 +62,7 @@ def _refusing(scene: Scene) -> Iterator[None]:
     try:
         yield
     except (OverBudget, TooLong) as problem:
-        raise Refused(scene, str(problem)) from None
+        raise RefusedPicture(scene, str(problem)) from None
 
 
 class Pictures:

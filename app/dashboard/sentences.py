@@ -10,7 +10,7 @@ from granchain_core import BadInput, NumbersFailed, Scene
 
 from ..parts.status_line import StatusLine
 from ..serve.meters import METERS
-from ..session.budget import Refused
+from ..session.budget import RefusedPicture
 from ..session.hooks import Actions
 from ..session.session import Session
 
@@ -40,7 +40,7 @@ class Sentences:
 
     def failed(self, error: Exception) -> None:
         """Say in one sentence what happened; the last good picture stays."""
-        if isinstance(error, Refused):
+        if isinstance(error, RefusedPicture):
             METERS.refused_pictures += 1
             if error.scene == self._session.scene:  # else a knob has moved since, and asked for another picture
                 self.say(str(error))

@@ -19,7 +19,7 @@ const ENTRIES = [
 
 // What gives way, in this order, where the line has no room for all: an entry goes, or has fewer words, as often as the
 // server has a shorter form of them.
-const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime"];
+const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime", "accuracy"];
 const NOT_ON_PHONE = ["force", "method", "start", "effects"];
 
 // Opens the page that measures what accuracy costs.
@@ -117,9 +117,10 @@ class Line {
       const entry = this.entries.get(name);
       if (need <= this.room || !entry) continue;
       need -= this.widthOf(name, entry);
-      entry.hidden = !shorter[name];
+      const words = shorter[name]?.shift();
+      entry.hidden = words === undefined && name !== "regime";
       if (entry.hidden) continue;
-      entry.textContent = shorter[name].shift() ?? entry.textContent;
+      entry.textContent = words ?? entry.textContent;
       need += this.widthOf(name, entry);
     }
   }

@@ -21,7 +21,7 @@ from bokeh.util.token import get_session_id
 from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 
 from .compressed import CompressedFiles
-from .message_rules import Refused, check
+from .message_rules import RefusedMessage, check
 from .meters import METERS
 from .part_messages import take
 
@@ -158,15 +158,15 @@ class GuardedSocket(Guard):
         self._at = now
         try:
             if self._tokens < 0.0:
-                raise Refused("too many messages")
+                raise RefusedMessage("too many messages")
             if not isinstance(fragment, str):
-                raise Refused("binary data")
+                raise RefusedMessage("binary data")
             self._frames = (*self._frames, fragment)
             if len(self._frames) < 3:
                 return None
             frames, self._frames = self._frames, ()
             asked = check(frames[0], frames[2])
-        except Refused as reason:
+        except RefusedMessage as reason:
             self._refuse(str(reason))
             return None
         return None if take(getattr(self, "connection", None), asked) else self._to_bokeh(frames)

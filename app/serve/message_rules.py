@@ -20,26 +20,26 @@ TYPES = ("number", "array", "set", "map", "event")
 DEEPEST = 20
 
 
-class Refused(Exception):
+class RefusedMessage(Exception):
     """A message that no page of ours sends; the text says why."""
 
 
 def check(header: str, content: str) -> dict[str, Any]:
-    """The content of a message; raise `Refused` for one that is not let through."""
+    """The content of a message; raise `RefusedMessage` for one that is not let through."""
     asked = _object("header", header)
     if not isinstance(asked.get("msgid"), str) or asked.get("msgtype") not in KINDS:
-        raise Refused("unknown kind of message")
+        raise RefusedMessage("unknown kind of message")
     if asked.get("num_buffers", 0) != 0:
-        raise Refused("binary data")
+        raise RefusedMessage("binary data")
     given = _object("content", content)
     if asked["msgtype"] == "PULL-DOC-REQ":
         return given
     events = given.get("events")
     if not isinstance(events, list) or not events:
-        raise Refused("no events")
+        raise RefusedMessage("no events")
     for event in events:
         if not isinstance(event, dict) or event.get("kind") not in CHANGES:
-            raise Refused("unknown kind of event")
+            raise RefusedMessage("unknown kind of event")
         for value in event.values():
             _check_value(value, DEEPEST)
     return given
@@ -49,9 +49,9 @@ def _object(what: str, text: str) -> dict[str, Any]:
     try:
         found = json.loads(text)
     except (ValueError, RecursionError):
-        raise Refused(f"unreadable {what}") from None
+        raise RefusedMessage(f"unreadable {what}") from None
     if not isinstance(found, dict):
-        raise Refused(f"unreadable {what}")
+        raise RefusedMessage(f"unreadable {what}")
     return found
 
 
@@ -59,10 +59,10 @@ def _check_value(value: Any, deepest: int) -> None:
     if not isinstance(value, (dict, list)):
         return
     if deepest == 0:
-        raise Refused("too deep a value")
+        raise RefusedMessage("too deep a value")
     if isinstance(value, dict):
         if "type" in value and value["type"] not in TYPES:
-            raise Refused("a value of a kind that no page sends")
+            raise RefusedMessage("a value of a kind that no page sends")
         value = list(value.values())
     for one in value:
         _check_value(one, deepest - 1)

@@ -28,7 +28,7 @@ def check_first_picture(scene: Scene) -> None:
     check_picture(scene, _PERIODS, samples_for(scene), FIRST_PICTURE)
 
 
-class Refused(BadInput):
+class RefusedPicture(BadInput):
     """The picture of a scene that would take too long, or has; the visitor may insist on this scene."""
 
     def __init__(self, scene: Scene, sentence: str) -> None:

@@ -23,7 +23,7 @@ from app.frames import Extremes, settled_frames
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
 from app.serve.meters import METERS
-from app.session.budget import Refused
+from app.session.budget import RefusedPicture
 from app.session.hooks import all_actions
 from app.session.live import LiveRun
 from app.session.message_checks import listed, whole
@@ -97,10 +97,10 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
 def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -> None:
     """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about."""
     refused = dashboard.session.scene.evolve(N=10_000)
-    dashboard.failed(Refused(refused, "It would take long."))
+    dashboard.failed(RefusedPicture(refused, "It would take long."))
     assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")
     dashboard.session.scene = refused
-    dashboard.failed(Refused(refused, "It would take long."))
+    dashboard.failed(RefusedPicture(refused, "It would take long."))
     assert dashboard.views.status_line.state["insist"]
     dashboard.failed(BadInput("Something else."))
     assert not dashboard.views.status_line.state["insist"]

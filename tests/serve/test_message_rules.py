@@ -11,7 +11,7 @@ import pytest
 from event_loop import run_async
 
 from app.serve import guard
-from app.serve.message_rules import DEEPEST, Refused, check
+from app.serve.message_rules import DEEPEST, RefusedMessage, check
 
 ASKED = json.dumps({"msgid": "1", "msgtype": "PATCH-DOC"})
 
@@ -38,7 +38,7 @@ def test_plain_values_pass(value: Any) -> None:
     {"type": "object", "name": "CustomJS", "id": "x"}, {"type": "slice", "start": 0, "stop": 1, "step": 1}, {"type": []},
     {"type": "map", "entries": [["a", {"type": "bytes", "data": "AAAA"}]]}, nested(DEEPEST + 1)])
 def test_values_that_no_page_sends_are_refused(value: Any) -> None:
-    with pytest.raises(Refused):
+    with pytest.raises(RefusedMessage):
         check(ASKED, content(value))
 
 
@@ -47,7 +47,7 @@ def test_values_that_no_page_sends_are_refused(value: Any) -> None:
     (ASKED, '{"events": [5]}'), (ASKED, content(1, "RootAdded")), (ASKED, "[" * 100_000),
     ('{"msgid": "1", "msgtype": "PUSH-DOC"}', "{}"), ('{"msgid": "1", "msgtype": "PATCH-DOC", "num_buffers": 1}', content(1))])
 def test_messages_that_no_page_sends_are_refused(header: str, given: str) -> None:
-    with pytest.raises(Refused):
+    with pytest.raises(RefusedMessage):
         check(header, given)
 
 
