@@ -20,8 +20,8 @@ from .theme import AMBER, GREY, TEAL, VIOLET, Theme, apply_theme, frame, themed
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
            "grazing": "grazing"}
 _STYLES: dict[str, dict[str, Any]] = {
-    "fold": {"marker": "triangle", "size": 14, "colour": AMBER, "filled": True},
-    "period_doubling": {"marker": "diamond", "size": 16, "colour": VIOLET, "filled": True},
+    "fold": {"marker": "inverted_triangle", "size": 14, "colour": AMBER, "filled": True},
+    "period_doubling": {"marker": "hex", "size": 14, "colour": VIOLET, "filled": True},
     "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
     "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
