@@ -9,8 +9,8 @@ const FIGURE = "resonance curve"; // the name of its model
 const ABOVE = { peak: 11, band: 5, valley: 9 }; // px between a point and its name; on a peak there is the ring's place
 const BESIDE = 3; // px between the line of what the paper states and its name
 const MARK = 4; // px from the middle of a point to its edge
-const STEP = 6; // px by which a name moves up
-const ASIDE = { peak: [0, -8, 8, -16, 16], band: [0, -8, 8, -16, 16], valley: [0, -4, 4, -8, 8] }; // px to the side
+const STEP = 3; // px by which a name moves up
+const ASIDE = { peak: [0, -8, 8, -16, 16], band: [0, -8, 8, -16, 16], valley: [0, -3, 3, -6, 6, -9, 9] }; // px to the side
 const SHORT = "anti-res."; // the name of a valley that has no room for the whole
 const ORDER = { peak: 0, band: 1, valley: 2 };
 

@@ -131,7 +131,7 @@ def test_the_page_follows_the_knobs_and_the_window(visit: Visit) -> None:
     type_into(page, "f", "344")
     until(page, lambda: marks(page, "past") > 0 and marks(page, "ways") > 0)
     table = sheet.locator(".evidence")
-    for words in ("distance to the orbit", "Newton's residual", "Liouville", "disturbance carried", "settled by"):
+    for words in ("distance to the orbit", "Newton's residual", "product of all μ", "disturbance followed", "settled by"):
         expect(table).to_contain_text(words)
     fits(page, sheet)
     page.set_viewport_size({"width": 1280, "height": 800})
