@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -24,6 +26,24 @@ QUICK = (
     "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py", "test_format.py",
 )
 
+#: The tests that take longest, the longest first; the browser's among them begin its rows.
+LONG = (
+    "test_axe::test_axe_finds_nothing", "test_site::test_every_page_and_notebook_is_there",
+    "test_first_visit::test_cold_kernels_are_announced_and_the_picture_follows",
+    "test_effects_panel::test_what_is_computed_is_what_is_asked_for",
+    "test_accuracy_page::test_points_appear_and_the_cheapest_way_is_told",
+    "test_paper_pictures::test_every_figure_has_its_panels_with_units_in_the_themes_colours",
+    "test_resume::test_a_command_goes_on_after_two_signals", "test_branches_page::test_a_branch_grows_is_stopped_and_goes_on",
+    "test_room::test_what_the_paper_states_is_named_at_its_frequency",
+    "test_room::test_no_control_and_no_word_is_cut_hidden_or_covered", "test_stories::test_a_story_shows_what_it_tells",
+    "test_force_errors::test_largest_forces_are_within_what_is_stated_of_them",
+    "test_map::test_a_killed_map_resumes_and_computes_nothing_again", "test_fuzz::test_everything_holds_in_every_scene",
+    "test_work_precision::test_what_fails_is_named_and_kept", "test_chapters::test_the_peaks_of_section_2_and_what_lies_between",
+    "test_regime_labels::test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit",
+    "test_stated_errors::test_the_stated_error_bounds_the_true_one", "test_add_a_page::test_the_new_page_fits_into_the_house",
+    "test_add_an_effect::test_the_tests_that_know_every_scene_and_knob_know_the_new_ones",
+)
+
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
@@ -31,8 +51,43 @@ def pytest_xdist_auto_num_workers() -> int:
     return (os.cpu_count() or 1) + 2
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the quick tests."""
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Iterator[None]:
+    """Mark the quick tests; once the chosen ones are known, order them for the workers."""
     for item in items:
         if any(item.path.is_relative_to(HERE / one) for one in QUICK):
             item.add_marker(pytest.mark.quick)
+    yield
+    workers = getattr(config, "workerinput", {}).get("workercount", 1)
+    if workers > 1:
+        items[:] = spread(items, workers)
+
+
+def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
+    """The tests in the order in which `--dist worksteal` shares them out best.
+
+    Each worker begins with an equal number of tests in a row, and who has ended takes the last half of the longest row.
+    So two rows begin with the browser's tests, for which a worker needs a server and a browser of its own, each row
+    has its share of the long tests before the others, and what is left at the end is short.
+    """
+    place = {name: number for number, name in enumerate(LONG)}
+    long = sorted((item for item in items if _name(item) in place), key=lambda item: place[_name(item)])
+    browser = [item for item in items if item.path.is_relative_to(HERE / "browser")]
+    first = [item for item in browser if item in long] + [item for item in browser if item not in long]
+    long = [item for item in long if item not in browser]
+    rows: list[list[pytest.Item]] = [[] for _ in range(workers)]
+    for number, item in enumerate(first):
+        rows[number % min(2, workers)].append(item)
+    for number, item in enumerate(long):
+        rows[-1 - number % max(1, workers - 2)].append(item)
+    begun = {item for row in rows for item in row}
+    others = iter([item for item in items if item not in begun])
+    for number, row in enumerate(rows):  # as long as worksteal makes them: the rest of a division goes to the last
+        left = len(items) - sum(map(len, rows[:number]))
+        row += islice(others, max(0, left // (workers - number) - len(row)))
+    return [item for row in rows for item in row] + list(others)
+
+
+def _name(item: pytest.Item) -> str:
+    """File and function of a test, without its parameters."""
+    return f"{item.path.stem}::{getattr(item, 'originalname', item.name)}"
