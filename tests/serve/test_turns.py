@@ -41,7 +41,7 @@ def test_a_party_pays_together_and_has_the_claim_of_its_poorest() -> None:
 
 def test_who_is_stopped_while_waiting_does_not_wait_for_the_next_look(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.serve.turns._LOOK", 3600.0)
-    turns = FairScheduler(1)
+    turns = FairScheduler(1, lambda: 0.0)
     held = turns.begin(CpuTime(), Stop())
     slots = [SchedulerSlot(CpuTime(), turns) for _ in range(3)]
     begun: list[SchedulerSlot] = []
@@ -64,8 +64,8 @@ def test_who_is_stopped_while_waiting_does_not_wait_for_the_next_look(monkeypatc
 
 
 def test_of_those_who_wait_the_one_that_has_used_least_is_next() -> None:
-    """Not the one that came first."""
-    turns, order = FairScheduler(1), []
+    """Not the one that came first. The clock stands still: after a tenth of a second the first turn would make room."""
+    turns, order = FairScheduler(1, lambda: 0.0), []
     first = turns.begin(CpuTime(), Stop())
     accounts = {}
     for name, used in (("much", 3.0), ("little", 0.1), ("some", 1.0)):
