@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -35,9 +35,9 @@ PERIODS = [3 + (5 * i) % 7 for i in range(COUNT)]
 Found = dict[int, list[np.ndarray]]
 
 
-def seen(scenes: list[Scene], numbers: Iterable[int]) -> Found:
+def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
     """Strobes, largest forces and jumps of each scene; who has ended makes room for the next, as in settle.py."""
-    waiting, batch = iter(numbers), Batch(scenes[0], Stop())
+    waiting, batch = iter(numbers), Batch(scenes[numbers[0]], Stop())
     found: Found = {}
     held: dict[int, int] = {}
 
