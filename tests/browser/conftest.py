@@ -1,4 +1,4 @@
-"""One dashboard and one Chromium for all browser tests; every test opens a page of its own.
+"""One dashboard and one Chromium for all browser tests of a worker; every test opens a page of its own.
 
 A test that fails leaves what its pages showed and said in a folder that its report names (evidence.py).
 """
@@ -90,7 +90,8 @@ def prepared(chromium: Browser, address: str) -> str:
 
 
 @pytest.fixture
-def visit(profile: BrowserContext, chromium: Browser, prepared: str, log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
+def visit(profile: BrowserContext, chromium: Browser, prepared: str, log: Path,
+          request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
     """Opens the dashboard; at the end no page may have complained or asked another host for anything.
 
     The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
