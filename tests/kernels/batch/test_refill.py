@@ -21,15 +21,16 @@ COUNT = 2 * BATCH_SIZE + 3
 
 def scene_of(number: int, structure: str) -> Scene:
     """A scene of three beads; whatever may differ between the members of a batch differs between any two in a row."""
-    differs = {"founded": {"kappa": 1e-3 * (1 + number % 4)}, "pressed": {"F0": 0.1 * (1 + number % 5)}, "unlike": {}}[structure]
-    found = scene("sec2").evolve(N=3, f=300.0 + 40.0 * number, A0=2e-7 * (1 + number % 3), D=60.0 + 10.0 * (number % 7), **differs)
+    own = {"founded": {"kappa": 1e-3 * (1 + number % 4)}, "pressed": {"F0": 0.1 * (1 + number % 5)}, "unlike": {}}
+    found = scene("sec2").evolve(N=3, f=300.0 + 40.0 * number, A0=2e-7 * (1 + number % 3), D=60.0 + 10.0 * (number % 7),
+                                 **own[structure])
     if structure == "unlike":
         steel = found.bead(1)
         found = replace(found, pattern=(steel, replace(steel, mass=(0.4 + 0.1 * (number % 4)) * steel.mass)))
     return found
 
 
-#: Periods of each: members end at different times, so that places are filled while others are in the middle of a period.
+#: Periods of each: members end at different times, so that places are filled while others are inside a period.
 PERIODS = [3 + (5 * i) % 7 for i in range(COUNT)]
 
 Found = dict[int, list[np.ndarray]]
@@ -57,7 +58,8 @@ def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
         member, finite = batch.run()
         assert finite
         number = held[member]
-        found[number] = [one.copy() for one in (batch.strobes(member), batch.maxima(member, 99), batch.jumps(member, 99))]
+        seen_of_it = batch.strobes(member), batch.maxima(member, 99), batch.jumps(member, 99)
+        found[number] = [one.copy() for one in seen_of_it]
         fill(member)
     return found
 
