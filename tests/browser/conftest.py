@@ -1,4 +1,4 @@
-"""One dashboard and one Chromium for all browser tests; every test opens a page of its own.
+"""One dashboard and one Chromium for all browser tests of a worker; every test opens a page of its own.
 
 A test that fails leaves what its pages showed and said in a folder that its report names (evidence.py).
 """
@@ -13,10 +13,13 @@ from typing import Any
 import pytest
 from evidence import WATCHED, folder_of, leave, watch
 from knobs import COMPILED
-from playwright.sync_api import Browser, Page, expect, sync_playwright
-from server import dashboard, launch
+from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+from server import dashboard, launch_with_profile
 
 HERE = Path(__file__).parent
+
+#: How most pages are opened.
+USUAL: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce"}
 
 # Three workers with a browser and a server each share two processors: what is waited for comes, but not within
 # Playwright's five seconds.
@@ -32,7 +35,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+def pytest_runtest_makereport(item: pytest.Item,
+                              call: pytest.CallInfo[None]) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """While its pages are still open: leave the evidence of a test that has failed."""
     report = yield
     if report.failed and item.stash.get(WATCHED, None):
@@ -57,12 +61,23 @@ def address(log: Path) -> Iterator[str]:
 
 
 @pytest.fixture(scope="session")
-def chromium() -> Iterator[Browser]:
-    """A running Chromium."""
+def chromium(profile: BrowserContext) -> Browser:
+    """The running Chromium."""
+    assert profile.browser is not None
+    return profile.browser
+
+
+@pytest.fixture(scope="session")
+def profile(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BrowserContext]:
+    """The context of a profile on the disk, in a Chromium of its own: there scripts are kept as they were compiled.
+
+    A context without one compiles four megabytes of scripts for every page: a third of a page's processor time.
+    """
     with sync_playwright() as playwright:
-        browser = launch(playwright)
-        yield browser
-        browser.close()
+        context = launch_with_profile(playwright, tmp_path_factory.mktemp("profile"), **USUAL)
+        context.set_default_timeout(60_000)
+        yield context
+        context.close()
 
 
 @pytest.fixture(scope="session")
@@ -76,36 +91,51 @@ def prepared(chromium: Browser, address: str) -> str:
 
 
 @pytest.fixture
-def visit(chromium: Browser, prepared: str, log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
+def visit(profile: BrowserContext, chromium: Browser, prepared: str, log: Path,
+          request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
     """Opens the dashboard; at the end no page may have complained or asked another host for anything.
 
     The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
-    `reduced_motion="no-preference"` opens one that plays.
+    `reduced_motion="no-preference"` opens one that plays. The first page that asks for no options is in the browser's
+    profile, where nothing is left of the pages before; every other one is in a context of its own.
     """
-    contexts = []
+    opened: list[Page | BrowserContext] = []
     complaints: list[str] = []
 
     def open_page(query: str = "", url: str = prepared, script: str = "", **options: Any) -> Page:
-        context = chromium.new_context(**{"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce", **options})
-        context.set_default_timeout(60_000)
-        contexts.append(context)
-        page = context.new_page()
+        if options or opened:
+            context = chromium.new_context(**{**USUAL, **options})
+            context.set_default_timeout(60_000)
+            page = context.new_page()
+            opened.append(context)
+            begin = ""
+        else:
+            page, begin = profile.new_page(), NOTHING_KEPT
+            opened.append(page)
         watch(request.node, page, log)
         page.on("console", lambda message: (message.type == "error" or "initial ranges" in message.text)
                 and complaints.append(message.text))  # the latter: a figure that was drawn before it had points
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda request: request.url.startswith((url, "data:", "blob:"))
                 or complaints.append(f"asked another host: {request.url}"))
-        page.add_init_script(RUNTIME + script)
+        page.add_init_script(begin + RUNTIME + script)
         page.goto(url + query)
         page.wait_for_function("window.painted.length > 0", timeout=180_000)
         return page
 
     yield open_page
-    for context in contexts:
-        context.close()
+    for one in opened:
+        one.close()
     assert complaints == []
 
+
+# Once in a page, before anything of its own runs.
+NOTHING_KEPT = """
+try {
+  if (!sessionStorage.getItem("granchain-test")) localStorage.clear();
+  sessionStorage.setItem("granchain-test", "begun");
+} catch { /* about:blank keeps nothing */ }
+"""
 
 RUNTIME = """
 // Only the tests of the tour are a first visit.

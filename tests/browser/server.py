@@ -15,7 +15,7 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
-from playwright.sync_api import Browser, Page, Playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright
 
 #: A number for every call of `at_rest`: what an earlier call has seen says nothing of this one.
 _CALLS = count()
@@ -97,7 +97,7 @@ class Server:
 
 
 def _wait_until_alive(process: subprocess.Popen[bytes], address: str, log: Path) -> None:
-    end = time.monotonic() + 60
+    end = time.monotonic() + 180
     while time.monotonic() < end:
         if process.poll() is not None:
             break
@@ -114,10 +114,19 @@ def launch(playwright: Playwright) -> Browser:
 
     With `GRANCHAIN_HEADED=1` in the environment its window is shown.
     """
+    return playwright.chromium.launch(**_how(playwright))
+
+
+def launch_with_profile(playwright: Playwright, profile: Path, **options: Any) -> BrowserContext:
+    """The same with a profile in this folder, and the context of that profile."""
+    return playwright.chromium.launch_persistent_context(profile, **_how(playwright), **options)
+
+
+def _how(playwright: Playwright) -> dict[str, Any]:
     headed = bool(os.environ.get("GRANCHAIN_HEADED"))
     names = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
     system = next((path for name in names[headed:] if (path := shutil.which(name))), None)
     if system is None and not Path(playwright.chromium.executable_path).exists():
         raise RuntimeError("The browser tests need Chromium: install the system's chromium package, "
                            "or run `playwright install chromium`.")
-    return playwright.chromium.launch(executable_path=system, args=CHROMIUM_OPTIONS, headless=not headed)
+    return {"executable_path": system, "args": CHROMIUM_OPTIONS, "headless": not headed}

@@ -70,7 +70,8 @@ def test_switches_change_equation_slots_and_cost(visit: Visit) -> None:
 
 
 def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
-    page = visit()
+    """With three beads: a whole sweep of eleven took four minutes on a busy machine."""
+    page = visit("?v=1&scene=sec2&N=3")
     page.get_by_role("tab", name="effects").click()
     tab = page.locator("#tabs")
     expect(activity(tab, "resonance curve, from rest")).to_contain_text("all points are computed", timeout=COMPILED)

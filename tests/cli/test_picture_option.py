@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -39,17 +40,43 @@ def document(page: str) -> dict[str, object]:
     return dict(next(iter(json.loads(found).values())))
 
 
+#: Every command by itself would import the core anew; what each prints is told by its name.
+_PROGRAM = """
+import contextlib, io, json, os, sys
+from app.cli import main
+
+told = {}
+for name, words in json.loads(sys.argv[1]).items():
+    os.mkdir(name)
+    os.chdir(name)
+    with contextlib.redirect_stdout(io.StringIO()) as out:
+        assert main(words) == 0, name
+    told[name] = out.getvalue()
+    os.chdir("..")
+print(json.dumps(told))
+"""
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[str, str]]:
+    """What a command printed, and its page; all of them in a process of their own: Panel, which other tests import, puts
+    its own scripts into every page of Bokeh's."""
+    folder = tmp_path_factory.mktemp("pictures")
+    words = {name: [name.split()[0], *COMMANDS[name], "--json", "--picture", "a.html"] for name in COMMANDS}
+    done = subprocess.run([sys.executable, "-c", _PROGRAM, json.dumps(words)], cwd=folder, capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": str(ROOT)})
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    return lambda name: (told[name], (folder / name / "a.html").read_text(encoding="utf-8"))
+
+
 @pytest.mark.parametrize("command", COMMANDS)
-def test_the_figure_is_in_a_file_that_needs_nothing_else(command: str, tmp_path: Path) -> None:
-    # in a process of its own: Panel, which other tests import, puts its own scripts into every page of Bokeh's
-    done = subprocess.run([sys.executable, "-m", "app.cli", command.split()[0], *COMMANDS[command], "--json", "--picture", "a.html"],
-                          cwd=tmp_path, capture_output=True, text=True, check=True, env={**os.environ, "PYTHONPATH": str(ROOT)})
-    json.loads(done.stdout)  # still one object and nothing else
-    page = (tmp_path / "a.html").read_text(encoding="utf-8")
+def test_the_figure_is_in_a_file_that_needs_nothing_else(command: str, drawn: Callable[[str], tuple[str, str]]) -> None:
+    told, page = drawn(command)
+    json.loads(told)  # still one object and nothing else
     assert not re.search(r"<(script|link)[^>]+(src|href)=", page)
-    drawn = json.dumps(document(page))
-    name = SOURCES[command]
-    assert re.search(rf'"name": "ColumnDataSource", "id": "[^"]+", "attributes": {{"name": "{name}", ', drawn)
+    assert re.search(rf'"name": "ColumnDataSource", "id": "[^"]+", "attributes": {{"name": "{SOURCES[command]}", ',
+                     json.dumps(document(page)))
 
 
 def test_what_cannot_be_written_is_said_before_anything_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

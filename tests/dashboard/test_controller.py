@@ -159,7 +159,7 @@ def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(d
     monkeypatch.setattr(main_picture, "COMPILER", Compiling())
     monkeypatch.setattr(main_picture, "settling", lambda *_, **__: settled.append("began") or iter(()))
     dashboard.pictures.compute()
-    assert waiting.wait(10)
+    assert waiting.wait(60)
     dashboard.close(None)
     dashboard.run_callbacks_until(lambda: not dashboard.pictures.busy)
     assert settled == []

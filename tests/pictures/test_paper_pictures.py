@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import cache
 from typing import Any
 
@@ -17,11 +18,17 @@ from granchain_core.experiment import Measured, Series, Shaker
 from granchain_core.paper import FIGURES, Given, Result, compute
 from granchain_core.paper.features import dips, peaks
 
+#: The module, whose name is also that of the function.
+by = sys.modules["granchain_core.paper.compute"]
+
 
 @cache
 def result(number: str) -> Result:
-    """The result of a figure without data."""
-    return compute(number)
+    """The result of a figure without data; figure 9's four curves have every fifth point, which changes no panel."""
+    with pytest.MonkeyPatch.context() as patch:
+        if number == "9":
+            patch.setattr(by, "RIG", by.RIG[::5])
+        return compute(number)
 
 
 def plots(drawn: LayoutDOM) -> list[Figure]:

@@ -28,7 +28,7 @@ class Served:
         started = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(started,), daemon=True)
         self._thread.start()
-        assert started.wait(20)
+        assert started.wait(60)
 
     def _run(self, started: threading.Event) -> None:
         asyncio.set_event_loop(asyncio.new_event_loop())
@@ -68,7 +68,7 @@ def ask(session: ClientSession, text: str) -> None:
 def wait_for(session: ClientSession, text: str) -> None:
     """Until the answer has come as a change of the document, as the browser gets it."""
     loop = session._connection.io_loop
-    patience = loop.call_later(10, loop.stop)
+    patience = loop.call_later(60, loop.stop)
     session._connection._loop_until(lambda: session.document.select_one({"name": "answer"}).text == text)
     loop.remove_timeout(patience)
     assert session.document.select_one({"name": "answer"}).text == text

@@ -18,6 +18,7 @@ from bokeh.models import ColumnDataSource, Div, Range1d
 from bokeh.protocol import Protocol
 from bokeh.server.session import ServerSession
 from bokeh.server.views.ws import WSHandler
+from event_loop import in_a_thread
 from missing_attribute import hide
 from panel.models.esm import ESMEvent
 
@@ -124,6 +125,7 @@ def test_of_two_changes_of_a_property_the_last_is_kept_and_an_equal_one_is_none(
 
 @pytest.mark.parametrize(("owner", "name"), [(ServerSession, "_subscribed_connections"), (WSHandler, "ws_connection"),
                                              (WSHandler, "write_lock")], ids=lambda value: getattr(value, "__name__", value))
+@in_a_thread
 def test_answers_come_without_it(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     hide(monkeypatch, changes, owner, name)
     session = pull_session(url=served.address)

@@ -40,7 +40,7 @@ def port(tmp_path: Path) -> Iterator[int]:
 
     thread = threading.Thread(target=run, daemon=True)
     thread.start()
-    assert started.wait(20)
+    assert started.wait(60)
     yield socket.getsockname()[1]
     loops[0].add_callback(loops[0].stop)
     thread.join(20)

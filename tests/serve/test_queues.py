@@ -12,16 +12,16 @@ def test_work_does_not_wait_for_a_thread_that_has_just_been_given_other_work() -
     queue = Queue("tested", 4)
     for _ in range(300):
         go_on, done = threading.Event(), threading.Event()
-        first = queue.submit(go_on.wait, 20)
+        first = queue.submit(go_on.wait, 120)
         queue.submit(done.set)
-        assert done.wait(10), "it waits for the first, which takes long"
+        assert done.wait(60), "it waits for the first, which takes long"
         go_on.set()
-        assert first.result(20)
+        assert first.result(60)
 
 
 def test_what_waits_and_what_is_under_way_is_counted() -> None:
     queue, go_on = Queue("tested", 2), threading.Event()
-    ended = [queue.submit(go_on.wait, 20) for _ in range(5)]
+    ended = [queue.submit(go_on.wait, 120) for _ in range(5)]
     assert (queue.busy, queue.waiting) == (2, 3)
     go_on.set()
     assert all(one.result(20) for one in ended)

@@ -8,6 +8,7 @@ from bokeh.client import pull_session
 from bokeh.server.connection import ServerConnection
 from bokeh.server.session import ServerSession
 from bokeh.server.views.ws import WSHandler
+from event_loop import in_a_thread
 from missing_attribute import hide
 from tornado.iostream import IOStream
 from tornado.websocket import WebSocketProtocol
@@ -21,6 +22,7 @@ ATTRIBUTES: list[tuple[type, str]] = [
 ]
 
 
+@in_a_thread
 def test_the_attributes_of_these_releases_are_used(served: Served) -> None:
     """Fails when a release has dropped one: the page still works, some milliseconds slower."""
     session = pull_session(url=served.address)
@@ -32,6 +34,7 @@ def test_the_attributes_of_these_releases_are_used(served: Served) -> None:
 
 
 @pytest.mark.parametrize(("owner", "name"), ATTRIBUTES, ids=lambda value: getattr(value, "__name__", value))
+@in_a_thread
 def test_a_message_is_served_without_it(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     hide(monkeypatch, socket_tuning, owner, name)
     session = pull_session(url=served.address)

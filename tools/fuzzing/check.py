@@ -64,12 +64,13 @@ class Verdict:
 
 
 def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, others: float = 0.0,
-          budget: float = BUDGET) -> Verdict:
+          budget: float = BUDGET, patience: float = 1.0) -> Verdict:
     """The verdict on one draw; `compute` takes the place of `run`.
 
     The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds; where tension is cut, `run`
     uses the adaptive method itself, and that solver is the only independent one. Naive RK4 and LSODA are judged too, for
-    at most `others` seconds each.
+    at most `others` seconds each. What takes longer than its time is ended after `patience` times as long, so that a
+    busy machine decides nothing: what is begun at all depends on estimates and counted steps.
     """
     try:
         chosen = draw.scene()
@@ -78,14 +79,14 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
         return Verdict(draw, "refused: BadInput", str(refusal), faults=fault)
     except Exception as problem:  # any other failure has no type, and is what the fuzzer looks for
         return Verdict(draw, "untyped", repr(problem), faults=[("untyped failure", 1.0)])
-    verdict, found = _outcome(draw, chosen, compute, budget)
+    verdict, found = _outcome(draw, chosen, compute, budget, patience)
     if draw.spoiled:
         verdict.faults.append(("a spoiled knob was taken", 1.0))
     if found is None:
         return verdict
     _finite(verdict, found)
     try:
-        with limit(2.0 * budget) as stop:
+        with limit(2.0 * budget * patience) as stop:
             truth = _judge(verdict, found, stop)
             _properties(verdict, chosen, stop)
     except Cancelled:  # the adaptive method at its finest takes longer than the run: counted as not judged
@@ -94,7 +95,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
         verdict.sentence = f"the judge failed: {problem}"
         return verdict
     if scipy > _SCIPY_STEP * verdict.steps:
-        _second_judge(verdict, found, scipy)
+        _second_judge(verdict, found, scipy * patience)
     if others > 0.0:
         _others(verdict, chosen, truth, others)
     return verdict
@@ -117,10 +118,11 @@ def limit(seconds: float) -> Iterator[np.ndarray]:
         timer.cancel()
 
 
-def _outcome(draw: Draw, chosen: Scene, compute: Callable[..., Run], budget: float) -> tuple[Verdict, Run | None]:
-    began, found, fault = time.perf_counter(), None, ""
+def _outcome(draw: Draw, chosen: Scene, compute: Callable[..., Run], budget: float,
+             patience: float) -> tuple[Verdict, Run | None]:
+    began, found, fault, most = time.perf_counter(), None, "", patience * (2.0 * budget + FLOOR)
     try:
-        with limit(2.0 * budget + FLOOR) as stop:
+        with limit(most) as stop:
             found = compute(chosen, periods=0, record=PERIODS, samples=SAMPLES, stop=stop, budget=budget)
         outcome, sentence = found.status, ""
     except OverBudget as refusal:
@@ -130,12 +132,12 @@ def _outcome(draw: Draw, chosen: Scene, compute: Callable[..., Run], budget: flo
     except NumbersFailed as failure:
         outcome, sentence = f"failed: {failure.status}", failure.sentence
     except Cancelled:
-        outcome, sentence, fault = "hang", f"stopped after {2.0 * budget + FLOOR:g} s", "hang"
+        outcome, sentence, fault = "hang", f"stopped after {most:g} s", "hang"
     except Exception as problem:  # as above
         outcome, sentence, fault = "untyped", repr(problem), "untyped failure"
     seconds = time.perf_counter() - began
     verdict = Verdict(draw, outcome, sentence, seconds)
-    if fault or seconds > 2.0 * budget + FLOOR:
+    if fault or seconds > most:
         verdict.faults.append((fault or "hang", seconds))
     elif found is None and not sentence.endswith("."):
         verdict.faults.append(("no sentence", 1.0))

@@ -8,6 +8,7 @@ from .mutant import Mutant
 _BATCH_STEP, _BATCH_RUN, _CORRECTION = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
 _LOOKS, _WIDE, _RUN, _ALONG = "kernels/batch/period_end.py", "kernels/rk4/short_chain.py", "kernels/rk4/short_chain_steps.py", "kernels/rk4/long_chain.py"
 _MATH = "kernels/simd/functions.py"
+_BATCH = "integrate/batch.py"
 
 IN_BATCHES = (
     Mutant("batch-weights", _BATCH_STEP, "before.u + 2.0 * u2, before.w + 2.0 * w2", "before.u + u2, before.w + u2",
@@ -47,6 +48,20 @@ IN_BATCHES = (
            "the exponent of batches is that of a distance long since large", k.LYAPUNOV),
     Mutant("batch-growth-from-zero", _BATCH_RUN, "= log(now / start)", "= log(now)",
            "growth in batches is counted from 1, not from the distance it began with", k.LYAPUNOV),
+    Mutant("refill-into-old-overlaps", _BATCH, "state.y[:, member], state.overlaps[:, member] = y, 0.0", "state.y[:, member] = y",
+           "the first step of the next scene in a place is corrected for contacts of the one before", k.REFILL),
+    Mutant("refill-in-old-phase", _BATCH, "        state.phase[:, member] = 0.0, 1.0\n", "",
+           "a scene that is put into a place while others move begins at the phase that stood there", k.REFILL),
+    Mutant("refill-with-old-effects", _BATCH, "mine[0][:, member] = its[0]",
+           "mine[0][:, member] += (mine[0][:, member] == 0.0) * its[0]",
+           "the next scene in a place has damping, foundation and preload of the batch's first", k.REFILL),
+    Mutant("refill-after-old-strobes", _BATCH, "y.reshape(2, -1), 1\n", "y.reshape(2, -1), max(1, state.kept[member])\n",
+           "the record of the next scene in a place begins with the strobes of the one before", k.REFILL),
+    Mutant("refill-with-old-steps", _BATCH, "state.steps[member] = state.left[member] = steps",
+           "state.steps[member], state.left[member] = state.steps[member] or steps, steps",
+           "from its second period on the next scene in a place has the steps of the one before", k.REFILL),
+    Mutant("refill-with-old-verdict", _BATCH, "state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0",
+           "state.testing[member], state.due[member] = 0, 0", "the next scene in a place is checked as the finer run of the one before", k.REFILL),
 )
 
 IN_ROWS = (

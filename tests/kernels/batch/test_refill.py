@@ -1,0 +1,93 @@
+"""A place in a batch that has become free takes the next scene, and nothing of the one before is left in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from granchain_core import Scene, scene
+from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.kernels.width import BATCH_SIZE
+from granchain_core.scaling import scale_chain
+from granchain_core.steady.batch.settle import batch_results
+from granchain_core.steady.steady_state import SteadyState
+from granchain_core.stop import Stop
+
+COUNT = 2 * BATCH_SIZE + 3
+
+
+def scene_of(number: int, structure: str) -> Scene:
+    """A scene of three beads; whatever may differ between the members of a batch differs between any two in a row."""
+    own = {"founded": {"kappa": 1e-3 * (1 + number % 4)}, "pressed": {"F0": 0.1 * (1 + number % 5)}, "unlike": {}}
+    found = scene("sec2").evolve(N=3, f=300.0 + 40.0 * number, A0=2e-7 * (1 + number % 3), D=60.0 + 10.0 * (number % 7),
+                                 **own[structure])
+    if structure == "unlike":
+        steel = found.bead(1)
+        found = replace(found, pattern=(steel, replace(steel, mass=(0.4 + 0.1 * (number % 4)) * steel.mass)))
+    return found
+
+
+#: Periods of each: members end at different times, so that places are filled while others are inside a period.
+PERIODS = [3 + (5 * i) % 7 for i in range(COUNT)]
+
+Found = dict[int, list[np.ndarray]]
+
+
+def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
+    """Strobes, largest forces and jumps of each scene; who has ended makes room for the next, as in settle.py."""
+    waiting, batch = iter(numbers), Batch(scenes[numbers[0]], Stop())
+    found: Found = {}
+    held: dict[int, int] = {}
+
+    def fill(member: int) -> None:
+        if (number := next(waiting, None)) is None:
+            held.pop(member, None)
+            batch.state.return_at[member] = NEVER
+            return
+        held[member], scaled = number, scale_chain(scenes[number])
+        start = 1e-3 * (1 + number % 3) * np.sin(np.arange(2.0 * scaled.bodies)).reshape(2, -1)
+        start[:, [0, -1]] = 0.0  # driver and wall
+        batch.put(member, scaled, start.ravel(), 1.0, return_at=PERIODS[number], earliest=NEVER)
+
+    for member in range(BATCH_SIZE):
+        fill(member)
+    while held:
+        member, finite = batch.run()
+        assert finite
+        number = held[member]
+        seen_of_it = batch.strobes(member), batch.maxima(member, 99), batch.jumps(member, 99)
+        found[number] = [one.copy() for one in seen_of_it]
+        fill(member)
+    return found
+
+
+@pytest.mark.parametrize("structure", ["founded", "pressed", "unlike"])
+def test_more_scenes_than_places_give_what_each_gives_alone(structure: str) -> None:
+    """To the last bit: strobes, largest forces and jumps."""
+    scenes = [scene_of(number, structure) for number in range(COUNT)]
+    together = seen(scenes, range(COUNT))
+    assert sorted(together) == list(range(COUNT))
+    for number in range(COUNT):
+        alone = seen(scenes, [number])[number]
+        assert len(alone[0]) == PERIODS[number] + 1
+        assert all((one == other).all() for one, other in zip(together[number], alone, strict=True)), number
+
+
+def told(found: SteadyState) -> tuple[object, ...]:
+    """All of a steady state, bit by bit."""
+    return (found.regime, found.doubtful, found.status, [float(top).hex() for top in found.maxima], found.force_errors,
+            found.state.displacement.tolist(), found.state.velocity.tolist())
+
+
+@pytest.mark.parametrize("draft", [False, True])
+def test_steady_states_of_more_scenes_than_places_are_those_of_each_alone(draft: bool) -> None:
+    """A place is filled by the next scene, or by the finer run of one whose coarse run has ended: to the last bit."""
+    scenes = [scene_of(number, "founded") for number in range(COUNT)]
+    together = {found.scene.f: found for found in batch_results(iter(scenes), Stop(), draft)}
+    assert sorted(together) == [one.f for one in scenes]
+    for one in scenes:
+        (alone,) = batch_results(iter([one]), Stop(), draft)
+        assert told(together[one.f]) == told(alone), one.f
