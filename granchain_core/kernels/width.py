@@ -16,12 +16,12 @@ import numba
 
 from ..errors import BadInput
 
-#: Environment variable that chooses the number of scenes instead.
-VARIABLE = "GRANCHAIN_LANES"
+#: Environment variable that sets the number of scenes instead, and its older name, which still works.
+VARIABLE, OLDER_VARIABLE = "GRANCHAIN_BATCH_SIZE", "GRANCHAIN_LANES"
 #: Numbers of scenes there are kernels for.
 CHOICES = (4, 8)
-#: Processors, as LLVM names them, whose units are half as wide as the registers of AVX-512.
-_HALVES = ("znver4",)
+#: Processors, by LLVM's names, whose arithmetic units are half as wide as the registers of AVX-512.
+_HALF_WIDE_UNITS = ("znver4",)
 
 
 def has_avx512() -> bool:
@@ -36,23 +36,29 @@ def processor() -> str:
     return numba.config.CPU_NAME or llvmlite.binding.get_host_cpu_name()
 
 
-def batch_size(chosen: str | None) -> int:
-    """Scenes in one vector, `chosen` if that is one of the numbers there are, else what suits the machine.
+def batch_size(chosen: str | None, variable: str = VARIABLE) -> int:
+    """Scenes in one vector: `chosen`, the value of an environment variable, or if it is empty what suits the machine.
 
     Raises
     ------
     BadInput
-        `chosen` is something else.
+        `chosen` is not one of `CHOICES`.
     """
     if not chosen:
-        return 8 if has_avx512() and processor() not in _HALVES else 4
+        return 8 if has_avx512() and processor() not in _HALF_WIDE_UNITS else 4
     if chosen not in map(str, CHOICES):
         allowed = " or ".join(map(str, CHOICES))
-        raise BadInput(f"The environment variable {VARIABLE} is {chosen[:40]!r}; it may be {allowed}.")
+        raise BadInput(f"The environment variable {variable} is {chosen[:40]!r}; it may be {allowed}.")
     return int(chosen)
 
 
-BATCH_SIZE = batch_size(os.environ.get(VARIABLE))
+def _batch_size_here() -> int:
+    """The size that the environment sets, or what suits the machine."""
+    variable = VARIABLE if os.environ.get(VARIABLE) else OLDER_VARIABLE
+    return batch_size(os.environ.get(variable), variable)
+
+
+BATCH_SIZE = _batch_size_here()
 
 
 def machine() -> str:

@@ -1,4 +1,4 @@
-"""One Runge–Kutta step of several chains, one a SIMD lane, in a single sweep along them."""
+"""One Runge–Kutta step of several chains, one in each SIMD lane, in a single sweep along them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from .unequal import over_mass, times_stiffness
 
 
 class Values(NamedTuple):
-    """Values of the members' scenes, in registers where it is one number a scene."""
+    """Values of the members' scenes; those that are one number for each scene are in registers."""
 
     wall: Any
     law: Any
@@ -37,19 +37,19 @@ class Bead(NamedTuple):
 
 @inline_llvm
 def by_divider(d):
-    """√d by the divider."""
+    """√d by the square-root instruction."""
     return root(d)
 
 
 @inline_llvm
 def by_multipliers(d):
-    """√d, d > 0, by the multipliers."""
+    """√d, d > 0, by multiplications (simd/functions.py)."""
     return root_by_series(d)
 
 
 @inline_llvm
 def contact(values, root_of, left, right, c):
-    """Elastic force and shape of G of contact c; `root_of` takes the root its own way."""
+    """Elastic force and shape of G of contact c; `root_of` computes the root."""
     d = above_zero(batch_overlap(values.preload, left, right, c))
     r = root_of(d)
     return times_stiffness(values.unequal, values.wall, c, values.last, d * r), shape(values.law, d, r)

@@ -35,7 +35,7 @@ def _(unequal, i, force):
 
 @by_slot
 def times_stiffness(unequal, wall, i, last, elastic):
-    """The elastic force of contact i from d^{3/2}; `wall` is the last contact's stiffness. Absent: others have 1."""
+    """The elastic force of contact i from d^{3/2}; `wall` is the last contact's stiffness. Absent: all others are 1."""
     return wall * elastic if i == last else elastic
 
 
