@@ -72,6 +72,7 @@ class Batch:
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
             last_check=np.zeros((BATCH_SIZE, DISTANCE + 1)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
             limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
+            stages=(_rows(rows), _rows(rows), _rows(rows)),
         )
         for member in range(BATCH_SIZE):  # an empty place holds the example at rest and is never checked
             self.put(member, scaled, np.zeros(rows), 1, NEVER, NEVER)

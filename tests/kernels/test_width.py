@@ -36,7 +36,7 @@ def test_both_sizes_of_a_batch_give_the_same_curve() -> None:
 
 
 def test_the_size_of_a_batch_is_the_machines_or_the_one_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    for wide, name, members in ((True, "icelake-server", 8), (True, "znver4", 4), (False, "znver3", 4)):
+    for wide, name, members in ((True, "icelake-server", 8), (True, "znver4", 8), (False, "znver3", 4)):
         monkeypatch.setattr(width, "has_avx512", lambda wide=wide: wide)
         monkeypatch.setattr(width, "processor", lambda name=name: name)
         assert width.batch_size(None) == members

@@ -10,15 +10,15 @@ _LOOKS, _WIDE, _RUN, _ALONG = "kernels/batch/period_end.py", "kernels/rk4/short_
 _MATH = "kernels/simd/functions.py"
 
 IN_BATCHES = (
-    Mutant("batch-weights", _BATCH_STEP, "before.u + 2.0 * u2, before.w + 2.0 * w2", "before.u + u2, before.w + u2",
+    Mutant("batch-weights", _BATCH_STEP, "+ 2.0 * load_batch(stage.y2, row)", "+ load_batch(stage.y2, row)",
            "RK4 in batches with wrong weights", k.BATCH),
-    Mutant("batch-foundation-on-neighbour", _BATCH_STEP, "bead.e - e, bead.u))", "bead.e - e, right))",
+    Mutant("batch-foundation-on-neighbour", _BATCH_STEP, "left.e - e, left.u)", "left.e - e, right)",
            "the foundation pulls each bead by its neighbour's displacement", k.BATCH_FOUNDED),
-    Mutant("batch-without-last-contact", _BATCH_STEP, "times_stiffness(values.unequal, values.wall, c, values.last, d * r)",
-           "times_stiffness(values.unequal, 0.0 * values.wall, c, values.last, d * r)",
+    Mutant("batch-without-last-contact", _BATCH_STEP, "times_stiffness(values.unequal, values.wall, c, is_wall, d * r)",
+           "times_stiffness(values.unequal, 0.0 * values.wall, c, is_wall, d * r)",
            "chains in batches do not feel the wall", k.BATCH),
-    Mutant("batch-damping-of-one-side", _BATCH_STEP, "batch_velocity(values.law, values.unequal, i, bead.w, bead.G - G)",
-           "batch_velocity(values.law, values.unequal, i, bead.w, bead.G)", "a bead in batches is damped by one of its contacts", k.BATCH),
+    Mutant("batch-damping-of-one-side", _BATCH_STEP, "load_batch(source, m + i), left.G - G)",
+           "load_batch(source, m + i), left.G)", "a bead in batches is damped by one of its contacts", k.BATCH),
     Mutant("batch-output-force", _BATCH_STEP, "dashpot_force(values.law, last.overlap, last.rate)", "0.0 * last.rate",
            "the largest output force in batches leaves out the wall's dashpot", k.BATCH_FORCES),
     Mutant("batch-impulse-sign", _CORRECTION, "correct_state(values, y, c, m, gate(changed, impulse))",

@@ -81,7 +81,7 @@ def correct_contacts(values, y, overlaps, h, u0):
             r = larger(overlap, before) / (speed * h)
             r_mid = clip(r - 0.5)
             impulse = h * three_halves(speed * h) * impulse_error(r, three_halves(r), three_halves(r_mid))
-            impulse = times_stiffness(values.unequal, values.wall, c, values.last, impulse)
+            impulse = times_stiffness(values.unequal, values.wall, c, c == values.last, impulse)
             shift = displacement_error(values.law, r, r_mid, speed, h)
             correct_state(values, y, c, m, gate(changed, impulse))
             correct_displacement(values.law, values, y, c, changed, shift)

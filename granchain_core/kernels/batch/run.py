@@ -73,6 +73,8 @@ class BatchState(NamedTuple):
                              largest jumps (input, output)
     last_check (L, 3)        result of the last check: PERIOD, RATE, DISTANCE (period_end.py)
 
+    stages                   three states, (2(N+2), L) each, of the stages of a step (step.py)
+
     The others are workspaces of period_end.py.
     """
 
@@ -103,6 +105,7 @@ class BatchState(NamedTuple):
     limit: np.ndarray
     basis: np.ndarray
     triangle: np.ndarray
+    stages: tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @kernel
@@ -121,7 +124,7 @@ def batch_steps(members, state, count):
         correct_contacts(values, y, state.overlaps, h, sine)
         first_overlap = batch_overlap(values.preload, sine, load_batch(y, 1), 0)
         last_overlap = batch_overlap(values.preload, load_batch(y, last), load_batch(y, last + 1), last)
-        ends = batch_step(values, y, h, sine, middle, end)
+        ends = batch_step(values, y, state.stages, h, sine, middle, end)
         watch_batch_ends(values, h, first_overlap, last_overlap, beta * cosine, ends, state.ends, state.peaks)
         sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
