@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..kernels.batch import run as kernels
-from ..kernels.batch.period_end import COARSE_ERROR_LEFT, DISTANCE, FINE, FORCES, STROBES_KEPT
+from ..kernels.batch.period_end import COARSE_ERROR_LEFT, DISTANCE, FINE_COLUMNS, FORCES, STROBES_KEPT
 from ..kernels.batch.unequal import Unequal
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
@@ -68,10 +68,11 @@ class Batch:
             steps=whole[0], left=whole[1], periods=whole[2], return_at=whole[3], earliest=whole[4],
             extrapolate_from=whole[5], pause=whole[6], kept=whole[7], testing=whole[8], due=whole[9], slowest=parts[0],
             change_before_extrapolation=parts[1], before=np.zeros((BATCH_SIZE, 2, n + 2)),
-            fine_record=np.zeros((BATCH_SIZE, FINE)), strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)),
-            maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
+            fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
+            strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
             last_check=np.zeros((BATCH_SIZE, DISTANCE + 1)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
             limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
+            stages=(_rows(rows), _rows(rows), _rows(rows)),
         )
         for member in range(BATCH_SIZE):  # an empty place holds the example at rest and is never checked
             self.put(member, scaled, np.zeros(rows), 1, NEVER, NEVER)

@@ -25,7 +25,7 @@ from ..kernels.rk4.run import Kept, run_steps
 from ..kernels.rk4.short_chain import KEPT, STEPS_IN_BLOCK, WIDTHS, ShortChain
 from ..kernels.rk4.step import DriveTable, Stages
 from ..kernels.samples import Output, Samples, first_not_finite
-from ..kernels.simd.vector import LANES, aligned
+from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
 from ..stop import Stop
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
@@ -179,13 +179,13 @@ def _short_chain(scaled: ScaledChain, width: int) -> ShortChain:
 
 def _long_chain(scaled: ScaledChain) -> LongChain:
     """The workspace of a chain in blocks of eight bodies."""
-    slots, blocks = scaled.slots, -(-scaled.bodies // LANES)
+    slots, blocks = scaled.slots, -(-scaled.bodies // VECTOR_WIDTH)
 
     def padded(values: np.ndarray) -> np.ndarray:
-        return np.pad(values, (0, blocks * LANES - len(values))).reshape(blocks, LANES)
+        return np.pad(values, (0, blocks * VECTOR_WIDTH - len(values))).reshape(blocks, VECTOR_WIDTH)
 
     def empty(rows: int) -> np.ndarray:
-        return np.zeros((rows, LANES))
+        return np.zeros((rows, VECTOR_WIDTH))
 
     preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
     return LongChain(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,

@@ -30,7 +30,7 @@ from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
 from .compile_lock import CompileLock
-from .width import BATCH_SIZE, processor
+from .sources import FOLDER, constants_hash, hash_of_code, sources_hash, wording_hash
 
 #: Where messages for a person go: on stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
@@ -38,23 +38,8 @@ _LOG = logging.getLogger("granchain")
 _DIGEST = 32
 #: Folders of other versions are removed when they have not been used for this long [s].
 _MONTH = 30 * 86400.0
-#: Sources that decide where compiled code is kept, not what it is.
-_KEEPERS = ("cache.py", "compile_lock.py")
 #: Names of the folders of all versions.
 _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
-
-
-def sources_hash() -> str:
-    """Hash of the kernels' sources but for `_KEEPERS`, of Numba's version, the processor and the batch's size."""
-    digest = hashlib.sha256(f"{numba.__version__} {processor()} {BATCH_SIZE}".encode())
-    folder = Path(__file__).parent
-    for path in sorted(folder.rglob("*.py")):
-        name = path.relative_to(folder).as_posix()
-        if name not in _KEEPERS:
-            digest.update(name.encode())
-            digest.update(path.read_bytes())
-    return digest.hexdigest()[:12]
-
 
 # --- the folder ---------------------------------------------------------------------------------------------
 
@@ -65,20 +50,36 @@ def cache_folder() -> Path | None:
     It is in $GRANCHAIN_CACHE, else in the user's cache. Where that cannot be written, kernels that are there already
     are used; where there are none, a folder in the temporary directory is, if nobody else can write to it.
     """
-    name = f"kernels-{sources_hash()}"
     base, problem = _chosen_base(), "there is no home folder"
     if base is not None:
+        name = _version_in(base)
         try:
             (base / name).mkdir(parents=True, exist_ok=True)
             with tempfile.TemporaryFile(dir=base / name):
                 pass
-            _remove_old(base, base / name)
+            _note_use(base, base / name)
             return base / name
         except OSError as denied:
             problem = f"{base}: {denied.strerror or denied}"
             if _holds_kernels(base / name):
                 return base / name
-    return _temporary_folder(name, problem)
+    return _temporary_folder(problem)
+
+
+def _version_in(base: Path) -> str:
+    """Name of the folder of these sources: the one in `base` that knows their wording, else by parsing them."""
+    wording = _wording_file()
+    with contextlib.suppress(OSError):
+        for folder in base.iterdir():
+            if _VERSIONS.fullmatch(folder.name) and (folder / wording).exists():
+                return folder.name
+    return f"kernels-{sources_hash()}"
+
+
+@functools.cache
+def _wording_file() -> str:
+    """Name of the empty file by which a folder knows a wording of its sources."""
+    return f"sources-{wording_hash()}"
 
 
 def _chosen_base() -> Path | None:
@@ -93,23 +94,24 @@ def _chosen_base() -> Path | None:
 
 def _holds_kernels(folder: Path) -> bool:
     try:
-        return any(folder.iterdir())
+        return any(folder.rglob("*.nbc"))
     except OSError:
         return False
 
 
-def _temporary_folder(name: str, problem: str) -> Path | None:
+def _temporary_folder(problem: str) -> Path | None:
     """A folder in the temporary directory, which others write to as well: only one that is ours alone is used."""
     if hasattr(os, "getuid"):
         base = Path(tempfile.gettempdir()) / f"granchain-{os.getuid()}"
         try:
-            for folder in (base, base / name):
-                if not _is_ours(folder):
-                    problem = f"{problem}, and {folder} is not a folder of ours with mode 700"
-                    break
+            if _is_ours(base):
+                folder = base / _version_in(base)
+                if _is_ours(folder):
+                    _note_use(base, folder)
+                    return folder
             else:
-                _remove_old(base, base / name)
-                return base / name
+                folder = base
+            problem = f"{problem}, and {folder} is not a folder of ours with mode 700"
         except OSError as denied:
             problem = f"{problem}, and {base}: {denied.strerror or denied}"
     say_once(f"Compiled kernels cannot be kept ({problem}); they are compiled for this process only.")
@@ -124,8 +126,9 @@ def _is_ours(folder: Path) -> bool:
     return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and stat.S_IMODE(found.st_mode) == 0o700
 
 
-def _remove_old(base: Path, used: Path) -> None:
-    """Note that a folder is used, and remove those of other versions that have not been for a month."""
+def _note_use(base: Path, used: Path) -> None:
+    """Note that a folder is used and by which wording, and remove folders that have not been used for a month."""
+    (used / _wording_file()).touch()
     os.utime(used)
     for folder in base.iterdir():
         if _VERSIONS.fullmatch(folder.name) and folder != used:
@@ -202,25 +205,28 @@ def whole(path: Path) -> bytes:
     raise FileNotFoundError(path)
 
 
-@functools.cache
-def _content_hash(path: str) -> str:
-    return hashlib.sha256(Path(path).read_bytes()).hexdigest()
-
-
 class _Locator(caching.UserProvidedCacheLocator):
     """Places in the folder of kernels, whether or not it can be written: Numba would look for another one.
 
-    Numba names a place after the path of the source and marks it with the file's time. Here both are those of the
-    module: the same sources in another environment, or installed again, find what is compiled already.
+    Numba names a place after the path of the source and the function's line, and marks it with the file's time. Here
+    the module and the function's constants name it, and what the file's code is marks it: the same sources in another
+    environment, installed again or with other comments, find what is compiled already.
     """
 
     def __init__(self, py_func: Any, py_file: str) -> None:
         super().__init__(py_func, py_file)
         self._cache_path = str(Path(numba.config.CACHE_DIR) / py_func.__module__)
+        self._constants = constants_hash(py_func)
 
     def get_source_stamp(self) -> str:
-        """Hash of the file the function is in; that of all kernels is in the folder's name."""
-        return _content_hash(self._py_file)
+        """The folder's name, which stands for all its kernels; for one that is elsewhere also the hash of its file."""
+        here = Path(self._py_file)
+        own = "" if here.is_relative_to(FOLDER) else hash_of_code(here)
+        return f"{Path(numba.config.CACHE_DIR).name} {own}"
+
+    def get_disambiguator(self) -> str:
+        """What tells functions of one name apart."""
+        return self._constants
 
     @classmethod
     def from_function(cls, py_func: Any, py_file: str) -> _Locator:

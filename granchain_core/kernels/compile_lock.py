@@ -20,7 +20,7 @@ except ImportError:  # not a POSIX system
 #: Longest wait for another process [s]: a kernel takes ten seconds, five times that where the machine is busy. One that
 #: failed to compile, or is held up, must not hold up others.
 PATIENCE = 120.0
-#: Seconds between two looks.
+#: Seconds between two attempts.
 _INTERVAL = 0.05
 
 
@@ -32,7 +32,7 @@ class CompileLock:
         self._file: int | None = None
 
     def acquire(self, patience: float = PATIENCE) -> bool:
-        """Wait for the lock; whether another process had it meanwhile, so that its kernel may be there now."""
+        """Wait for the lock; returns whether another process had it meanwhile, so that its kernel may be there now."""
         if fcntl is None:
             return False
         ends, waited = time.monotonic() + patience, False
@@ -57,7 +57,7 @@ class CompileLock:
         return waited
 
     def release(self) -> None:
-        """Let the next one look; its kernel is written before."""
+        """Let the next process look; the kernel is written before."""
         if self._file is not None:
             # those who wait hold the same file without its name; they look for the kernel next
             with contextlib.suppress(OSError):

@@ -9,7 +9,7 @@ from .jit import inline_numba, internal
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
 #: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.
 OVERLAP, RATE, OVERLAP_END, RATE_END, MOMENTUM_ERROR, DISPLACEMENT_ERROR, ENDS = range(7)
-#: Size of an overlap that only has a sign: above zero the contact counts as closed, but its force is negligible.
+#: Size of an overlap of which only the sign matters: its force is negligible.
 TINY = 1e-300
 
 
@@ -49,7 +49,7 @@ def hermite_turn(d0, s0, d1, s1):
 @inline_numba
 def contact_root(d0, s0, d1, s1):
     """Fraction of a step at which one contact opens or closes; 2 if it does not."""
-    if d0 == 0.0:  # beads that touch: pushed together they close here, and do not where they only part
+    if d0 == 0.0:  # touching beads: the contact closes here if they are pushed together, and does not if they part
         if s0 > 0.0 and d1 > 0.0:
             return 0.0
         return 2.0

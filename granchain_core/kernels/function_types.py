@@ -1,8 +1,8 @@
 """Numba types of the functions that kernels call: how a call finds the one compiled version it shares with others.
 
-By itself Numba compiles a function once more for each number that is written out in a call, and what `overload` makes
-once more for each set of the caller's options. A call here asks for a version by the types of its arguments alone,
-which takes a sixth of the versions away, and with them their share of the compiler's time.
+By itself Numba compiles a function once more for each number that is written out in a call, and a function made by
+`overload` once more for each set of options of its callers. Here a call asks for a version by the types of its
+arguments alone: a sixth of the versions and of the compiler's time is saved.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ class ChoiceType(types.Callable, types.Dummy):
         return found
 
     def get_call_signatures(self) -> Any:
-        """For messages of errors: those of calls so far."""
+        """The signatures of the calls so far, for error messages."""
         return list(self._versions), True
 
     def get_impl_key(self, sig: Any) -> Any:

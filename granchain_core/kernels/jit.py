@@ -3,8 +3,8 @@
 * `nogil`, so that threads really run kernels side by side.
 * No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`: sums are vectorised and `x + 0.0` folds
   away, but `x * 0.0` does not, so the code for an absent effect must not multiply by zero.
-* Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by `cache.sources_hash()`:
-  any edit of a kernel starts a new folder, and with an unchanged tree the second process compiles nothing.
+* Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by a hash of all
+  kernels' code (sources.py): an edit of any kernel starts a new folder, one of a comment or docstring does not.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _OPTIONS: Any = {"fastmath": set(FAST_MATH), "error_model": "numpy", "_nrt": Fal
                  "no_cfunc_wrapper": True}
 
 
-#: Code that only kernels call needs no entry for Python either, nor machine code of its own.
+#: A function that only kernels call needs no entry for Python either, and no machine code of its own.
 _INTERNAL = _OPTIONS | compiler_options()
 
 
@@ -86,20 +86,20 @@ def kernel(function):
 
 
 def internal(function):
-    """Decorator for parts of kernels, compiled for themselves and linked into the kernels that call them."""
+    """Decorator for parts of kernels, which are compiled separately and linked into the kernels that call them."""
     return Internal(numba.njit(nogil=True, **_INTERNAL)(function))
 
 
 def inline_llvm(function):
-    """Decorator for code that becomes part of its caller's, so that values stay in registers."""
+    """Decorator for a function that LLVM inlines into its callers, so that values stay in registers."""
     return Internal(numba.njit(nogil=True, forceinline=True, **_INTERNAL)(function))
 
 
 def inline_numba(function):
-    """Decorator for a kernel called at one place: it becomes part of that code, and is not compiled for itself as well.
+    """Decorator for a function with one caller, or one in each kind of step; its code is copied there before compiling.
 
-    Compiled code is linked and optimised again in every caller, up to the kernel that Python calls; of a step of the
-    adaptive method this saves a fifth of the compiler's time.
+    A function compiled by itself is linked and optimised again in every caller, up to the kernel that Python calls. For
+    a step of the adaptive method this copying saves a fifth of the compiler's time.
     """
     return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
 

@@ -1,10 +1,9 @@
 """How many scenes one vector of a batch holds: what is fastest on the machine that the kernels are compiled for.
 
-A step of a batch keeps some thirty vectors at hand. Where a register holds eight doubles (AVX-512), eight scenes fit
-into the 32 registers. Where it holds four, eight scenes are two registers each, and a third of all instructions only
-move them to the stack and back: with four scenes a vector the time per scene is half. Zen 4 has the registers of
-AVX-512 and carries out each instruction on them in two halves: with four scenes the time per scene is 0.83 of that with
-eight. Vectors along a chain and of tangents are better left at eight everywhere.
+Where a register holds eight doubles (AVX-512), a batch has eight scenes. Zen 4 carries out each instruction on such
+registers in two halves and is still faster with eight scenes than with four, because half as many instructions wait for
+one another. Where a register holds four doubles, eight scenes would take two registers each, and much of the work would
+be moving them to the stack and back. Vectors along a chain and of tangents are better left at eight everywhere.
 """
 
 from __future__ import annotations
@@ -16,12 +15,10 @@ import numba
 
 from ..errors import BadInput
 
-#: Environment variable that chooses the number of scenes instead.
-VARIABLE = "GRANCHAIN_LANES"
+#: Environment variable that sets the number of scenes instead, and its older name, which still works.
+VARIABLE, OLDER_VARIABLE = "GRANCHAIN_BATCH_SIZE", "GRANCHAIN_LANES"
 #: Numbers of scenes there are kernels for.
 CHOICES = (4, 8)
-#: Processors, as LLVM names them, whose units are half as wide as the registers of AVX-512.
-_HALVES = ("znver4",)
 
 
 def has_avx512() -> bool:
@@ -36,23 +33,29 @@ def processor() -> str:
     return numba.config.CPU_NAME or llvmlite.binding.get_host_cpu_name()
 
 
-def batch_size(chosen: str | None) -> int:
-    """Scenes in one vector, `chosen` if that is one of the numbers there are, else what suits the machine.
+def batch_size(chosen: str | None, variable: str = VARIABLE) -> int:
+    """Scenes in one vector: `chosen`, the value of an environment variable, or if it is empty what suits the machine.
 
     Raises
     ------
     BadInput
-        `chosen` is something else.
+        `chosen` is not one of `CHOICES`.
     """
     if not chosen:
-        return 8 if has_avx512() and processor() not in _HALVES else 4
+        return 8 if has_avx512() else 4
     if chosen not in map(str, CHOICES):
         allowed = " or ".join(map(str, CHOICES))
-        raise BadInput(f"The environment variable {VARIABLE} is {chosen[:40]!r}; it may be {allowed}.")
+        raise BadInput(f"The environment variable {variable} is {chosen[:40]!r}; it may be {allowed}.")
     return int(chosen)
 
 
-BATCH_SIZE = batch_size(os.environ.get(VARIABLE))
+def _batch_size_here() -> int:
+    """The size that the environment sets, or what suits the machine."""
+    variable = VARIABLE if os.environ.get(VARIABLE) else OLDER_VARIABLE
+    return batch_size(os.environ.get(variable), variable)
+
+
+BATCH_SIZE = _batch_size_here()
 
 
 def machine() -> str:

@@ -117,7 +117,7 @@ def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) 
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
 
     Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
-    errors or 5e-4 (`is_neutral` limits the error), the section comes back near itself (`returns_near`), and the
+    errors or 5e-4 (`is_neutral` limits the error), the section comes back near itself (`return_limit`), and the
     record is long enough to show that changes neither shrink nor grow. Anything else is unsettled. Where the exponent
     is zero the regime has the numbers on which the other two conditions rest, met or not.
     """
@@ -126,9 +126,10 @@ def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) 
         return Regime("chaotic", None, None, None, run, (mean, error))
     if not is_neutral(mean, error):
         return Regime.unsettled(run, (mean, error))
-    name = "quasi-periodic" if neither_converges_nor_departs(strobes) and returns_near(strobes) else "unsettled"
-    return Regime(name, None, None, None, run, (mean, error), return_distance=return_distance(strobes),
-                  return_limit=return_limit(strobes), window_ratios=window_ratios(strobes))
+    windows, distance, limit = _windows(strobes), return_distance(strobes), return_limit(strobes)
+    name = "quasi-periodic" if _neither_converges_nor_departs(windows) and distance < limit else "unsettled"
+    return Regime(name, None, None, None, run, (mean, error), return_distance=distance, return_limit=limit,
+                  window_ratios=_window_ratios(windows))
 
 
 def clearly_chaotic(exponents: np.ndarray) -> bool:
@@ -198,32 +199,20 @@ def _shrinks(first: float, second: float, third: float) -> bool:
     return second < _SHRINKS * first and third < _SHRINKS * second
 
 
-def neither_converges_nor_departs(strobes: np.ndarray) -> bool:
-    """Whether a record that is long enough shows a motion that neither converges nor leaves an orbit."""
-    seen = _windows(strobes)
+def _neither_converges_nor_departs(seen: np.ndarray) -> bool:
+    """Whether a record that is long enough for windows shows a motion that neither converges nor leaves an orbit."""
     return len(seen) > 0 and not _converging(seen) and not _departing(seen)
 
 
-def window_ratios(strobes: np.ndarray) -> tuple[float, float] | None:
+def _window_ratios(seen: np.ndarray) -> tuple[float, float] | None:
     """Smallest and largest ratio of a window's largest change to that of the window before, over all periods.
 
     None where the record is too short for three windows.
     """
-    seen = _windows(strobes)
     if len(seen) == 0 or not (seen[:, :2] > 0.0).all():
         return None
     ratios = seen[:, 1:] / seen[:, :2]
     return float(ratios.min()), float(ratios.max())
-
-
-def returns_near(strobes: np.ndarray) -> bool:
-    """Whether late states of the section have close neighbours among early ones.
-
-    A coarse test: it excludes drift and spreading, but does not prove a closed curve, and a torus of three frequencies
-    may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is `_RETURNS_NEAR` times
-    that, with P the number of early states.
-    """
-    return return_distance(strobes) < return_limit(strobes)
 
 
 def return_distance(strobes: np.ndarray) -> float:
@@ -234,5 +223,10 @@ def return_distance(strobes: np.ndarray) -> float:
 
 
 def return_limit(strobes: np.ndarray) -> float:
-    """The distance below which the record counts as returning."""
+    """The distance below which late states of the section count as returning near early ones.
+
+    A coarse test: it excludes drift and spreading, but does not prove a closed curve, and a torus of three frequencies
+    may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is `_RETURNS_NEAR` times
+    that, with P the number of early states.
+    """
     return _RETURNS_NEAR * 2.0 * math.pi / (len(strobes) // 2)

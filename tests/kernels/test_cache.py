@@ -69,7 +69,7 @@ def is_warm(tree: Path, cache: Path, word: str = "ask") -> bool:
 
 
 def test_what_is_called_compiled_is_so_for_its_content_alone(tmp_path: Path) -> None:
-    """Another environment with the same sources, or files that were only touched, need no compiling; an edit does."""
+    """Another environment with the same sources, touched files or a new comment need no compiling; an edit does."""
     tree, clone, cache = copied_core(tmp_path / "one"), copied_core(tmp_path / "two"), tmp_path / "cache"
     assert not is_warm(tree, cache)
     assert is_warm(tree, cache, "compile")
@@ -78,6 +78,8 @@ def test_what_is_called_compiled_is_so_for_its_content_alone(tmp_path: Path) -> 
     assert is_warm(clone, cache)
     assert len(list(cache.iterdir())) == 1
     touched.write_text(touched.read_text(encoding="utf-8") + "# edited\n", encoding="utf-8")
+    assert is_warm(clone, cache)
+    touched.write_text(touched.read_text(encoding="utf-8") + "EDITED = 1\n", encoding="utf-8")
     assert not is_warm(clone, cache)
     assert is_warm(tree, cache)
 
@@ -98,6 +100,27 @@ def test_second_process_compiles_nothing_nor_does_another_copy_of_the_sources(tm
         hits, misses = hits_and_misses(cache, there, PLACE)
         assert hits >= 1
         assert misses == 0
+
+
+def reworded(tree: Path) -> Path:
+    """A copy of the core with a line more above each kernel, and with other docstrings."""
+    for path in (copied_core(tree) / "granchain_core" / "kernels").rglob("*.py"):
+        path.write_text("# A line more.\n" + path.read_text(encoding="utf-8").replace('"""', '"""Well: ', 1)
+                        .replace("@kernel", "# Another.\n@kernel"), encoding="utf-8")
+    return tree
+
+
+def test_other_words_compile_nothing_and_another_number_does(tmp_path: Path) -> None:
+    tree, cache = reworded(tmp_path / "one"), tmp_path / "cache"
+    hits_and_misses(cache, copied_core(tmp_path / "before"), PLACE)
+    for _ in ("parsed", "known by its wording"):
+        hits, misses = hits_and_misses(cache, tree, PLACE)
+        assert hits >= 1
+        assert misses == 0
+    assert len(list(cache.iterdir())) == 1
+    tableau = tree / "granchain_core" / "kernels" / "rk4" / "step.py"
+    tableau.write_text(tableau.read_text(encoding="utf-8").replace("0.5", "0.25"), encoding="utf-8")
+    assert hits_and_misses(cache, tree, PLACE)[1] >= 1
 
 
 def test_the_kernels_of_whole_runs_are_loaded_from_disk_too(tmp_path: Path) -> None:

@@ -27,6 +27,8 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.cache import CACHE_FOLDER
+from granchain_core.kernels.sources import hash_of_code
+from granchain_core.kernels.width import VARIABLE
 from granchain_core.stop import Stop
 
 PROGRAM = Path(__file__).parent / "machine_code.py"
@@ -37,7 +39,7 @@ x86 = pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="
 
 #: The processor whose code is read, by LLVM's name; its features are the ones a vector of eight doubles needs. Where a
 #: register is narrower or a batch has fewer scenes, the compiler computes again what it cannot keep or merge.
-TARGET = {"GRANCHAIN_LANES": "8", "NUMBA_CPU_NAME": "skylake-avx512", "NUMBA_CPU_FEATURES": "+avx2,+fma,+avx512f,+avx512dq,+avx512vl"}
+TARGET = {VARIABLE: "8", "NUMBA_CPU_NAME": "skylake-avx512", "NUMBA_CPU_FEATURES": "+avx2,+fma,+avx512f,+avx512dq,+avx512vl"}
 
 
 @functools.cache
@@ -69,7 +71,7 @@ def all_that_decides() -> str:
     digest = hashlib.sha256(compiler.encode())
     for file in files:
         digest.update(f"{file.relative_to(root.parent) if file is not PROGRAM else file.name}\n".encode())
-        digest.update(file.read_bytes())
+        digest.update(hash_of_code(file).encode() if file.suffix == ".py" else file.read_bytes())
     return digest.hexdigest()[:16]
 
 

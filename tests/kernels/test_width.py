@@ -36,10 +36,22 @@ def test_both_sizes_of_a_batch_give_the_same_curve() -> None:
 
 
 def test_the_size_of_a_batch_is_the_machines_or_the_one_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    for wide, name, members in ((True, "icelake-server", 8), (True, "znver4", 4), (False, "znver3", 4)):
+    for wide, name, members in ((True, "icelake-server", 8), (True, "znver4", 8), (False, "znver3", 4)):
         monkeypatch.setattr(width, "has_avx512", lambda wide=wide: wide)
         monkeypatch.setattr(width, "processor", lambda name=name: name)
         assert width.batch_size(None) == members
     assert width.batch_size("4") == 4 and width.batch_size("8") == 8
-    with pytest.raises(BadInput, match="GRANCHAIN_LANES is '7'; it may be 4 or 8"):
+    with pytest.raises(BadInput, match="GRANCHAIN_BATCH_SIZE is '7'; it may be 4 or 8"):
         width.batch_size("7")
+
+
+def test_the_older_name_of_the_variable_still_works(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(width.VARIABLE, raising=False)
+    for size in (4, 8):
+        monkeypatch.setenv(width.OLDER_VARIABLE, str(size))
+        assert width._batch_size_here() == size
+    monkeypatch.setenv(width.OLDER_VARIABLE, "7")
+    with pytest.raises(BadInput, match="GRANCHAIN_LANES is '7'"):
+        width._batch_size_here()
+    monkeypatch.setenv(width.VARIABLE, "4")
+    assert width._batch_size_here() == 4

@@ -69,7 +69,7 @@ EFFECTS = (
            "all beads of a dimer weigh the same in batches", k.UNLIKE_BATCH),
     Mutant("batch-of-equal-contacts", _UNEQUAL, "return load_like(elastic, unequal.stiffness, i) * elastic", "return elastic",
            "all contacts of a dimer are equally stiff in batches", k.UNLIKE_BATCH),
-    Mutant("missing-wall-factor-in-batches", _UNEQUAL, "return wall * elastic if i == last else elastic", "return elastic",
+    Mutant("missing-wall-factor-in-batches", _UNEQUAL, "return wall * elastic if is_wall else elastic", "return elastic",
            "the wall in batches is a bead", k.BATCH_KK),
     Mutant("work-without-damping", _BALANCE, "work = e[0] * dy[0] - times_primitive(slots.dissipation, G, acceleration)",
            "work = e[0] * dy[0]",

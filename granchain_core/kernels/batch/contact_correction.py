@@ -1,11 +1,11 @@
-"""Contacts that open or close within a step of a batch: the step is not split, its error is subtracted.
+"""Contacts that open or close within a step of a batch: the step is not split, but its error is subtracted.
 
-A contact is closed for a part r of the step, at its beginning or at its end, and its overlap grows or falls as v s.
-Simpson's rule integrates its force and its damping through the kink; the quadrature errors are
+The contact is closed for a part r of the step, at its beginning or end, and there its overlap changes at the speed v.
+Simpson's rule integrates force and damping across the kink. Its errors are
 
     impulse  K v^{3/2} h^{5/2} (B_{3/2}(r) + E(r)),   displacement  c v^p h^{p+1} B_p(r)   for G = c δ^p, p = 1 + a
-    B_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1)
-    E: Simpson's error of s^{3/2} over the whole step on the closed side
+    B_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1), over the step with the kink
+    E(r): the same for s^{3/2} over the next step on the closed side, from s = r to r + 1
 
 and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/model.md).
 """
@@ -22,31 +22,32 @@ from .unequal import over_mass, times_stiffness
 
 
 @inline_llvm
-def momentum_error(r, power, half_power):
+def impulse_error(r, r_power, mid_power):
     """B_{3/2}(r) + E(r) from r, r^{3/2} and [r − 1/2]_+^{3/2}."""
-    inside = (power + 4.0 * half_power) * (1.0 / 6.0) - 0.4 * r * power
-    one = r + 1.0
-    far = three_halves(one)
-    closed = (power + 4.0 * three_halves(r + 0.5) + far) * (1.0 / 6.0) - 0.4 * (one * far - r * power)
-    return inside + closed
+    with_kink = (r_power + 4.0 * mid_power) * (1.0 / 6.0) - 0.4 * r * r_power
+    end = r + 1.0
+    end_power = three_halves(end)
+    simpson = (r_power + 4.0 * three_halves(r + 0.5) + end_power) * (1.0 / 6.0)
+    next_step = simpson - 0.4 * (end * end_power - r * r_power)
+    return with_kink + next_step
 
 
 @by_slot
-def displacement_error(law, r, half, speed, h):
-    """c v^p h^{p+1} B_p(r) in all members; `half` is [r − 1/2]_+. Absent: nothing."""
+def displacement_error(law, r, r_mid, speed, h):
+    """c v^p h^{p+1} B_p(r) in all members; `r_mid` is [r − 1/2]_+. Absent: nothing."""
     return None
 
 
 @displacement_error.of(*LAWS)
-def _(law, r, half, speed, h):
-    here = primitive_power(law, r)
-    inside = (here + 4.0 * primitive_power(law, half)) * (1.0 / 6.0) - 1.0 / (2.0 + exponent(law)) * r * here
-    return primitive_factor(law) * law.coefficient * h * primitive_power(law, speed * h) * inside
+def _(law, r, r_mid, speed, h):
+    r_power = primitive_power(law, r)
+    with_kink = (r_power + 4.0 * primitive_power(law, r_mid)) * (1.0 / 6.0) - 1.0 / (2.0 + exponent(law)) * r * r_power
+    return primitive_factor(law) * law.coefficient * h * primitive_power(law, speed * h) * with_kink
 
 
 @by_slot
 def correct_displacement(law, values, y, c, changed, shift):
-    """Subtract the displacement error from both sides of contact c. Absent: there is none."""
+    """Correct the displacements on both sides of contact c. Absent: they have no such error."""
 
 
 @correct_displacement.of(*LAWS)
@@ -55,12 +56,12 @@ def _(law, values, y, c, changed, shift):
 
 
 @inline_llvm
-def correct_state(values, y, c, row, excess):
-    """Correct the two beads of contact c by the error `excess`, in the row of y that begins at `row`."""
+def correct_state(values, y, c, row, error):
+    """Correct the two beads of contact c by a quadrature error, in the row of y that begins at `row`."""
     if c > 0:
-        store(y, row + c, load_batch(y, row + c) + over_mass(values.unequal, c, excess))
+        store(y, row + c, load_batch(y, row + c) + over_mass(values.unequal, c, error))
     if c < values.last:
-        store(y, row + c + 1, load_batch(y, row + c + 1) - over_mass(values.unequal, c + 1, excess))
+        store(y, row + c + 1, load_batch(y, row + c + 1) - over_mass(values.unequal, c + 1, error))
 
 
 @inline_llvm
@@ -78,11 +79,10 @@ def correct_contacts(values, y, overlaps, h, u0):
             rise = overlap - before
             speed = larger(rise, blank(overlap) - rise) / h
             r = larger(overlap, before) / (speed * h)
-            half = clip(r - 0.5)
-            power, half_power = three_halves(r), three_halves(half)
-            impulse = h * three_halves(speed * h) * momentum_error(r, power, half_power)
-            impulse = times_stiffness(values.unequal, values.wall, c, values.last, impulse)
-            shift = displacement_error(values.law, r, half, speed, h)
+            r_mid = clip(r - 0.5)
+            impulse = h * three_halves(speed * h) * impulse_error(r, three_halves(r), three_halves(r_mid))
+            impulse = times_stiffness(values.unequal, values.wall, c, c == values.last, impulse)
+            shift = displacement_error(values.law, r, r_mid, speed, h)
             correct_state(values, y, c, m, gate(changed, impulse))
             correct_displacement(values.law, values, y, c, changed, shift)
             right = load_batch(y, c + 1)

@@ -1,10 +1,11 @@
 """The end of a batch member's drive period: its strobe is kept, its regime checked, its transient extrapolated.
 
-A coarse member is extrapolated no further than its decay predicts. The extrapolation is undone if the change after it
-is not smaller than before. A chain may approach an unstable orbit before it leaves it, and an extrapolation could end
-there. So an orbit found by extrapolation is disturbed, and accepted only if the disturbance decays; if it decays
-slowly, multipliers decide (steady/batch/settle.py). A fine member starts on the coarse orbit and is extrapolated to its
-own, each extrapolation checked in the same way.
+A coarse member is extrapolated to at most three times the distance that its decay predicts
+(`FARTHEST_EXTRAPOLATION`). The extrapolation is undone if the change per orbit is not smaller after it than before. A
+chain may approach an unstable orbit before it leaves it, and an extrapolation could end there. So an orbit found by
+extrapolation is disturbed, and accepted only if the disturbance decays; if it decays slowly, multipliers decide
+(steady/batch/settle.py). A fine member starts on the coarse orbit and is extrapolated to its own, each extrapolation
+checked in the same way.
 """
 
 from __future__ import annotations
@@ -27,42 +28,42 @@ from ..strobes.periodicity import (
     window_of,
 )
 
-#: Fewest strobes kept of each member.
+#: Strobes of each member that are always kept once there are as many.
 STROBES_KEPT = 432
-#: Strobes on which its regime is decided.
+#: Most strobes on which a member's regime is decided.
 CHECKED = 4 * LONGEST_PERIOD + 1
 #: Fewest orbits still to run that justify an extrapolation.
 _FEWEST_ORBITS_LEFT = 4.0
-#: Fewest drive periods between two attempts.
+#: Fewest drive periods between two extrapolations.
 _PERIODS_BETWEEN = 8
 #: How far an extrapolation may go, in units of change/(1 − rate), the distance that the decay predicts.
 FARTHEST_EXTRAPOLATION = 3.0
 #: Part of the coarse orbit's error that may be left in the finer run.
 COARSE_ERROR_LEFT = 0.02
-#: Extrapolations for that at most.
+#: Most extrapolations of a fine member.
 _MOST_EXTRAPOLATIONS = 6
 #: Disturbance that tests an extrapolated orbit, relative to the motion.
 _DISTURBANCE = 1e-4
-#: Orbits of the test.
+#: Orbits that the test takes.
 _TEST_ORBITS = 16
-#: Largest part of the disturbance that may be left at their end, relative to their first quarter.
+#: Largest part of the disturbance that may be left at the end of the test, relative to its first quarter.
 _PART_LEFT = 0.97
-#: Drive periods without extrapolation after a failed test.
-_PAUSE = 400
-#: Decay reported for a disturbance that did not shrink in the end: the multipliers are then computed.
+#: Drive periods without extrapolation after a disturbance that did not decay.
+_PAUSE_AFTER_FAILED_TEST = 400
+#: Slowest decay reported for a disturbance that shrank: multipliers are then computed.
 _NEARLY_ONE = 0.9999
-#: Slowest decay that counts as removed by an extrapolation: slower ones are not measured well enough.
-_SLOWEST = 0.98
-#: Columns of the last check: period in drive periods, decay per drive period, distance still to go.
+#: Slowest decay that an extrapolation is taken to remove: slower ones are not measured well enough.
+_SLOWEST_REMOVED = 0.98
+#: Columns of the last check: period in drive periods, decay per drive period, distance left to the orbit.
 PERIOD, RATE, DISTANCE = 0, 1, 2
-#: Columns of a fine member's record: period and decay as above, the coarse run's largest forces, orbits between two
-#: extrapolations, extrapolations so far.
-FORCES, ORBITS_BETWEEN, EXTRAPOLATIONS, FINE = 2, 5, 6, 7
+#: Further columns of a fine member's record, which begins with period and decay: the coarse run's three largest forces,
+#: orbits between two extrapolations, extrapolations so far; and the number of all columns.
+FORCES, ORBITS_BETWEEN, EXTRAPOLATIONS, FINE_COLUMNS = 2, 5, 6, 7
 
 
 @internal
 def keep_member_strobe(state, member):
-    """Append the state to the strobes, the oldest half of which goes if they are full; returns whether it is finite."""
+    """Append the state to the strobes, dropping their older half if they are full; returns whether it is finite."""
     strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
     if state.kept[member] == strobes.shape[1]:
         half = strobes.shape[1] // 2
@@ -141,7 +142,7 @@ def check_coarse(state, member):
     copy(state.strobes[member, kept - 1, 1], state.before[member, 1])
     if extrapolate_member(state, member, n, approach_rate, change):
         state.change_before_extrapolation[member] = change
-        state.slowest[member] = min(_SLOWEST, max(state.slowest[member], approach_rate ** (1.0 / n)))
+        state.slowest[member] = min(_SLOWEST_REMOVED, max(state.slowest[member], approach_rate ** (1.0 / n)))
         state.earliest[member] = periods + window_of(n) + n + 1
         state.extrapolate_from[member] = periods + ORBITS * n
     else:
@@ -188,8 +189,8 @@ def decayed(state, member):
         state.last_check[member, RATE] = max(state.last_check[member, RATE], min(rate, _NEARLY_ONE))
         return True
     state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
-    state.last_check[member, PERIOD] = 0.0  # the orbit that was found is none for this member
-    state.extrapolate_from[member] = state.periods[member] + _PAUSE
+    state.last_check[member, PERIOD] = 0.0  # this member does not stay on the orbit that was found
+    state.extrapolate_from[member] = state.periods[member] + _PAUSE_AFTER_FAILED_TEST
     return False
 
 
@@ -206,7 +207,7 @@ def largest_top(state, member, n, q):
 def check_fine(state, member):
     """Whether the coarse orbit's error has decayed in a fine member; if not, its transient is extrapolated.
 
-    If changes are not smaller after an extrapolation, it is undone and the member continues without.
+    If changes are not smaller after an extrapolation, it is undone, and the member is not extrapolated again.
     """
     fine, kept, last_check = state.fine_record[member], state.kept[member], state.last_check[member]
     n, rate = int(fine[PERIOD]), fine[RATE]

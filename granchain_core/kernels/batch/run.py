@@ -1,8 +1,8 @@
-"""Several chains at once, one a SIMD lane: RK4 in w with a fixed step, for curves and maps.
+"""Several chains at once, one in each SIMD lane: RK4 in w with a fixed step, for curves and maps.
 
-All members share the effects and N; every value may differ, the step and the number of steps in a period too. Each
-member is checked at the end of its own periods. One that may have settled, or that is due for a check,
-ends the kernel, so that the next scene can take its place.
+All members have the same effects and the same N; every value may differ, as may the step and the number of steps in a
+period. Each member is checked at the ends of its own periods. When one may have settled, or has run as long as it may,
+the kernel returns, so that the next scene can take its place.
 """
 
 from __future__ import annotations
@@ -24,14 +24,15 @@ from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_batch_ends
 
-#: `return_at` of a pair that is not in use, or not any more.
+#: `return_at` of a pair that is not in use, or no longer.
 NOT_IN_USE = -1
 
 
 class Members(NamedTuple):
-    """Values of the members' scenes: the wall's stiffness, slots with (1, L) or (rows, L) arrays or None, step data.
+    """Values of the members' scenes, L of them.
 
-    `turn` is cos and sin of half a step's phase, `beta` the scaled drive rate, `h` the step.
+    `wall` (1, L) is the wall's stiffness; the slots hold arrays (1, L) or (rows, L), or are None. `turn` (2, L) is the
+    cosine and sine of the phase of half a step, `beta` (1, L) the scaled drive rate, `h` (1, L) the step.
     """
 
     wall: np.ndarray
@@ -45,28 +46,34 @@ class Members(NamedTuple):
 
 
 class BatchState(NamedTuple):
-    """State of the members, L of them.
+    """State of the members: L members (BATCH_SIZE) of N beads, of which R strobes (STROBES_KEPT) are always kept.
 
-    y (2(N+2), L)            displacements and w
-    overlaps (N+1, L)            overlaps one step ago
-    ends (4, L)              overlap and rate of the first and of the last contact one step ago
-    phase (2, L)             sin and cos of the drive phase
-    peaks (PEAKS, L)         largest forces
-    steps, left (L,)         steps in a period, and those left of it
+    State of a chain: displacements of driver, beads and wall, then w of the same, N + 2 rows each; an axis of length 2
+    holds the two.
+
+    y (2(N+2), L)            state
+    overlaps (N+1, L)        overlaps of the contacts one step ago
+    ends (4, L)              one step ago: overlap and rate of the first contact, overlap and rate of the last
+    phase (2, L)             sine and cosine of the drive phase
+    peaks (PEAKS, L)         largest forces (forces/peaks.py)
+    steps, left (L,)         steps in a period, and how many of them are left
     periods, return_at (L,)  periods run, and the period at which the kernel returns at the latest
     earliest (L,)            next period at which the strobes are checked
     extrapolate_from (L,)    period from which a transient may be extrapolated
-    pause (L,)               periods without an attempt after one that failed
+    pause (L,)               periods without extrapolation after the next one that is undone
     due (L,)                 1 where a check is due, else 0
     kept (L,)                number of strobes
     slowest (L,)             slowest decay known
-    change_before_extrapolation (L,)   change before the last unconfirmed extrapolation, else 0
+    change_before_extrapolation (L,)  change per orbit before an extrapolation that is not confirmed yet, else 0
     testing (L,)             period of an orbit that is being disturbed, else 0
     before (L, 2, N+2)       state before the last extrapolation
-    fine_record (L, 7)       record of a fine member (period_end.py)
-    strobes (L, 2R, 2, N+2)  stroboscopic states
-    maxima (L, R, 5)           largest forces and jumps of the last periods, a ring
-    last_check (L, 3)        result of the last check (period_end.py)
+    fine_record (L, FINE_COLUMNS)  record of a fine member (period_end.py)
+    strobes (L, 2R, 2, N+2)  states at the ends of periods
+    maxima (L, R, 5)         of the last R periods, a ring: three largest forces (input, output, elastic output) and two
+                             largest jumps (input, output)
+    last_check (L, 3)        result of the last check: PERIOD, RATE, DISTANCE (period_end.py)
+
+    stages                   three states, (2(N+2), L) each, of the stages of a step (step.py)
 
     The others are workspaces of period_end.py.
     """
@@ -98,6 +105,7 @@ class BatchState(NamedTuple):
     limit: np.ndarray
     basis: np.ndarray
     triangle: np.ndarray
+    stages: tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
 @kernel
@@ -116,7 +124,7 @@ def batch_steps(members, state, count):
         correct_contacts(values, y, state.overlaps, h, sine)
         first_overlap = batch_overlap(values.preload, sine, load_batch(y, 1), 0)
         last_overlap = batch_overlap(values.preload, load_batch(y, last), load_batch(y, last + 1), last)
-        ends = batch_step(values, y, h, sine, middle, end)
+        ends = batch_step(values, y, state.stages, h, sine, middle, end)
         watch_batch_ends(values, h, first_overlap, last_overlap, beta * cosine, ends, state.ends, state.peaks)
         sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
@@ -126,7 +134,7 @@ def batch_steps(members, state, count):
 
 @kernel
 def run_batch(members, state, stop):
-    """Run until a member is due for a check; returns (status, member). Of several, each comes before any goes on."""
+    """Run until a member is due for a check; returns (status, member). All that are due come before any goes on."""
     while True:
         for member in range(BATCH_SIZE):
             if state.due[member] != 0:

@@ -1,4 +1,8 @@
-"""One Runge–Kutta step of several chains, one a SIMD lane, in a single sweep along them."""
+"""One Runge–Kutta step of several chains, one in each SIMD lane: four stages, each a sweep along the chains.
+
+In a sweep no contact waits for another one, so that the processor computes several at once. One in three takes its root
+by the square-root instruction and two by multiplications, which keeps both units busy.
+"""
 
 from __future__ import annotations
 
@@ -9,14 +13,14 @@ from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..forces.crossings import Approach, brief_touch, closing_rate
 from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_batch
-from ..jit import by_slot, inline_llvm
+from ..jit import by_slot, by_type_inlined, inline_llvm
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
 from ..simd.vector import blank, load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
 
 
 class Values(NamedTuple):
-    """Values of the members' scenes, in registers where it is one number a scene."""
+    """Values of the members' scenes; those that are one number for each scene are in registers."""
 
     wall: Any
     law: Any
@@ -26,49 +30,32 @@ class Values(NamedTuple):
     last: Any
 
 
-class Bead(NamedTuple):
-    """One bead of one Runge–Kutta stage in all members: state, elastic force and shape of the contact on its left."""
+class Left(NamedTuple):
+    """What a bead takes over in all members: its displacement, elastic force and shape of the contact on its left."""
 
     u: Any
-    w: Any
     e: Any
     G: Any
 
 
 @inline_llvm
 def by_divider(d):
-    """√d by the divider."""
+    """√d by the square-root instruction."""
     return root(d)
 
 
 @inline_llvm
 def by_multipliers(d):
-    """√d, d > 0, by the multipliers."""
+    """√d, d > 0, by multiplications (simd/functions.py)."""
     return root_by_series(d)
 
 
 @inline_llvm
-def contact(values, root_of, left, right, c):
-    """Elastic force and shape of G of contact c; `root_of` takes the root its own way."""
+def contact(values, root_of, left, right, c, is_wall):
+    """Elastic force and shape of G of contact c; `root_of` computes the root."""
     d = above_zero(batch_overlap(values.preload, left, right, c))
     r = root_of(d)
-    return times_stiffness(values.unequal, values.wall, c, values.last, d * r), shape(values.law, d, r)
-
-
-@inline_llvm
-def first_bead(values, root_of, u0, u, w):
-    """Bead 1 of a stage with the driver at u0."""
-    e, G = contact(values, root_of, u0, u, 0)
-    return Bead(u, w, e, G)
-
-
-@inline_llvm
-def bead_slope(values, root_of, bead, i, right, right_w):
-    """Slope of bead i, which is `bead`, between its neighbours; and the next bead with the contact between them."""
-    e, G = contact(values, root_of, bead.u, right, i)
-    du = batch_velocity(values.law, values.unequal, i, bead.w, bead.G - G)
-    dw = over_mass(values.unequal, i, add_foundation_force(values.foundation, bead.e - e, bead.u))
-    return du, dw, Bead(right, right_w, e, G)
+    return times_stiffness(values.unequal, values.wall, c, is_wall, d * r), shape(values.law, d, r)
 
 
 @by_slot
@@ -82,8 +69,58 @@ def _(law, unequal, i, w, difference):
     return w + over_mass(unequal, i, law.coefficient * difference)
 
 
+class Inner(NamedTuple):
+    """One of the first three stages: `target` becomes y + ahead·slope."""
+
+    y: Any
+    target: Any
+    ahead: Any
+
+
+class Final(NamedTuple):
+    """The fourth stage, which makes the step; the others' targets are y1, y2, y3, `sixth` is a sixth of the step.
+
+    They are enough for the result: y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
+    """
+
+    y: Any
+    y1: Any
+    y2: Any
+    y3: Any
+    sixth: Any
+
+
+@by_type_inlined
+def use_slope(stage, row, slope):
+    """Put the slope of one row of the state to the stage's use."""
+
+
+@use_slope.of(Inner)
+def _(stage, row, slope):
+    store(stage.target, row, load_batch(stage.y, row) + stage.ahead * slope)
+
+
+@use_slope.of(Final)
+def _(stage, row, slope):
+    others = load_batch(stage.y1, row) + 2.0 * load_batch(stage.y2, row) + load_batch(stage.y3, row)
+    store(stage.y, row, (1.0 / 3.0) * (others - load_batch(stage.y, row)) + stage.sixth * slope)
+
+
+@inline_llvm
+def bead(values, root_of, stage, source, i, left, is_last):
+    """Bead i of a stage whose state is `source`; returns its velocity and what the next bead takes over."""
+    m = values.last + 2
+    right = load_batch(source, i + 1)
+    e, G = contact(values, root_of, left.u, right, i, is_last)
+    velocity = batch_velocity(values.law, values.unequal, i, load_batch(source, m + i), left.G - G)
+    use_slope(stage, i, velocity)
+    force = add_foundation_force(values.foundation, left.e - e, left.u)
+    use_slope(stage, m + i, over_mass(values.unequal, i, force))
+    return velocity, Left(right, e, G)
+
+
 class Ends(NamedTuple):
-    """The chain's two ends at the start of a step: elastic forces and the beads' velocities."""
+    """The chain's two ends in a stage: elastic forces and the beads' velocities."""
 
     pushed: Any
     v_first: Any
@@ -92,58 +129,35 @@ class Ends(NamedTuple):
 
 
 @inline_llvm
-def batch_step(values, y, h, u0, middle, end):
+def run_stage(values, stage, source, driver):
+    """One stage at the state `source` with the driver at `driver`; returns its `Ends`."""
+    last, u = values.last, load_batch(source, 1)
+    pushed, G = contact(values, by_multipliers, driver, u, 0, False)
+    left, v_first = Left(u, pushed, G), u
+    if last > 1:
+        v_first, left = bead(values, by_multipliers, stage, source, 1, left, False)
+    for i in range(2, last - 2, 3):
+        _, left = bead(values, by_divider, stage, source, i, left, False)
+        _, left = bead(values, by_multipliers, stage, source, i + 1, left, False)
+        _, left = bead(values, by_multipliers, stage, source, i + 2, left, False)
+    for i in range(max(2, last - (last - 2) % 3), last):
+        _, left = bead(values, by_divider, stage, source, i, left, False)
+    v_last, left = bead(values, by_divider, stage, source, last, left, True)
+    return Ends(pushed, v_first if last > 1 else v_last, left.e, v_last)
+
+
+@inline_llvm
+def batch_step(values, y, stages, h, u0, middle, end):
     """One RK4 step in place, the driver at u0, at `middle` and at `end`; returns the `Ends` where it began.
 
-    The four stages run along the chain one bead behind another, so that a step goes through memory once. The stages'
-    states y1, y2, y3 are enough for the result: y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
+    `stages` has room for the states of three stages.
     """
-    m, n = values.last + 2, values.last
-    half, sixth, third = 0.5 * h, (1.0 / 6.0) * h, 1.0 / 3.0
-    zero = blank(h)
-    nothing = Bead(zero, zero, zero, shape(values.law, zero, zero))
-    two, three, four = nothing, nothing, nothing
-    one = first_bead(values, by_multipliers, u0, load_batch(y, 1), load_batch(y, m + 1))
-    pushed, v_first, v_last = one.e, zero, zero
-    sum_u, sum_w, whole_u, whole_w = zero, zero, zero, zero
-    for i in range(1, n + 4):
-        u1, w1, u2, w2, u3, w3 = zero, zero, zero, zero, zero, zero
-        if i <= n:
-            u, w = one.u, one.w
-            v_last, dw, one = bead_slope(values, by_multipliers, one, i, load_batch(y, i + 1), load_batch(y, m + i + 1))
-            u1, w1 = u + half * v_last, w + half * dw
-        if i == 1:
-            v_first = v_last
-            two = first_bead(values, by_divider, middle, u1, w1)
-            continue
-        if i <= n + 1:
-            before = two
-            du, dw, two = bead_slope(values, by_divider, two, i - 1, u1, w1)
-            u2, w2 = load_batch(y, i - 1) + half * du, load_batch(y, m + i - 1) + half * dw
-            new_u, new_w = before.u + 2.0 * u2, before.w + 2.0 * w2
-        else:
-            new_u, new_w = zero, zero
-        if i == 2:
-            three = first_bead(values, by_multipliers, middle, u2, w2)
-            sum_u, sum_w = new_u, new_w
-            continue
-        if i <= n + 2:
-            du, dw, three = bead_slope(values, by_multipliers, three, i - 2, u2, w2)
-            u, w = load_batch(y, i - 2), load_batch(y, m + i - 2)
-            u3, w3 = u + h * du, w + h * dw
-            newer_u, newer_w = sum_u + (u3 - u), sum_w + (w3 - w)
-        else:
-            newer_u, newer_w = zero, zero
-        sum_u, sum_w = new_u, new_w
-        if i == 3:
-            four = first_bead(values, by_divider, end, u3, w3)
-            whole_u, whole_w = newer_u, newer_w
-            continue
-        du, dw, four = bead_slope(values, by_divider, four, i - 3, u3, w3)
-        store(y, i - 3, third * whole_u + sixth * du)
-        store(y, m + i - 3, third * whole_w + sixth * dw)
-        whole_u, whole_w = newer_u, newer_w
-    return Ends(pushed, v_first, one.e, v_last)
+    y1, y2, y3 = stages
+    ends = run_stage(values, Inner(y, y1, 0.5 * h), y, u0)
+    run_stage(values, Inner(y, y2, 0.5 * h), y1, middle)
+    run_stage(values, Inner(y, y3, h), y2, middle)
+    run_stage(values, Final(y, y1, y2, y3, (1.0 / 6.0) * h), y3, end)
+    return ends
 
 
 @inline_llvm

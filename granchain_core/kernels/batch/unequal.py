@@ -34,11 +34,11 @@ def _(unequal, i, force):
 
 
 @by_slot
-def times_stiffness(unequal, wall, i, last, elastic):
-    """The elastic force of contact i from d^{3/2}; `wall` is the last contact's stiffness. Absent: others have 1."""
-    return wall * elastic if i == last else elastic
+def times_stiffness(unequal, wall, i, is_wall, elastic):
+    """The elastic force of contact i from d^{3/2}; `wall` is the last contact's stiffness. Absent: all others are 1."""
+    return wall * elastic if is_wall else elastic
 
 
 @times_stiffness.of(Unequal)
-def _(unequal, wall, i, last, elastic):
+def _(unequal, wall, i, is_wall, elastic):
     return load_like(elastic, unequal.stiffness, i) * elastic

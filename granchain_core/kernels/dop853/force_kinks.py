@@ -25,7 +25,7 @@ from .tableau import DENSE_EVALUATIONS, STAGES
 
 #: A kink nearer to an end of the step than this changes the motion by less than rounding: by its square.
 _NEAR = 1e-8
-#: A contact whose F/g is a smaller part of the largest velocity is at rest ahead of a wave: its sign is rounding.
+#: A contact whose F/g is less than this part of the largest velocity is at rest ahead of a wave: its sign is rounding.
 _STILL = 1e-15
 
 

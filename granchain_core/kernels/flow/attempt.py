@@ -73,7 +73,7 @@ def keep_stage(tangent, state, slope, stage):
 
 @internal
 def attempt_in_time(method, course, time, h):
-    """Try a step of size h in x from y; the result is work.end, its slope in t work.slope.
+    """Try a step of size h in x from y; the result is in work.end, its slope in t in work.slope.
 
     Returns the error over the tolerance.
     """

@@ -23,7 +23,7 @@ from ..effects.dissipation import LAWS, damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope, add_force_trace
 from ..jit import by_slot, by_slot_inlined, inline_llvm, inline_numba, internal
-from ..simd.vector import LANES, aligned, blank, load, store
+from ..simd.vector import VECTOR_WIDTH, aligned, blank, load, store
 from .attempt import keep_stage
 from .event_time import rate_at
 
@@ -70,11 +70,11 @@ class Tangent(NamedTuple):
 def new_tangent(start, bodies, first_contact):
     """The workspace of the tangents that begin with the columns of `start` (2N, columns), eight in a block."""
     rows, columns = start.shape
-    blocks, contacts = -(-columns // LANES), bodies - 1
+    blocks, contacts = -(-columns // VECTOR_WIDTH), bodies - 1
     matrix = aligned(blocks * rows)
-    padded = np.zeros((rows, blocks * LANES))
+    padded = np.zeros((rows, blocks * VECTOR_WIDTH))
     padded[:, :columns] = start
-    matrix[:] = padded.reshape(rows, blocks, LANES).transpose(1, 0, 2).reshape(blocks * rows, LANES)
+    matrix[:] = padded.reshape(rows, blocks, VECTOR_WIDTH).transpose(1, 0, 2).reshape(blocks * rows, VECTOR_WIDTH)
     return Tangent(matrix, new_stages(bodies), np.zeros((STAGES, contacts)), np.zeros((STAGES, contacts)),
                    aligned(STAGES * rows), aligned(rows), np.zeros((STAGES + 1, STAGES)), first_contact)
 
@@ -82,7 +82,7 @@ def new_tangent(start, bodies, first_contact):
 def columns_of(tangent, columns):
     """The first tangents as an ordinary matrix (2N, columns)."""
     rows = len(tangent.state)
-    blocks = tangent.matrix.reshape(-1, rows, LANES)
+    blocks = tangent.matrix.reshape(-1, rows, VECTOR_WIDTH)
     return np.ascontiguousarray(blocks.transpose(1, 0, 2).reshape(rows, -1)[:, :columns])
 
 

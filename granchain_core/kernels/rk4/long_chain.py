@@ -1,8 +1,8 @@
 """One chain with SIMD along it: RK4 steps in which no contact opens or closes, eight bodies at a time.
 
 Rows of bodies are blocks of eight; a contact's two bodies come from one block and the next by a shuffle, so that
-every memory access is aligned. The signs of all overlaps are compared from step to step: a step in which one changes
-is not taken here but left, with the state before it, to the scalar method that splits it.
+every memory access is aligned. The signs of all overlaps are compared from step to step: a step in which one
+changes is not taken here: it is left, with the state before it, to the scalar method, which splits it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from ..jit import by_slot, inline_numba, internal
-from ..simd.vector import LANES, from_left, from_right, load, positive_mask, splat, store, with_first
+from ..simd.vector import VECTOR_WIDTH, from_left, from_right, load, positive_mask, splat, store, with_first
 from .step import tabulated_displacement, tabulated_velocity
 
 
@@ -140,8 +140,8 @@ def _(law, w, inverse_mass, before, G):
 def comes_nearer(simd, slots, v0):
     """Whether the overlaps of the first and of the last contact move towards zero at the last step's start."""
     last = slots.chain.stiffness.size - 1
-    first_overlap, last_overlap = simd.overlap[0, 0], simd.overlap[last // LANES, last % LANES]
-    first_rate, last_rate = v0 - simd.velocity[0, 1], simd.velocity[last // LANES, last % LANES]
+    first_overlap, last_overlap = simd.overlap[0, 0], simd.overlap[last // VECTOR_WIDTH, last % VECTOR_WIDTH]
+    first_rate, last_rate = v0 - simd.velocity[0, 1], simd.velocity[last // VECTOR_WIDTH, last % VECTOR_WIDTH]
     return (first_rate > 0.0) != (first_overlap > 0.0), (last_rate > 0.0) != (last_overlap > 0.0)
 
 
@@ -149,7 +149,7 @@ def comes_nearer(simd, slots, v0):
 def watch_long_chain_ends(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
-    block, lane = last // LANES, last % LANES
+    block, lane = last // VECTOR_WIDTH, last % VECTOR_WIDTH
     damped = dashpot_force(slots.dissipation, simd.overlap[0, 0], v0 - simd.velocity[0, 1])
     watch(peaks, INPUT, simd.elastic[0, 0] + damped)
     elastic = simd.elastic[block, lane]
@@ -163,7 +163,7 @@ def unpack(y, m, blocked, blocks):
     """Two rows of m bodies into two rows of blocks."""
     for row in range(2):
         for i in range(m):
-            blocked[row * blocks + i // LANES, i % LANES] = y[row * m + i]
+            blocked[row * blocks + i // VECTOR_WIDTH, i % VECTOR_WIDTH] = y[row * m + i]
 
 
 @internal
@@ -171,4 +171,4 @@ def pack(blocked, blocks, y, m):
     """Two rows of blocks back into two rows of m bodies."""
     for row in range(2):
         for i in range(m):
-            y[row * m + i] = blocked[row * blocks + i // LANES, i % LANES]
+            y[row * m + i] = blocked[row * blocks + i // VECTOR_WIDTH, i % VECTOR_WIDTH]

@@ -1,8 +1,9 @@
 """Square root, gate, maximum and peak choice for a number or for every lane of a vector.
 
-There are two roots of a vector: the divider's own, and where the machine has AVX-512 one that starts from the 14 bits
-of `vrsqrt14pd` and adds two terms of the binomial series on the multipliers. Its throughput is more than twice as high
-(measured: 1.8 ns against 4.4 ns for eight roots). Used in turn they keep both units busy.
+A vector's root is computed in one of two ways: by the square-root instruction, which runs on the divider, or, on
+processors with AVX-512, from the 14 bits of the instruction `vrsqrt14pd` and two terms of the binomial series, which
+run on the multipliers. The second way has more than twice the throughput (measured: 1.8 ns against 4.4 ns for eight
+roots). Used in turn, the two keep both units busy.
 """
 
 from __future__ import annotations
@@ -15,12 +16,12 @@ from numba.extending import intrinsic, overload
 
 from ..jit import FAST_MATH
 from ..width import has_avx512
-from .vector import LANES, VectorType, as_vector, vector
+from .vector import VECTOR_WIDTH, VectorType, as_vector, vector
 
-#: Whether the machine has the instruction for eight lanes.
+#: Whether the processor has `vrsqrt14pd` for eight doubles.
 _HAS_RSQRT14 = has_avx512()
-#: Smallest number whose root is computed; smaller ones count as this. The force of such an overlap, with its power 3/2,
-#: underflows to zero.
+#: Smallest number whose root is computed; smaller ones are replaced by it. Its power 3/2, the force of such an overlap,
+#: is negligible.
 _LEAST = 1e-280
 
 
@@ -35,7 +36,7 @@ def _fast_root(builder, value):
     kind = vector.ir
 
     def constant(number):
-        return ir.Constant(kind, [number] * LANES)
+        return ir.Constant(kind, [number] * VECTOR_WIDTH)
 
     def times_plus(a, b, c):
         return builder.fadd(builder.fmul(a, b, flags=FAST_MATH), c, flags=FAST_MATH)
@@ -59,10 +60,10 @@ def _vector_root(typingctx, value):
 
 @intrinsic
 def root_by_series(typingctx, value):
-    """√ of every lane, all above zero; where the machine has `vrsqrt14pd`, without the divider."""
+    """√ of every lane, all above zero; without the divider on processors that have `vrsqrt14pd`."""
 
     def codegen(context, builder, sig, args):
-        if _HAS_RSQRT14 and sig.return_type.lanes == LANES:
+        if _HAS_RSQRT14 and sig.return_type.width == VECTOR_WIDTH:
             return _fast_root(builder, args[0])
         return _llvm_root(builder, sig.args[0].ir, args[0])
 
@@ -71,7 +72,7 @@ def root_by_series(typingctx, value):
 
 @intrinsic
 def above_zero(typingctx, value):
-    """Every lane, raised to at least the smallest number whose root is computed; a NaN stays one."""
+    """The vector with every lane raised to `_LEAST`; a NaN stays a NaN."""
 
     def codegen(context, builder, sig, args):
         least = ir.Constant(args[0].type, [_LEAST] * args[0].type.count)
@@ -114,9 +115,9 @@ def _vector_peak(typingctx, a, b, c, d, e, top):
     return c(c, c, c, c, c, c), codegen
 
 
-#: A maximum is smooth if its two neighbours are above this part of it: the jump of a dashpot force is not one.
+#: A maximum is smooth if its two neighbours are above this part of it; a jump of a dashpot force is not.
 ADJACENT = 0.8
-#: The part for the two values beyond the neighbours.
+#: The same for the two values beyond the neighbours.
 BEYOND = 0.4
 
 
@@ -153,7 +154,7 @@ def _vector_clip(typingctx, value):
 
 
 def clip(overlap):
-    """0 where `overlap` < 0, else itself: a NaN stays one. For vectors a single instruction."""
+    """0 where `overlap` < 0, else `overlap`; a NaN stays a NaN. A single instruction for vectors."""
     return 0.0 if overlap < 0.0 else overlap
 
 
@@ -165,7 +166,7 @@ def _clip(overlap):
 
 
 def gate(overlap, value):
-    """0 where `overlap` ≤ 0, else `value`; written so that a NaN overlap passes `value` instead of hiding itself."""
+    """0 where `overlap` ≤ 0, else `value`; a NaN overlap passes `value`, so that it is not hidden."""
     return 0.0 if overlap <= 0.0 else value
 
 

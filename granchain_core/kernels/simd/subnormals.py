@@ -1,4 +1,4 @@
-"""Subnormal numbers count as zero while a kernel runs: ahead of a wave all may be subnormal, which is slow."""
+"""Kernels treat subnormal numbers as zero: ahead of a wave all numbers may be subnormal, which is slow."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-#: Bits of the x86 control register by which subnormal results and arguments are taken for zero.
+#: Bits of the x86 control register that make subnormal results and arguments zero.
 _FLUSH = 0x8040
 _IS_X86 = platform.machine() in ("x86_64", "AMD64")
 
@@ -22,7 +22,7 @@ def _control_register(builder, name, pointer):
 
 @intrinsic
 def flush_subnormals(typingctx):
-    """Take subnormal numbers for zero: arithmetic with them is a hundred times slower. Returns the old setting."""
+    """Treat subnormal numbers as zero: arithmetic with them is a hundred times slower. Returns the old setting."""
 
     def codegen(context, builder, sig, args):
         if not _IS_X86:

@@ -1,9 +1,9 @@
 """Vectors of 4, 8, 16 or 32 doubles as Numba types: explicit SIMD over scenes or along a chain.
 
-LLVM turns eight of them into one 512-bit register, two of 256 bits or four of 128, whatever the machine has.
-Arithmetic, square root, maximum and comparison are single LLVM instructions with the same flags as the scalar
-kernels; a NaN stays a NaN. `load`, `load16` and `load32` read one row of a C-ordered
-(rows, 8), (rows, 16) or (rows, 32) array, `load_batch` one of a batch, whose width is the machine's (width.py).
+LLVM puts eight doubles into one register of 512 bits, two of 256 or four of 128, depending on the machine. Arithmetic,
+square root, maximum and comparison are single LLVM instructions with the same flags as in the scalar kernels; a NaN
+stays a NaN. `load`, `load16` and `load32` read one row of a C-ordered array (rows, 8), (rows, 16) or (rows, 32);
+`load_batch` reads a row of a batch, whose width depends on the machine (width.py).
 """
 
 from __future__ import annotations
@@ -24,23 +24,23 @@ from numba.extending import (
 from ..jit import FAST_MATH
 from ..width import BATCH_SIZE
 
-#: Numbers in a vector along a chain or of tangents.
-LANES = 8
-#: Widths there are vectors of.
+#: Doubles in a vector along a chain or of tangents.
+VECTOR_WIDTH = 8
+#: Widths of the vectors there are.
 WIDTHS = (4, 8, 16, 32)
 
 
 class VectorType(types.Type):
-    """The Numba type of one vector of `lanes` doubles; `ir` is LLVM's type of it."""
+    """The Numba type of a vector of `width` doubles; `ir` is LLVM's type of it."""
 
-    def __init__(self, lanes: int) -> None:
-        super().__init__(name=f"vector{lanes}")
-        self.lanes = lanes
-        self.ir = ir.VectorType(ir.DoubleType(), lanes)
+    def __init__(self, width: int) -> None:
+        super().__init__(name=f"vector{width}")
+        self.width = width
+        self.ir = ir.VectorType(ir.DoubleType(), width)
 
 
-VECTORS = {lanes: VectorType(lanes) for lanes in WIDTHS}
-vector = VECTORS[LANES]
+VECTORS = {width: VectorType(width) for width in WIDTHS}
+vector = VECTORS[VECTOR_WIDTH]
 
 
 @register_model(VectorType)
@@ -50,14 +50,14 @@ class _VectorModel(models.PrimitiveModel):
 
 
 def _splat(builder, kind, value):
-    """All lanes the same."""
+    """A vector with one value in all lanes."""
     one = builder.insert_element(ir.Constant(kind, ir.Undefined), value, ir.Constant(ir.IntType(32), 0))
     zeros = ir.Constant(ir.VectorType(ir.IntType(32), kind.count), [0] * kind.count)
     return builder.shuffle_vector(one, ir.Constant(kind, ir.Undefined), zeros)
 
 
 def as_vector(builder, wanted, kind, value):
-    """A vector as it is, a number in all lanes."""
+    """The value as a vector: a number is put into all lanes."""
     return value if isinstance(kind, VectorType) else _splat(builder, wanted.ir, value)
 
 
@@ -83,17 +83,17 @@ for _operation, _instruction in ((operator.add, "fadd"), (operator.sub, "fsub"),
     _binary(_operation, _instruction)
 
 
-def aligned(rows: int, lanes: int = LANES) -> np.ndarray:
-    """Zeros (rows, lanes) that begin on a cache line: a vector across two of them costs two accesses."""
+def aligned(rows: int, width: int = VECTOR_WIDTH) -> np.ndarray:
+    """Zeros (rows, width) that begin on a cache line: a vector that lies across two lines costs two accesses."""
     spare = 8
-    whole = np.zeros(rows * lanes + spare)
+    whole = np.zeros(rows * width + spare)
     first = -(whole.ctypes.data // 8) % spare
-    return whole[first : first + rows * lanes].reshape(rows, lanes)
+    return whole[first : first + rows * width].reshape(rows, width)
 
 
 @intrinsic
 def splat(typingctx, value):
-    """A vector of eight with `value` in all lanes."""
+    """A vector of eight doubles, all equal to `value`."""
 
     def codegen(context, builder, sig, args):
         return _splat(builder, vector.ir, args[0])
@@ -102,27 +102,27 @@ def splat(typingctx, value):
 
 
 def _row_pointer(context, builder, array_type, array, row, kind):
-    """Pointer to a row of a C-ordered (rows, lanes) array."""
+    """Pointer to a row of a C-ordered (rows, width) array."""
     data = context.make_array(array_type)(context, builder, array).data
     offset = builder.mul(row, ir.Constant(row.type, kind.count))
     return builder.bitcast(builder.gep(data, [offset]), kind.as_pointer())
 
 
-def loader(lanes):
-    """An intrinsic that reads row `row` of a (rows, lanes) array."""
-    kind = VECTORS[lanes]
+def loader(width):
+    """An intrinsic that reads row `row` of a (rows, width) array."""
+    kind = VECTORS[width]
 
     @intrinsic
-    def load_lanes(typingctx, array, row):
+    def load_row(typingctx, array, row):
         def codegen(context, builder, sig, args):
             return builder.load(_row_pointer(context, builder, sig.args[0], *args, kind.ir), align=8)
 
         return kind(array, types.intp), codegen
 
-    return load_lanes
+    return load_row
 
 
-load, load16, load32 = (loader(lanes) for lanes in (LANES, 16, 32))
+load, load16, load32 = (loader(width) for width in (VECTOR_WIDTH, 16, 32))
 #: Reads one row of the arrays of a batch.
 load_batch = loader(BATCH_SIZE)
 
@@ -139,7 +139,7 @@ def load_like(typingctx, value, array, row):
 
 @intrinsic
 def store(typingctx, array, row, value):
-    """Write a vector to row `row` of a (rows, lanes) array."""
+    """Write a vector to row `row` of a (rows, width) array."""
 
     def codegen(context, builder, sig, args):
         builder.store(args[2], _row_pointer(context, builder, sig.args[0], args[0], args[1], sig.args[2].ir), align=8)
@@ -149,15 +149,15 @@ def store(typingctx, array, row, value):
 
 
 def _neighbour(left: bool):
-    """An intrinsic for every lane's left or right neighbour in two vectors laid side by side."""
+    """An intrinsic that shifts two vectors, laid side by side, by one lane to the left or right."""
 
     @intrinsic
     def shifted(typingctx, here, there):
-        lanes = here.lanes
-        first = lanes - 1 if left else 1
+        width = here.width
+        first = width - 1 if left else 1
 
         def codegen(context, builder, sig, args):
-            mask = ir.Constant(ir.VectorType(ir.IntType(32), lanes), list(range(first, first + lanes)))
+            mask = ir.Constant(ir.VectorType(ir.IntType(32), width), list(range(first, first + width)))
             return builder.shuffle_vector(args[0], args[1], mask)
 
         return here(here, here), codegen
@@ -202,7 +202,7 @@ def at(typingctx, value, lane):
 
 @intrinsic
 def positive_mask(typingctx, value):
-    """One bit a lane: whether it is above zero."""
+    """One bit for each lane: whether it is above zero."""
 
     def codegen(context, builder, sig, args):
         kind = sig.args[0].ir

@@ -1,4 +1,4 @@
-"""Periodicity of stroboscopic states: changes, their decay, the shortest period. Compiled, as a curve needs thousands.
+"""Periodicity of stroboscopic states: changes, their decay, the shortest period. Asked for thousands of times a curve.
 
 States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one per drive period. A change of
 displacements is relative to the largest displacement in the record, one of velocities (or w) to the largest of them.
@@ -12,11 +12,11 @@ from ..jit import internal, kernel
 
 #: Longest period that is tested, in drive periods.
 LONGEST_PERIOD = 16
-#: Fewest changes that give their decay.
+#: Fewest changes from which a decay is measured.
 LEAST_WINDOW = 8
 #: A state is on its orbit when its distance bound, relative to the largest displacement and velocity, is below this.
 SETTLED_DISTANCE = 1e-6
-#: Changes below this are rounding of a fixed-step map.
+#: Changes of a fixed-step map below this are rounding.
 ROUNDING = 1e-12
 #: A state with a larger change is not settled: nothing decays a thousandfold in one period.
 _NOT_SETTLED = 1e-3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -59,10 +60,15 @@ class Job:
     blocks: np.ndarray = field(default_factory=lambda: np.zeros(0))
     number: int = 0
 
+    @functools.cached_property
+    def steps(self) -> int:
+        """Steps a period of the coarse run."""
+        return self.scaled.steps_per_period()
+
     @property
     def affordable_periods(self) -> int:
         """Periods of the coarse run that the budget of steps allows."""
-        return max(2, MOST_STEPS // self.scaled.steps_per_period())
+        return max(2, MOST_STEPS // self.steps)
 
     @property
     def affordable(self) -> bool:

@@ -101,11 +101,11 @@ class _JobsInBatch:
 
     def undecided(self) -> list[Job]:
         """Doubtful jobs of similar steps a period, one for a pair of members; fewer only if nothing else is to do."""
-        jobs = sorted(self.doubtful, key=_steps)
+        jobs = sorted(self.doubtful, key=lambda job: job.steps)
         for i in range(len(jobs) - _PAIRS + 1):
-            if _steps(jobs[i + _PAIRS - 1]) <= MOST_APART * _steps(jobs[i]):
+            if jobs[i + _PAIRS - 1].steps <= MOST_APART * jobs[i].steps:
                 return jobs[i : i + _PAIRS]
-        return [] if self.jobs else [job for job in jobs if _steps(job) <= MOST_APART * _steps(jobs[0])]
+        return [] if self.jobs else [job for job in jobs if job.steps <= MOST_APART * jobs[0].steps]
 
     def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
         """Classify doubtful jobs by their Lyapunov exponents; one whose neighbours come closer runs on."""
@@ -192,10 +192,6 @@ def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
     y = scale_chain(scene).from_si(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
     return result if largest < _SURE else replace(result, doubtful=True)
-
-
-def _steps(job: Job) -> int:
-    return job.scaled.steps_per_period()
 
 
 def _new_job(start: Start) -> Job:

@@ -1,0 +1,82 @@
+"""Hashes of the kernels' sources, by which compiled code is found again (cache.py).
+
+Comments, docstrings and the layout of lines change no instruction, so code is named by a hash of the parsed sources.
+Parsing takes a fifth of a second, so each wording of the sources has a hash of its own too, which takes none.
+"""
+
+from __future__ import annotations
+
+import ast
+import contextlib
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+from types import CodeType, FunctionType
+
+import llvmlite
+import numba
+
+from .width import BATCH_SIZE, processor
+
+#: Sources that decide where compiled code is kept, not what it is.
+_KEEPERS = ("cache.py", "compile_lock.py", "sources.py")
+#: The folder that all kernels of this package are in.
+FOLDER = Path(__file__).parent
+
+
+def sources_hash(folder: Path = FOLDER) -> str:
+    """Hash of what the kernels' machine code follows from.
+
+    That is their parsed sources but for `_KEEPERS`, the versions of Numba and llvmlite, the processor, and the batch's
+    size.
+    """
+    return _hash_of_all(folder, hash_of_code)
+
+
+def wording_hash(folder: Path = FOLDER) -> str:
+    """Hash of the same from the bytes of the sources, which takes no parsing."""
+    return _hash_of_all(folder, _hash_of_bytes)
+
+
+def _hash_of_all(folder: Path, hash_of: Callable[[Path], str]) -> str:
+    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__} {processor()} {BATCH_SIZE}".encode())
+    for path in sorted(folder.rglob("*.py")):
+        name = path.relative_to(folder).as_posix()
+        if name not in _KEEPERS:
+            digest.update(f"{name} {hash_of(path)}\n".encode())
+    return digest.hexdigest()[:12]
+
+
+def _hash_of_bytes(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def hash_of_code(path: Path) -> str:
+    """Hash of a source file but for its comments, docstrings and lines; of its bytes if it cannot be parsed."""
+    content = path.read_bytes()
+    with contextlib.suppress(SyntaxError, ValueError, RecursionError):
+        tree = ast.parse(content)
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+                _drop_docstring(node)
+        content = ast.dump(tree).encode()
+    return hashlib.sha256(content).hexdigest()
+
+
+def _drop_docstring(node: ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) -> None:
+    if ast.get_docstring(node, clean=False) is not None:
+        del node.body[0]
+
+
+def constants_hash(function: FunctionType) -> str:
+    """Hash of a function's names and constants, which tell functions of the same name in one file apart.
+
+    Numba tells them apart by their lines, which a longer comment above them changes.
+    """
+    return hashlib.sha256(_constants(function.__code__, function.__doc__).encode()).hexdigest()[:12]
+
+
+def _constants(code: CodeType, docstring: str | None) -> str:
+    found = [_constants(one, None) if isinstance(one, CodeType) else repr(one)
+             for one in code.co_consts if one is not docstring or one is None]
+    return repr((code.co_names, found))

@@ -1,0 +1,77 @@
+"""What of the kernels' sources names their compiled code: all that can change an instruction, nothing else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from granchain_core.kernels import sources
+
+SOURCE = '''"""Module."""
+
+from jit import kernel
+
+#: A comment.
+FACTOR = 2.0
+
+
+@kernel(fast=True)
+def force(x, power=1.5):
+    """Docstring."""
+    name = "a text"
+    return FACTOR * x**power + 1.0  # of a spring
+'''
+
+
+def hashed(folder: Path, text: str) -> str:
+    """The hash of a folder of kernels that has one file."""
+    folder.mkdir(exist_ok=True)
+    (folder / "force.py").write_text(text, encoding="utf-8")
+    return sources.sources_hash(folder)
+
+
+@pytest.mark.parametrize(("old", "new"), [
+    ("#: A comment.", "#: Another comment,\n#: of two lines."), ("  # of a spring", ""), ('"""Docstring."""', '"""Other words."""'),
+    ('"""Module."""\n', ""), ("\n\n\n", "\n\n\n\n"), ("x**power", "x ** power"), ("FACTOR * x**power + 1.0", "(FACTOR * x**power\n            + 1.0)"),
+])
+def test_words_and_layout_do_not_name_the_code(old: str, new: str, tmp_path: Path) -> None:
+    assert old in SOURCE
+    assert hashed(tmp_path, SOURCE) == hashed(tmp_path, SOURCE.replace(old, new))
+
+
+@pytest.mark.parametrize(("old", "new"), [
+    ("2.0", "2.5"), ("2.0", "2"), ("1.5", "2.5"), ("* x", "- x"), ("fast=True", "fast=False"), ("FACTOR *", "FACTOR +"),
+    ("import kernel", "import internal"), ("a text", "another"), ("@kernel(fast=True)\n", ""), ("power", "exponent"),
+])
+def test_what_can_change_an_instruction_names_it(old: str, new: str, tmp_path: Path) -> None:
+    assert old in SOURCE
+    assert hashed(tmp_path, SOURCE) != hashed(tmp_path, SOURCE.replace(old, new))
+
+
+def test_a_file_that_cannot_be_parsed_counts_with_its_bytes(tmp_path: Path) -> None:
+    assert hashed(tmp_path, "def (") != hashed(tmp_path, "def (  # a comment")
+
+
+def test_another_compiler_has_other_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = hashed(tmp_path, SOURCE)
+    for module in (sources.numba, sources.llvmlite):
+        with monkeypatch.context() as patch:
+            patch.setattr(module, "__version__", "0.0")
+            assert sources.sources_hash(tmp_path) != before
+
+
+def made(body: str):
+    """The function `f` of a source."""
+    names: dict = {}
+    exec(body, names)
+    return names["f"]
+
+
+def test_functions_of_one_name_differ_by_their_names_and_constants() -> None:
+    one = made('def f(x):\n    "Words."\n    return a(x) + 1.0')
+    assert sources.constants_hash(one) == sources.constants_hash(made('\n\ndef f(x):\n    "Others."\n    return a(x) + 1.0'))
+    for other in ("return a(x) + 2.0", "return b(x) + 1.0", "return a(x) + 1", "return (lambda: 3.0)() + a(x) + 1.0"):
+        assert sources.constants_hash(one) != sources.constants_hash(made(f'def f(x):\n    "Words."\n    {other}'))
+    inner = [made(f"def f(x):\n    return [y + {number} for y in x]") for number in (1.0, 1.0, 2.0)]
+    assert sources.constants_hash(inner[0]) == sources.constants_hash(inner[1]) != sources.constants_hash(inner[2])
