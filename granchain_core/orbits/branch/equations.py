@@ -95,9 +95,9 @@ class BranchEquations:
         change = self.quick_end(x, above, steps) - self.quick_end(x, below, steps)
         return change / (self.axis.coordinate(above) - self.axis.coordinate(below))
 
-    def least_period(self, x: np.ndarray, value: float) -> int:
-        """The drive periods after which the orbit through x repeats, at most `period`."""
-        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, BACK)
+    def least_period(self, x: np.ndarray, value: float, back: float = BACK) -> int:
+        """The drive periods after which the orbit through x is `back` again, relatively, at most `period`."""
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:

@@ -14,7 +14,7 @@ from .between import across
 #: First step in arclength.
 FIRST = 0.02
 #: Longest step.
-LONGEST = 0.4
+LONGEST = 0.2
 #: Shortest step.
 SHORTEST = 1e-7
 #: Angle by which the branch turns in a step of the length aimed at.

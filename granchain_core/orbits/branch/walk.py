@@ -28,6 +28,9 @@ from .steps import BENT, FIRST, OFF, SHORTEST, next_step, predicted
 
 #: Points from the seed on before the branch may close on itself.
 _AWAY = 4
+#: An orbit that is back within this, relatively, after a part of its period is refused: where the branches of both
+#: periods meet, an orbit of the shorter one is found with an error far above its residual.
+_ALIKE = 1e-6
 #: Orbits that the walk is ahead of the search for special points, and threads that search.
 _AHEAD, _THREADS = 4, 2
 
@@ -202,7 +205,8 @@ class Walk(Iterator[BranchPoint]):
     def _refuse_shorter(self, solved: Solved) -> None:
         """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
         n = self.equations.period
-        least = self.equations.least_period(self.equations.state(solved.z), self.equations.value(solved.z))
+        x, value = self.equations.state(solved.z), self.equations.value(solved.z)
+        least = self.equations.least_period(x, value, _ALIKE)
         if least < n:
             raise NumbersFailed(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
                                 "no-convergence")
