@@ -28,6 +28,7 @@ from .observe.pair import Pair
 from .orbits.branch.axis import KnobAxis
 from .orbits.branch.equations import BranchEquations
 from .orbits.branch.point import record_along
+from .orbits.branch.quick import quick_steps
 from .orbits.flow import StroboscopicMap
 from .scaling import scale_chain
 from .scene import Scene, scene
@@ -94,6 +95,7 @@ def _branch(short: Scene) -> None:
     stroboscopic_map = equations.stroboscopic_map(short.f)
     stroboscopic_map.end(x)
     stroboscopic_map(x)
+    equations.quick_end(x, short.f, quick_steps(short))
     record_along(equations, x, short.f)
 
 

@@ -10,6 +10,7 @@ any instant and others may go first; parts.py has them.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -33,6 +34,8 @@ from .stepper import Start, empty_samples
 
 #: Steps in a period up to which the driver's motion is tabulated.
 _LARGEST_TABLE = 200_000
+#: Tables that are kept: a branch of orbits makes ten chains in turn with the same number of steps.
+_TABLES_KEPT = 4
 
 
 class FixedStep:
@@ -54,12 +57,11 @@ class FixedStep:
 
     def _driver_table(self) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
-        # the table is faster, but that of a period of many steps would not fit into memory
-        theta = np.pi * np.arange(2 * self.grid + 1 if self.grid <= _LARGEST_TABLE else 0) / self.grid
+        sine, cosine = _half_steps(self.grid)
         driver = self.scaled.slots.driver
         if driver is None:
-            return np.zeros((theta.size, 2))
-        return np.stack([driver.amplitude * np.sin(theta), driver.amplitude * driver.beta * np.cos(theta)], 1)
+            return np.zeros((sine.size, 2))
+        return np.stack([driver.amplitude * sine, driver.amplitude * driver.beta * cosine], 1)
 
     def new_simd_workspace(self) -> LongChain | ShortChain | None:
         """The workspace of SIMD steps: a driven chain with no effect that they do not know."""
@@ -161,6 +163,14 @@ class FixedStepInVelocity(FixedStep):
         slots = self.scaled.slots
         velocity = slots.driver.amplitude * slots.driver.beta * np.cos(theta)
         naive_motion(slots, slots.driver.amplitude * np.sin(theta), velocity, y, self.work.k[0], self.work.forces)
+
+
+@functools.lru_cache(maxsize=_TABLES_KEPT)
+def _half_steps(grid: int) -> tuple[np.ndarray, np.ndarray]:
+    """Sine and cosine of the drive phase at every half step (2n + 1,), for all chains with as many steps a period."""
+    # the table is faster, but that of a period of many steps would not fit into memory
+    theta = np.pi * np.arange(2 * grid + 1 if grid <= _LARGEST_TABLE else 0) / grid
+    return np.sin(theta), np.cos(theta)
 
 
 def _short_chain(scaled: ScaledChain, width: int) -> ShortChain:

@@ -11,10 +11,6 @@ from .equations import BranchEquations, Solved
 from .newton import ROUGH, Near, Newton
 from .point import BranchPoint, branch_point, rough_point
 
-#: Residual that should be left of a rough orbit. Its overlaps are then wrong by about 1e-7, a hundredth of their change
-#: over an interval of a special point.
-_ENOUGH = 1e-8
-
 
 class Between:
     """The orbits between neighbours a and b; those that are computed help to compute the next ones.
@@ -26,44 +22,49 @@ class Between:
         self.equations, self.a, self.b = equations, a, b
         self._known = [(a.arclength, near[0]), (b.arclength, near[1])]
         self._exact: dict[BranchPoint, BranchPoint] = {a: a, b: b}
+        self._way = float(np.linalg.norm(equations.point(a.x, a.knob) - equations.point(b.x, b.knob)))
 
     def careful(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """The orbit at a fraction of the way from a to b, near the cubic through both with their tangents."""
-        solved = self.equations.solve(*self._guess(a, b, fraction), a.slope)
+        guess, normal, way = self._guess(a, b, fraction)
+        solved = self.equations.solve(guess, normal, a.slope, way)
         return self._finished(solved, a.tangent, self._arclength(a, b, fraction))
 
     def exact(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """The same with few derivatives of its own."""
-        return self._solved(*self._guess(a, b, fraction), a.tangent, self._arclength(a, b, fraction))
+        guess, normal, way = self._guess(a, b, fraction)
+        return self._solved(guess, normal, a.tangent, self._arclength(a, b, fraction), way)
 
     def rough(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
         """The same by the rough map alone. What is alike at a and b is not computed but taken from a."""
-        guess, normal = self._guess(a, b, fraction)
-        arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, enough=_ENOUGH)
+        guess, normal, way = self._guess(a, b, fraction)
+        arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, way)
         near = self._near(arclength)
-        end = newton.approach(near)
-        slope, multipliers, changes = near.slope, a.multipliers, newton.changes
+        newton.approach(near)
+        slope, multipliers, tangent = near.slope, a.multipliers, a.tangent
         if a.turning != b.turning:
-            slope = newton.slope(end)
-        newton.step(end)
+            slope = self.equations.quick_slope(newton.z, newton.steps)
+            newton.matrix[:-1, -1] = slope
         if a.turning == b.turning and a.unstable == b.unstable:
             tangent = self.equations.tangent_by(newton.matrix, a.tangent)
         else:
-            flow = newton.flow(ROUGH)
-            multipliers, changes = sorted_multipliers(flow.derivative), flow.changes
-            tangent = self.equations.tangent_of(flow.derivative, slope, a.tangent)
-            self._remember(arclength, Near(flow.derivative, slope))
-        return rough_point(self.equations, newton.z, tangent, slope, multipliers, changes, newton.residuals, arclength)
+            derivative = newton.flow(ROUGH).derivative
+            multipliers = sorted_multipliers(derivative)
+            tangent = self.equations.tangent_of(derivative, slope, a.tangent)
+            self._remember(arclength, Near(derivative, slope))
+        return rough_point(self.equations, newton.z, tangent, slope, multipliers, newton.residuals, arclength)
 
     def made_exact(self, point: BranchPoint) -> BranchPoint:
         """The exact orbit at a rough one; always the same."""
         if point not in self._exact:
             z = self.equations.point(point.x, point.knob)
-            self._exact[point] = self._solved(z, point.tangent, point.tangent, point.arclength)
+            self._exact[point] = self._solved(z, point.tangent, point.tangent, point.arclength, self._way)
         return self._exact[point]
 
-    def _solved(self, guess: np.ndarray, normal: np.ndarray, towards: np.ndarray, arclength: float) -> BranchPoint:
-        return self._finished(self.equations.solve_near(guess, normal, self._near(arclength)), towards, arclength)
+    def _solved(self, guess: np.ndarray, normal: np.ndarray, towards: np.ndarray, arclength: float,
+                farthest: float) -> BranchPoint:
+        solved = self.equations.solve_near(guess, normal, self._near(arclength), farthest)
+        return self._finished(solved, towards, arclength)
 
     def _finished(self, solved: Solved, towards: np.ndarray, arclength: float) -> BranchPoint:
         self._remember(arclength, solved.near)
@@ -77,13 +78,13 @@ class Between:
     def _remember(self, arclength: float, near: Near) -> None:
         insort(self._known, (arclength, near), key=lambda known: known[0])
 
-    def _guess(self, a: BranchPoint, b: BranchPoint, fraction: float) -> tuple[np.ndarray, np.ndarray]:
-        """The cubic's point in the plane that the corrected orbit stays in, and the normal of that plane."""
+    def _guess(self, a: BranchPoint, b: BranchPoint, fraction: float) -> tuple[np.ndarray, np.ndarray, float]:
+        """The cubic's point in the plane that the corrected orbit stays in, that plane's normal, and how far b is."""
         za, zb = self.equations.point(a.x, a.knob), self.equations.point(b.x, b.knob)
         way = float(np.linalg.norm(zb - za))
         normal = (zb - za) / way
         guess = za + fraction * (zb - za)
-        return guess + across(cubic(za, zb, way * a.tangent, way * b.tangent, fraction) - guess, normal), normal
+        return guess + across(cubic(za, zb, way * a.tangent, way * b.tangent, fraction) - guess, normal), normal, way
 
     def _near(self, arclength: float) -> Near:
         """P_x and P_p at this arclength, between the two nearest orbits where they are known."""

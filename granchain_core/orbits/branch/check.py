@@ -7,7 +7,8 @@ import numpy as np
 from .branch import Branch
 from .newton import ACCEPTED
 from .point import BranchPoint
-from .walk import LONGEST, Arm
+from .steps import LONGEST
+from .walk import Arm
 
 #: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
 _APART = 1.2

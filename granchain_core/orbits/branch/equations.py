@@ -16,10 +16,13 @@ from ...steady.returns import least_period
 from ...stop import Stop
 from ..flow import BACK, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
-from .newton import Near, Newton
+from .newton import ROUGH, Near, Newton
+from .quick import QuickMap, quick_steps
 
 #: Difference in p: between the curvature of the map and the noise of its steps (docs/branches.md, Equations).
 _DIFFERENCE = 1e-6
+#: Half of the central difference in p of the quick map.
+_QUICK_DIFFERENCE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,9 +75,29 @@ class BranchEquations:
             found.move(self.axis.scene_at(value), tolerance)
         return found
 
-    def least_period(self, x: np.ndarray, value: float) -> int:
-        """The drive periods after which the orbit through x repeats, at most `period`."""
-        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, BACK)
+    def quick_steps(self, z: np.ndarray) -> int:
+        """Steps in a period of the quick map near z, 0 where the flow takes its place."""
+        return quick_steps(self.axis.scene_at(self.value(z)))
+
+    def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
+        """Where the quick map leads from x, or a rough flow where there are 0 steps."""
+        if steps == 0:
+            return self.reused_map(value, ROUGH).end(x)
+        quick: QuickMap | None = getattr(self._reused, "quick", None)
+        if quick is None:
+            quick = self._reused.quick = QuickMap(self.period, self.stop)
+        return quick.end(self.axis.scene_at(value), x, steps)
+
+    def quick_slope(self, z: np.ndarray, steps: int) -> np.ndarray:
+        """P_p (2N,) at z by a central difference of the quick map."""
+        p, x = self.axis.coordinate(self.value(z)), self.state(z)
+        above, below = (self.axis.value(p + step) for step in (_QUICK_DIFFERENCE, -_QUICK_DIFFERENCE))
+        change = self.quick_end(x, above, steps) - self.quick_end(x, below, steps)
+        return change / (self.axis.coordinate(above) - self.axis.coordinate(below))
+
+    def least_period(self, x: np.ndarray, value: float, back: float = BACK) -> int:
+        """The drive periods after which the orbit through x is `back` again, relatively, at most `period`."""
+        return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back)
 
     def solve(self, z: np.ndarray, normal: np.ndarray, slope: np.ndarray | None = None,
               farthest: float = np.inf) -> Solved:
@@ -87,13 +110,12 @@ class BranchEquations:
         flow = newton.follow(slope)
         return Solved(newton.z, flow, self.knob_slope(newton.z, flow.end, TOLERANCE), tuple(newton.residuals))
 
-    def solve_near(self, z: np.ndarray, normal: np.ndarray, near: Near) -> Solved:
-        """The same where P_x and P_p are known so well that few further derivatives are needed."""
-        newton = Newton(self, z, normal)
-        end = newton.approach(near)
-        slope = newton.slope(end)
-        flow = newton.finish(end, slope)
-        return Solved(newton.z, flow, slope, tuple(newton.residuals))
+    def solve_near(self, z: np.ndarray, normal: np.ndarray, near: Near, farthest: float = np.inf) -> Solved:
+        """The same where P_x and P_p are known nearby, so that few further derivatives are needed."""
+        newton = Newton(self, z, normal, farthest)
+        newton.approach(near)
+        flow = newton.finish()
+        return Solved(newton.z, flow, self.quick_slope(newton.z, newton.steps), tuple(newton.residuals))
 
     def tangent(self, solved: Solved, towards: np.ndarray) -> np.ndarray:
         """Unit tangent of the branch, on the side of `towards`."""

@@ -1,13 +1,14 @@
-"""Newton's method for one orbit of a branch: for the walk with a derivative at each point, between two orbits with few.
+"""Newton's method for one orbit of a branch, with few derivatives of the map.
 
 Equation   J Δz = −F,  F = (P(x; p) − x, (z − z0)·n),  J as in equations.py;  after a step J is corrected by Broyden's
            rank-one update, J ← J + F(z + Δz) Δzᵀ/|Δz|²
 Source     Broyden 1965; Dennis & Schnabel 1983, Numerical Methods for Unconstrained Optimization, chapter 8
-Note       Between two orbits J begins with derivatives known there. A map costs 0.4 times the map with its derivative,
-           a rough one half of an exact one. So a derivative is computed only where steps without one converge too
-           slowly, and the exact one only at the orbit itself, for its multipliers.
-           The walk has a derivative at each point: how many it needs decides the length of its steps, and with fewer
-           of them it was seen to step onto another branch (docs/branches.md).
+Note       The exact map takes 2 ms with eleven beads, with its derivative 5 ms, the quick map (quick.py) 0.3 ms.
+           So J begins with a derivative known nearby, and the quick map is solved first. Then the exact map is computed
+           once: its difference from the quick one, the defect, hardly changes over the distance that is left, and the
+           steps to the orbit itself use the quick map with the defect added (deferred correction). The exact derivative
+           is computed at the orbit only, for its multipliers; its own residual decides whether the orbit is accepted.
+           A derivative of the rough map is computed where steps without one converge too slowly.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from ...errors import NumbersFailed
 from ...steady.returns import relative_change
 from ..flow import TOLERANCE, Flow, StroboscopicMap
 
-#: Tolerance of the rough map.
+#: Tolerance of the rough map, the flow where exactness is not needed.
 ROUGH = 1e-10
 #: Its tolerance while residuals are above `_COARSE`: it is then good to 1e-6 (measured: 7e-7 on sec2's branch over f).
 _ROUGHEST, _COARSE = 1e-7, 1e-3
@@ -29,9 +30,9 @@ _ROUGHEST, _COARSE = 1e-7, 1e-3
 GOOD = 1e-11
 #: Largest residual that is accepted where rounding does not let it fall that far.
 ACCEPTED = 1e-10
-#: The rough map is left where its next residual should be below this: its fixed point is up to 1e-9 from the exact one.
-ENOUGH = 1e-9
-#: A derivative from elsewhere is used up to this residual.
+#: The quick map is left at this residual: its own error is as large.
+ENOUGH = 1e-8
+#: A derivative from nearby is used up to this residual.
 _FAR = 3e-3
 #: A step that does not lower the residual to this part of it is followed by a derivative.
 _SLOW = 0.4
@@ -40,7 +41,7 @@ _SLOW = 0.4
 _FAILED = 0.5
 #: The exact map with its derivative is computed where its residual should be below this part of `GOOD`.
 _SURE = 0.3
-#: Most derivatives of the rough and of the exact map.
+#: Most derivatives of the rough and of the exact map each.
 _MOST = 6
 #: Each step of `follow` that began above this residual is followed by one that reuses its derivative,
 _LAST = 1e-6
@@ -48,6 +49,8 @@ _LAST = 1e-6
 _NEAR = 1e-4
 #: Most steps of `follow`.
 _MOST_STEPS = 8
+#: Most steps by the corrected map.
+_MOST_CORRECTED = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,60 +79,62 @@ class Equations(Protocol):
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
         """The map at a knob value."""
 
+    def quick_steps(self, z: np.ndarray) -> int:
+        """Steps in a period of the quick map near z."""
+
+    def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
+        """Where the quick map leads from x."""
+
 
 class Newton:
     """The iteration from one start: the point `z` it has come to, J, and the residuals of all maps.
 
-    The rough map is left where its next residual should be below `enough`; `z` goes at most `farthest`.
-    `changes` are the contact events of the last map without derivative, as in `Flow`.
+    `z` goes at most `farthest`. `steps` are those of the quick map.
     """
 
-    def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray,
-                 farthest: float = np.inf, enough: float = ENOUGH) -> None:
-        self.equations, self.start, self.normal = equations, z, normal
-        self.farthest, self.enough = farthest, enough
+    def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray, farthest: float = np.inf) -> None:
+        self.equations, self.start, self.normal, self.farthest = equations, z, normal, farthest
         self.z, self.residuals = z, list[float]()
-        self.matrix, self.changes = np.empty(0), np.empty((0, 2))
+        self.matrix, self.steps = np.empty(0), equations.quick_steps(z)
+        self._known: np.ndarray | None = None
 
-    def approach(self, near: Near) -> np.ndarray:
-        """Come so near the orbit that one more step by the rough map is the last; returns that map's end."""
-        end = self._borrowed(near)
+    def approach(self, near: Near) -> None:
+        """Come so near the orbit by the quick map that it is no nearer to the exact one."""
+        if self._borrowed(near):
+            return
         for _ in range(_MOST):
-            if end is not None:
-                break
-            flow = self.flow(self._tolerance)
+            coarse = not self.residuals or self.residuals[-1] > _COARSE
+            flow = self.flow(_ROUGHEST if coarse else ROUGH)
             before = self.residuals[-1]
             self.matrix = self.equations.matrix(flow.derivative, near.slope, self.normal)
-            end = flow.end if before <= self.enough else self._steps(flow.end)
-            if end is None and not self.residuals[-1] <= _FAILED * before:
-                raise self._failure()
-        if end is None:
-            raise self._failure()
-        return end
-
-    def slope(self, end: np.ndarray) -> np.ndarray:
-        """P_p where the rough map leads to `end`; J has it from then on."""
-        slope = self.equations.knob_slope(self.z, end, ROUGH)
-        self.matrix[:-1, -1] = slope
-        return slope
-
-    def finish(self, end: np.ndarray, slope: np.ndarray) -> Flow:
-        """Go on by the exact map to the orbit itself; returns the map with its derivative there."""
-        ratio, moved = self._ratio, None
-        self.step(end)
-        for _ in range(_MOST):
-            end = self._end(TOLERANCE)
-            if moved is not None:
-                self._update(end, moved)
-                ratio = self._ratio
-            moved = self.step(end)
-            if self.residuals[-1] * ratio <= _SURE * GOOD:
+            if before <= ENOUGH or self._steps(flow.end):
+                return
+            if not self.residuals[-1] <= _FAILED * before:
                 break
+        raise self._failure()
+
+    def finish(self) -> Flow:
+        """Go on to the orbit itself; returns the exact map with its derivative there."""
+        quick = self._quick() if self._known is None else self._known
+        end, ratio = self._end(TOLERANCE), 1.0
+        defect = end - quick
+        for _ in range(_MOST_CORRECTED):
+            before = self.residuals[-1]
+            if before <= _SURE * GOOD:
+                break
+            moved = self.step(end)
+            if before * ratio <= _SURE * GOOD:
+                break
+            end = self._quick_end(defect)
+            ratio = self.residuals[-1] / before
+            if not ratio <= _SLOW:
+                break
+            self._update(end, moved)
         for number in range(_MOST):
             flow = self.flow(TOLERANCE)
             if self.residuals[-1] <= GOOD or (number and self.residuals[-1] > 0.3 * self.residuals[-2]):
                 break
-            self.matrix = self.equations.matrix(flow.derivative, slope, self.normal)
+            self.matrix = self.equations.matrix(flow.derivative, self.matrix[:-1, -1], self.normal)
             self.step(flow.end)
         if not self.residuals[-1] <= ACCEPTED:
             raise self._failure()
@@ -138,8 +143,8 @@ class Newton:
     def follow(self, slope: np.ndarray | None = None) -> Flow:
         """The orbit itself by steps with derivatives; `residuals` has one for each. `slope` is P_p nearby.
 
-        Each step but the last is followed by one that reuses its derivative. The first map is a rough one, the last
-        never. The length of the walk's next step depends on how many residuals there are.
+        For orbits near which no derivative is known, and where the way with few derivatives has failed. Each step but
+        the last is followed by one that reuses its derivative. The first map is a rough one, the last never.
         """
         rough = slope is not None
         for _ in range(_MOST_STEPS):
@@ -159,49 +164,38 @@ class Newton:
             raise self._failure()
         return flow
 
-    def _borrowed(self, near: Near) -> np.ndarray | None:
-        """The end of the rough map where the steps with a derivative from nearby lead; None where they do not."""
+    def _borrowed(self, near: Near) -> bool:
+        """Whether the steps with a derivative from nearby lead there; if they lead away, z is the start again."""
         try:
-            end = self._end(ROUGH)
-            if self.residuals[-1] > _FAR:
-                return None
-            self.matrix = self.equations.matrix(near.derivative, near.slope, self.normal)
+            end = self._quick_end()
             first = self.residuals[-1]
-            found = self._steps(end)
-            if found is None and not self.residuals[-1] < first:
-                self.z = self.start
+            if first > _FAR:
+                return False
+            self.matrix = self.equations.matrix(near.derivative, near.slope, self.normal)
+            found = first <= ENOUGH or self._steps(end)
+            if not found and not self.residuals[-1] < first:
+                self.z, self._known = self.start, None
             return found
         except NumbersFailed:
-            self.z = self.start
-            return None
+            self.z, self._known = self.start, None
+            return False
 
-    def _steps(self, end: np.ndarray) -> np.ndarray | None:
-        """Steps without a derivative; the rough map's end where its residual is low enough, None where they fail."""
+    def _steps(self, end: np.ndarray) -> bool:
+        """Steps without a derivative, from a map that led to `end`; whether they come near enough."""
         while True:
             before = self.residuals[-1]
-            tolerance = self._tolerance
             moved = self.step(end)
-            end = self._end(tolerance)
+            end = self._quick_end()
             residual = self.residuals[-1]
-            if residual > self.enough and not residual <= _SLOW * before:
-                return None
+            if residual > ENOUGH and not residual <= _SLOW * before:
+                return False
             self._update(end, moved)
-            if tolerance == ROUGH and residual * residual <= self.enough * before:
-                return end
+            if residual <= ENOUGH:
+                return True
 
     def _update(self, end: np.ndarray, moved: np.ndarray) -> None:
         """Broyden's update of J after a step."""
         self.matrix[:-1] += np.outer(end - self.equations.state(self.z), moved) / (moved @ moved)
-
-    @property
-    def _tolerance(self) -> float:
-        """The rough map's tolerance after the last residual."""
-        return _ROUGHEST if self.residuals and self.residuals[-1] > _COARSE else ROUGH
-
-    @property
-    def _ratio(self) -> float:
-        """The last residual over the one before; 1 where there is none."""
-        return min(1.0, self.residuals[-1] / self.residuals[-2]) if len(self.residuals) > 1 else 1.0
 
     def step(self, end: np.ndarray) -> np.ndarray:
         """Newton's step with the present matrix, where the map leads to `end`; it is refused if it goes too far."""
@@ -215,13 +209,21 @@ class Newton:
     def _move(self, end: np.ndarray) -> np.ndarray:
         change = np.append(end - self.equations.state(self.z), (self.z - self.start) @ self.normal)
         moved = -np.linalg.solve(self.matrix, change)
-        self.z = self.z + moved
+        self.z, self._known = self.z + moved, None
         return moved
 
     def _end(self, tolerance: float) -> np.ndarray:
         x = self.equations.state(self.z)
-        stroboscopic_map = self.equations.reused_map(self.equations.value(self.z), tolerance)
-        end, self.changes = stroboscopic_map.end(x), stroboscopic_map.changes
+        return self._residual(x, self.equations.reused_map(self.equations.value(self.z), tolerance).end(x))
+
+    def _quick(self) -> np.ndarray:
+        return self.equations.quick_end(self.equations.state(self.z), self.equations.value(self.z), self.steps)
+
+    def _quick_end(self, defect: np.ndarray | float = 0.0) -> np.ndarray:
+        self._known = self._quick()
+        return self._residual(self.equations.state(self.z), self._known + defect)
+
+    def _residual(self, x: np.ndarray, end: np.ndarray) -> np.ndarray:
         self.residuals.append(relative_change(end - x, x))
         return end
 

@@ -112,15 +112,15 @@ def state_at(scene: Scene, x: np.ndarray) -> State:
 
 
 def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, slope: np.ndarray,
-                multipliers: np.ndarray, changes: np.ndarray, residuals: list[float], arclength: float) -> BranchPoint:
+                multipliers: np.ndarray, residuals: list[float], arclength: float) -> BranchPoint:
     """A point near the branch with its contacts, to find others by; it has no forces and no Liouville."""
     x, value = equations.state(z), equations.value(z)
     _, record = record_along(equations, x, value, _ROUGH)
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
         max_input_force=np.nan, max_output_force=np.nan, max_output_force_elastic=np.nan,
-        closings=_counts(len(x) // 2 + 1, record, changes), slope=slope, residuals=tuple(residuals), liouville=np.nan,
-        turns=record.turns)
+        closings=_counted_turns(len(x) // 2 + 1, record.turns), slope=slope, residuals=tuple(residuals),
+        liouville=np.nan, turns=record.turns)
 
 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float,
@@ -137,6 +137,17 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float,
             engine.raise_for(status, done)
             return engine, record._replace(turns=record.turns[:found].copy())
         room = found
+
+
+def _counted_turns(contacts: int, turns: np.ndarray) -> np.ndarray:
+    """Closings of every contact by its overlap's turning points alone, between which it passes zero once or never."""
+    closings = np.zeros(contacts, dtype=int)
+    for contact in range(contacts):
+        pressed = turns[turns[:, 0] == contact, 3] > 0.0
+        closings[contact] = np.sum(pressed & ~np.roll(pressed, 1))
+        if len(pressed) and pressed.all():
+            closings[contact] = _CLOSED
+    return closings
 
 
 def _counts(contacts: int, record: OrbitRecord, changes: np.ndarray) -> np.ndarray:

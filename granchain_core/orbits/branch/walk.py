@@ -1,7 +1,6 @@
 """Continuation of a branch: tangent predictor, Newton corrector, and the search for special points in between.
 
-The step grows while Newton's method needs few iterations and the tangent hardly turns, and shrinks otherwise. A
-failed step is halved; at the smallest step the branch ends, and the last residuals are reported.
+A failed step is halved; at the smallest step the branch ends, and the last residuals are reported.
 
 Other threads record the forces and contacts of an orbit and look for the special points before it, while the walk goes
 some orbits ahead; an orbit is added when all before it are known, so that the branch is the same as without threads, to
@@ -19,37 +18,19 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ...errors import Cancelled, NumbersFailed
-from .between import Between, across, cubic
+from .between import Between
+from .ends import Ending, Ends
 from .equations import BranchEquations, Solved
 from .newton import Near, formatted
-from .point import BranchPoint, branch_point, recorded, unrecorded
+from .point import BranchPoint, recorded, unrecorded
 from .special import SpecialPoint, special_between
+from .steps import BENT, FIRST, OFF, SHORTEST, next_step, predicted
 
-#: First step in arclength.
-FIRST = 0.02
-#: Longest step.
-LONGEST = 0.4
-#: Shortest step.
-SHORTEST = 1e-7
-#: The step grows after at most this many Newton iterations.
-_EASY = 3
-#: The step shrinks after at least this many.
-_HARD = 5
-#: Cosine of the tangent's turn up to which a step grows.
-_STRAIGHT = np.cos(np.radians(10.0))
-#: Cosine of the turn beyond which a step is rejected.
-_BENT = np.cos(np.radians(30.0))
-#: Factors by which a step grows and shrinks.
-_GROW = 2.0
-_SHRINK = 0.6
-#: Largest distance from the predicted to the corrected point, as a fraction of the step.
-_OFF = 0.3
-#: A step passes the seed if the seed lies this near to it, relative to its length.
-_PASSES = 0.2
-#: The branch has closed if the corrected point is this near to the seed.
-_CLOSED = 1e-7
 #: Points from the seed on before the branch may close on itself.
 _AWAY = 4
+#: An orbit that is back within this, relatively, after a part of its period is refused: where the branches of both
+#: periods meet, an orbit of the shorter one is found with an error far above its residual.
+_ALIKE = 1e-6
 #: Orbits that the walk is ahead of the search for special points, and threads that search.
 _AHEAD, _THREADS = 4, 2
 
@@ -73,15 +54,12 @@ class Arm:
 
 @dataclass(frozen=True)
 class _Ahead:
-    """An orbit whose special points are still looked for: how the branch ends there, and the steps to and from it.
+    """An orbit whose special points are still looked for, and the steps to and from it.
 
     `found` will be the orbit with its forces and contacts, and the special points before it.
     """
 
-    point: BranchPoint
-    near: Near
-    ended: str
-    reason: str
+    ending: Ending
     tried: float
     step: float
     found: Future[tuple[BranchPoint, list[SpecialPoint]]]
@@ -95,7 +73,7 @@ class Walk(Iterator[BranchPoint]):
 
     def __init__(self, equations: BranchEquations, arm: Arm) -> None:
         self.equations, self.arm = equations, arm
-        self._seeds = _images(equations, arm.points[0])
+        self._ends = Ends(equations, arm.points[0])
         self._pool = ThreadPoolExecutor(min(_THREADS, os.cpu_count() or 1))
         self._known: tuple[BranchPoint, Near] | None = None
         self._go_back(arm.step)
@@ -131,24 +109,24 @@ class Walk(Iterator[BranchPoint]):
 
     @property
     def _goes_on(self) -> bool:
-        return self._step >= SHORTEST and not (self._ahead and self._ahead[-1].ended)
+        return self._step >= SHORTEST and not (self._ahead and self._ahead[-1].ending.ended)
 
     @property
     def _last_two(self) -> list[BranchPoint]:
         """The last two orbits, or the seed alone."""
-        return [*self.arm.points[-2:], *(one.point for one in self._ahead)][-2:]
+        return [*self.arm.points[-2:], *(one.ending.point for one in self._ahead)][-2:]
 
     def _advance(self) -> None:
         """Compute the next orbit ahead; halve the step where it is too long."""
-        last, tried, near = self._last_two[-1], self._step, self._near_last
+        last, tried = Ending(self._last_two[-1], self._near_last), self._step
         try:
-            point, changes, derivatives, ended, reason = self._next_orbit(last, near)
+            ending, changes = self._next_orbit(last)
         except (NumbersFailed, np.linalg.LinAlgError) as problem:
             self._step, self._failure = 0.5 * tried, problem
             return
-        before = self._ahead[-1].found if self._ahead else last
-        found = self._pool.submit(self._completed, before, point, changes, (near, derivatives))
-        self._ahead.append(_Ahead(point, derivatives, ended, reason, tried, self._step, found))
+        before = self._ahead[-1].found if self._ahead else last.point
+        found = self._pool.submit(self._completed, before, ending.point, changes, (last.near, ending.near))
+        self._ahead.append(_Ahead(ending, tried, self._step, found))
 
     def _completed(self, before: BranchPoint | Future[tuple[BranchPoint, list[SpecialPoint]]], point: BranchPoint,
                    changes: np.ndarray | None, near: tuple[Near, Near]) -> tuple[BranchPoint, list[SpecialPoint]]:
@@ -162,37 +140,45 @@ class Walk(Iterator[BranchPoint]):
     def _near_last(self) -> Near:
         """P_x and P_p at the last orbit. Where P_x is not known it is computed again, to the same bits."""
         if self._ahead:
-            return self._ahead[-1].near
+            return self._ahead[-1].ending.near
         last = self.arm.points[-1]
         if self._known is None or self._known[0] is not last:
             self._known = last, Near(self.equations.stroboscopic_map(last.knob)(last.x).derivative, last.slope)
         return self._known[1]
 
-    def _next_orbit(self, last: BranchPoint, near: Near) -> tuple[BranchPoint, np.ndarray | None, Near, str, str]:
-        """The next orbit, and how and why the branch ends there; `NumbersFailed` where the step is too long.
+    def _next_orbit(self, last: Ending) -> tuple[Ending, np.ndarray | None]:
+        """The next orbit, and whether the branch ends there; `NumbersFailed` where the step is too long.
 
-        It comes with its contact events where forces and contacts are still to be found, and with P_x and P_p.
+        It comes with its contact events where forces and contacts are still to be found. The next step is set.
         """
-        equations = self.equations
-        solved = equations.solve(self._predicted(last), last.tangent, last.slope, _OFF * self._step)
+        equations, step, here = self.equations, self._step, last.point
+        guess = predicted(step, self._z(here), here.tangent, self._before_last)
+        solved = equations.solve_near(guess, here.tangent, last.near, OFF * step)
         self._refuse_shorter(solved)
-        tangent = equations.tangent(solved, last.tangent)
-        cosine = float(tangent @ last.tangent)
-        if cosine < _BENT:
+        tangent = equations.tangent(solved, here.tangent)
+        cosine = float(tangent @ here.tangent)
+        if cosine < BENT:
             raise NumbersFailed(f"the branch turns by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step",
                                 "no-convergence")
-        chord = float(np.linalg.norm(solved.z - self._z(last)))
-        point = unrecorded(equations, solved, tangent, last.arclength + chord)
-        ending, derivatives, ended, reason = self._end(last, near, point, solved.near)
-        self._adapt(solved, cosine)
-        return ending, solved.flow.changes if ending is point else None, derivatives, ended, reason
+        chord = float(np.linalg.norm(solved.z - self._z(here)))
+        beyond = Ending(unrecorded(equations, solved, tangent, here.arclength + chord), solved.near)
+        ending = self._ends.of_step(last, beyond, solved.z, len(self.arm.points) + len(self._ahead) >= _AWAY)
+        off = float(np.linalg.norm(solved.z - guess))
+        self._step, self._failure = next_step(step, off, cosine, self._failure is not None), None
+        return ending, solved.flow.changes if ending is beyond else None
+
+    @property
+    def _before_last(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Point and tangent of the last orbit but one; None at the seed."""
+        before = self._last_two[:-1]
+        return (self._z(before[0]), before[0].tangent) if before else None
 
     # --- the arm -------------------------------------------------------------------------------------------
 
     def _add(self, one: _Ahead, point: BranchPoint, special: list[SpecialPoint]) -> None:
         """Add an orbit and the special points before it to the arm, which ends at a merging."""
-        arm, ended, reason = self.arm, one.ended, one.reason
-        merging = self._merging(special)
+        arm, ended, reason = self.arm, one.ending.ended, one.ending.reason
+        merging = self._ends.merging(special)
         if merging is not None:
             special, point = special[: merging + 1], special[merging].before
             special[merging] = replace(special[merging], kind="period_doubling")
@@ -203,13 +189,14 @@ class Walk(Iterator[BranchPoint]):
         arm.special.extend(special)
         if point is not arm.points[-1]:
             arm.points.append(point)
-            self._known = point, one.near
+            self._known = point, one.ending.near
         arm.step, arm.ended, arm.reason = one.step, ended, reason
 
     def _lose(self) -> None:
         last, arm = self.arm.points[-1], self.arm
         singular = isinstance(self._failure, np.linalg.LinAlgError)
-        failure = "the equations became singular" if singular else str(self._failure)
+        failure = ("the equations became singular" if singular else
+                   "it bends ever more sharply" if self._failure is None else str(self._failure))
         arm.step, arm.ended = self._step, "lost"
         arm.reason = (f"the branch could not be followed beyond {self.equations.axis.text(last.knob)} although "
                       f"steps were shortened to {SHORTEST:g}: {failure.rstrip('.')}; residuals at the last orbit: "
@@ -218,99 +205,11 @@ class Walk(Iterator[BranchPoint]):
     def _refuse_shorter(self, solved: Solved) -> None:
         """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
         n = self.equations.period
-        least = self.equations.least_period(self.equations.state(solved.z), self.equations.value(solved.z))
+        x, value = self.equations.state(solved.z), self.equations.value(solved.z)
+        least = self.equations.least_period(x, value, _ALIKE)
         if least < n:
             raise NumbersFailed(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
                                 "no-convergence")
 
-    def _predicted(self, last: BranchPoint) -> np.ndarray:
-        """A step along the tangent, bent as the branch has bent since the point before."""
-        step, z = self._step, self._z(last)
-        guess = z + step * last.tangent
-        if len(self._last_two) > 1:
-            before = self._last_two[0]
-            bend = across(last.tangent - before.tangent, last.tangent) / (last.arclength - before.arclength)
-            sideways = 0.5 * step**2 * bend
-            if np.linalg.norm(sideways) < _OFF * step:
-                guess += sideways
-        return guess
-
-    def _adapt(self, solved: Solved, cosine: float) -> None:
-        iterations = len(solved.residuals) - 1
-        if iterations <= _EASY and cosine >= _STRAIGHT:
-            self._step = min(LONGEST, _GROW * self._step)
-        elif iterations >= _HARD or cosine < _STRAIGHT:
-            self._step *= _SHRINK
-
     def _z(self, point: BranchPoint) -> np.ndarray:
         return self.equations.point(point.x, point.knob)
-
-    # --- ends ----------------------------------------------------------------------------------------------
-
-    def _end(self, last: BranchPoint, near: Near, point: BranchPoint,
-             derivatives: Near) -> tuple[BranchPoint, Near, str, str]:
-        """The step's last point, and how and why the branch ends there, if it does."""
-        axis = self.equations.axis
-        closing = self._closing(last, near, point, derivatives)
-        if closing is not None:
-            return closing, derivatives, "closed", (f"closed on itself at {axis.text(closing.knob)} after "
-                                            f"{closing.arclength:.3g} of arclength: the orbit there is the seed's")
-        if axis.contains(point.knob):
-            return point, derivatives, "", ""
-        (landed, near_landed), first = self._landed(last, point), self.arm.points[0].knob
-        if landed.knob == first:
-            return landed, near_landed, "returned", f"came back to {axis.text(first)}"
-        return landed, near_landed, "reached", f"reached {axis.text(landed.knob)}"
-
-    def _landed(self, last: BranchPoint, beyond: BranchPoint) -> tuple[BranchPoint, Near]:
-        """The orbit exactly at the end of the axis that was passed."""
-        axis = self.equations.axis
-        end = axis.high if beyond.knob > axis.high else axis.low
-        za, zb = self._z(last), self._z(beyond)
-        fraction = (axis.coordinate(end) - za[-1]) / (zb[-1] - za[-1])
-        way = float(np.linalg.norm(zb - za))
-        guess = cubic(za, zb, way * last.tangent, way * beyond.tangent, fraction)
-        guess[-1] = axis.coordinate(end)
-        fixed = np.zeros(len(guess))
-        fixed[-1] = 1.0
-        solved = self.equations.solve(guess, fixed, last.slope)
-        point = branch_point(self.equations, solved, self.equations.tangent(solved, last.tangent),
-                             last.arclength + fraction * (beyond.arclength - last.arclength))
-        return replace(point, knob=end), solved.near
-
-    def _merging(self, special: list[SpecialPoint]) -> int | None:
-        """Index of a fold that is a merging: the difference of the orbit's two halves changes sign there."""
-        if self.equations.period % 2:
-            return None
-        for place, one in enumerate(special):
-            if one.kind == "fold" and self._halves(one.before) @ self._halves(one.after) < 0.0:
-                return place
-        return None
-
-    def _halves(self, point: BranchPoint) -> np.ndarray:
-        """Difference of the state half an orbit later from the state now."""
-        return self.equations.stroboscopic_map(point.knob, self.equations.period // 2).end(point.x) - point.x
-
-    def _closing(self, last: BranchPoint, near: Near, point: BranchPoint, derivatives: Near) -> BranchPoint | None:
-        """The seed again, if the step from `last` to `point` passed it and Newton's method leads there."""
-        if len(self.arm.points) + len(self._ahead) < _AWAY:
-            return None
-        za, zb = self._z(last), self._z(point)
-        way = zb - za
-        length = float(np.linalg.norm(way))
-        for seed in self._seeds:
-            along = float((seed - za) @ way) / length**2
-            if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSES * length:
-                found = Between(self.equations, last, point, (near, derivatives)).careful(last, point, along)
-                if np.linalg.norm(self._z(found) - seed) < _CLOSED:
-                    return found
-        return None
-
-
-def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
-    """The seed's orbit started at each of its drive periods."""
-    x, images = seed.x, []
-    for _ in range(equations.period):
-        images.append(equations.point(x, seed.knob))
-        x = equations.stroboscopic_map(seed.knob, 1).end(x)
-    return images

@@ -1,0 +1,108 @@
+"""How a branch ends: at an end of the axis, at its own seed, or where it merges with one of half its period."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .between import Between, cubic
+from .equations import BranchEquations
+from .newton import Near
+from .point import BranchPoint, branch_point
+from .special import SpecialPoint
+
+#: A step passes the seed if the seed lies this near to it, relative to its length.
+_PASSES = 0.2
+#: The branch has closed if the corrected point is this near to the seed.
+_CLOSED = 1e-7
+
+
+@dataclass(frozen=True, eq=False)
+class Ending:
+    """The last orbit of a step with P_x and P_p, and how and why the branch ends there: "" where it does not."""
+
+    point: BranchPoint
+    near: Near
+    ended: str = ""
+    reason: str = ""
+
+
+class Ends:
+    """The ends of the branch that begins at `seed`."""
+
+    def __init__(self, equations: BranchEquations, seed: BranchPoint) -> None:
+        self.equations, self.seed = equations, seed
+        self._seeds = _images(equations, seed)
+
+    def of_step(self, last: Ending, beyond: Ending, z: np.ndarray, may_close: bool) -> Ending:
+        """Where a step from `last` to `beyond`, at z, ends: there, or before, if it passes the seed or the axis's end.
+
+        z tells whether the end is passed, because the knob's value does not go beyond what the knob may take.
+        """
+        axis = self.equations.axis
+        closing = self._closing(last, beyond) if may_close else None
+        if closing is not None:
+            reason = (f"closed on itself at {axis.text(closing.knob)} after {closing.arclength:.3g} of arclength: the "
+                      "orbit there is the seed's")
+            return Ending(closing, beyond.near, "closed", reason)
+        low, high = axis.coordinate(axis.low), axis.coordinate(axis.high)
+        if low <= z[-1] <= high:
+            return beyond
+        point, near = self._landed(last.point, beyond.point, z, axis.high if z[-1] > high else axis.low)
+        if point.knob == self.seed.knob:
+            return Ending(point, near, "returned", f"came back to {axis.text(point.knob)}")
+        return Ending(point, near, "reached", f"reached {axis.text(point.knob)}")
+
+    def merging(self, special: list[SpecialPoint]) -> int | None:
+        """Index of a fold that is a merging: the difference of the orbit's two halves changes sign there."""
+        if self.equations.period % 2:
+            return None
+        for place, one in enumerate(special):
+            if one.kind == "fold" and self._halves(one.before) @ self._halves(one.after) < 0.0:
+                return place
+        return None
+
+    def _landed(self, last: BranchPoint, beyond: BranchPoint, zb: np.ndarray, end: float) -> tuple[BranchPoint, Near]:
+        """The orbit exactly at the end of the axis that was passed on the way to `beyond`, at zb."""
+        axis, za = self.equations.axis, self._z(last)
+        fraction = (axis.coordinate(end) - za[-1]) / (zb[-1] - za[-1])
+        way = float(np.linalg.norm(zb - za))
+        guess = cubic(za, zb, way * last.tangent, way * beyond.tangent, fraction)
+        guess[-1] = axis.coordinate(end)
+        fixed = np.zeros(len(guess))
+        fixed[-1] = 1.0
+        solved = self.equations.solve(guess, fixed, last.slope)
+        point = branch_point(self.equations, solved, self.equations.tangent(solved, last.tangent),
+                             last.arclength + fraction * (beyond.arclength - last.arclength))
+        return replace(point, knob=end), solved.near
+
+    def _halves(self, point: BranchPoint) -> np.ndarray:
+        """Difference of the state half an orbit later from the state now."""
+        return self.equations.stroboscopic_map(point.knob, self.equations.period // 2).end(point.x) - point.x
+
+    def _closing(self, last: Ending, beyond: Ending) -> BranchPoint | None:
+        """The seed again, if the step from `last` to `beyond` passed it and Newton's method leads there."""
+        za, zb = self._z(last.point), self._z(beyond.point)
+        way = zb - za
+        length = float(np.linalg.norm(way))
+        for seed in self._seeds:
+            along = float((seed - za) @ way) / length**2
+            if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSES * length:
+                between = Between(self.equations, last.point, beyond.point, (last.near, beyond.near))
+                found = between.careful(last.point, beyond.point, along)
+                if np.linalg.norm(self._z(found) - seed) < _CLOSED:
+                    return found
+        return None
+
+    def _z(self, point: BranchPoint) -> np.ndarray:
+        return self.equations.point(point.x, point.knob)
+
+
+def _images(equations: BranchEquations, seed: BranchPoint) -> list[np.ndarray]:
+    """The seed's orbit started at each of its drive periods."""
+    x, images = seed.x, []
+    for _ in range(equations.period):
+        images.append(equations.point(x, seed.knob))
+        x = equations.stroboscopic_map(seed.knob, 1).end(x)
+    return images

@@ -1,0 +1,53 @@
+"""The steps of a walk along a branch: where the next orbit is expected, and how long the step after it is.
+
+A step is as long as keeps the branch's turn and its distance from the prediction small. Both are measured on the step
+before, so the length does not depend on how Newton's method found the orbit. After a step that failed, the next does
+not grow: what made it fail usually lies just ahead.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .between import across
+
+#: First step in arclength.
+FIRST = 0.02
+#: Longest step.
+LONGEST = 0.2
+#: Shortest step.
+SHORTEST = 1e-7
+#: Angle by which the branch turns in a step of the length aimed at.
+_TURN = np.radians(8.0)
+#: Distance of its orbit from the predicted one, as a fraction of the step.
+_MISS = 0.02
+#: Largest factors by which a step grows and shrinks.
+_GROW, _SHRINK = 2.0, 0.5
+#: Cosine of the turn beyond which a step is rejected.
+BENT = np.cos(np.radians(30.0))
+#: Largest distance from the predicted to the corrected point, as a fraction of the step.
+OFF = 0.3
+
+
+def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
+              before: tuple[np.ndarray, np.ndarray] | None) -> np.ndarray:
+    """The point a step on from z along its tangent, bent as the cubic from the point and tangent before is at z."""
+    guess = z + step * tangent
+    if before is not None:
+        way = float(np.linalg.norm(z - before[0]))
+        second = (6.0 * (before[0] - z) / way + 2.0 * before[1] + 4.0 * tangent) / way
+        sideways = 0.5 * step**2 * across(second, tangent)
+        if np.linalg.norm(sideways) < OFF * step:
+            guess += sideways
+    return guess
+
+
+def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
+    """The step after one that ended `off` from where it was predicted and turned by an angle of this cosine.
+
+    The turn grows with the step, the distance off relative to the step with its square. `failed` says that longer steps
+    from there had failed.
+    """
+    angle = max(float(np.arccos(min(1.0, cosine))), 1e-9)
+    wanted = min(_TURN / angle, np.sqrt(_MISS * step / max(off, 1e-9 * step)), 1.0 if failed else _GROW)
+    return min(LONGEST, max(_SHRINK, float(wanted)) * step)
