@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from typing import TypeVar
+from urllib.parse import parse_qsl
 
 from granchain_core import BadInput, State
 
 from ..pages.analysis.questions import read_question
-from ..pages.stories.page import story_places
+from ..pages.stories.page import story_places, story_step
 from ..session.pins import Pin, read_pin
 from ..session.session import Session
 from ..session.share import PINS, QUESTION, START, decode
@@ -17,6 +18,9 @@ from ..session.starts import read_start
 from .table import overlay_names, tab_names
 
 T = TypeVar("T")
+
+#: Fields that say nothing of the motion: a link with a story and no others, written by hand, shows the step's own.
+_NOT_A_MOTION = {"v", "story", "tab", "page", "look", "embed"}
 
 
 def take_address(session: Session, query: str) -> tuple[State | None, list[str]]:
@@ -27,6 +31,11 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
     places = {"tab": tab_names(), "page": tab_names(), "embed": ("1",)}
     scene, fields, sentences = decode(query, {**places, "story": story_places()})
     session.scene = scene
+    session.story_to_settle = False
+    if "story" in fields and {name for name, _ in parse_qsl(query.lstrip("?"))} <= _NOT_A_MOTION:
+        step = story_step(fields["story"])
+        session.scene, session.story_to_settle = step.scene, bool(step.via)
+        fields = {**({"curves": step.curves} if step.curves else {}), **fields}
     session.take_view(fields)
     session.place = {name: fields[name] for name in places if name in fields}
     if session.place.get("page", "") not in ("", *overlay_names()):  # it has no more than its tab

@@ -1,12 +1,13 @@
 // What of the page somebody looks at: most of it is computed, and moves, only then.
 
-import { onScreen } from "../parts/dom.js";
+import { onScreen, PHONE } from "../parts/dom.js";
 
 const CURVE = "curve"; // its figure, beside the names of the pages
 
 // Calls `tell(name, value)` when somebody begins or ceases to look at a page or at the curve: at the page's tab, or at the
 // page itself over the pictures, which hides tabs and curve. A page that works hidden is looked at as long as it is open,
-// even where its window is not on the screen or its tab was scrolled away. `granchain.visible` has the same for scripts,
+// even where its window is not on the screen or its tab was scrolled away. On a phone, and in a story, the curve counts as
+// looked at, since it names what the line at the bottom tells. `granchain.visible` has the same for scripts,
 // with the event of that name.
 export function watchVisibility(pages, tell) {
   const page = window.granchain;
@@ -24,7 +25,7 @@ export function watchVisibility(pages, tell) {
   const check = () => {
     const before = page.visible;
     const now = new Set(Object.keys(pages).filter(isVisible));
-    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve || telling) now.add(CURVE);
+    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve || telling || PHONE.matches) now.add(CURVE);
     const [gone, come] = [[...before].filter((name) => !now.has(name)), [...now].filter((name) => !before.has(name))];
     if (!gone.length && !come.length) return;
     page.visible = now;

@@ -128,7 +128,7 @@ export class Knob {
   say(idle) {
     const { at_zero } = this.spec;
     if (!at_zero) return;
-    this.said.textContent = idle || `0: ${at_zero}`;
+    this.said.textContent = idle || `at 0: ${at_zero}`;
     this.el.classList.toggle("idle", Boolean(idle));
   }
 

@@ -104,6 +104,9 @@ class Line {
   // There it may have several lines: the page scrolls.
   fitPhone() {
     for (const name of NOT_ON_PHONE) if (this.entries.has(name)) this.entries.get(name).hidden = true;
+    // More than two lines would cover the pictures.
+    const [shorter] = this.state.regime_shorter ?? [];
+    if (shorter && this.widthOf("regime", this.regime) > 1.8 * this.room) this.regime.textContent = shorter;
   }
 
   fitLine() {

@@ -142,9 +142,9 @@ def errors_hint(run: Run) -> str:
         ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
     return ("“Asked” is the knob ε, “reached” the relative error of the displacements, and the time that of the "
-            f"computation. Relative errors of the numerical solution: {', '.join(errors)}.{why_no_error(run)} How well "
-            "the model fits an experiment is another question: the tab “data” compares it with yours, "
-            "the page “paper” with what the paper states of its rig.")
+            "computation, longer where the machine has other things to do. Relative errors of the numerical solution: "
+            f"{', '.join(errors)}.{why_no_error(run)} How well the model fits an experiment is another question: the "
+            "tab “data” compares it with yours, the page “paper” with what the paper states of its rig.")
 
 
 def run_entries(run: Run, force: str) -> dict[str, Any]:

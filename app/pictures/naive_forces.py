@@ -20,7 +20,7 @@ def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | Non
     sure = ColumnDataSource({"time": time, "force": accurate, "nothing": np.zeros_like(time)}, name="accurate")
     drawn = ColumnDataSource(naive_columns(time, accurate, naive), name="naive")
     above = frame(name="naive forces", min_border=2, toolbar_location="right")
-    below = frame(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=130,
+    below = frame(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=150,
                   sizing_mode="stretch_width")
     # without it the axis would have no range where the naive force could not be computed
     themed(below.line("time", "nothing", source=sure), line_color="faint", line_width=1.0)
@@ -37,11 +37,11 @@ def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | Non
     above.xaxis.visible = False
     above.yaxis.axis_label = f"force ({unit})"  # the figure is low: a longer title would be cut
     below.xaxis.axis_label = f"time ({time_unit})"
-    below.yaxis.axis_label = f"error ({unit})"
+    below.yaxis.axis_label = f"error\n({unit})"  # in two lines: it is low
     above.legend.update(orientation="horizontal", padding=1, margin=2, click_policy="hide")
     above.add_layout(above.legend[0], "above")
     for plot in (above, below):
-        plot.yaxis.ticker.desired_num_ticks = 4
+        plot.yaxis.ticker.desired_num_ticks = 4 if plot is above else 2
         apply_theme(plot, theme)
     return column(above, below, sizing_mode="stretch_both", spacing=0)
 

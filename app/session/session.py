@@ -28,8 +28,9 @@ class Session:
     """The state of one page; methods change it or raise `BadInput` and leave it as it was.
 
     `cpu_time` is the processor time of its pictures, and `insisted` the scene that is computed however long it takes.
-    `started_from` is the state in which the motion on the screen began, None for rest; `story` is "NAME.STEP", and
-    `question` the Analysis page's with its values, as in a link.
+    `started_from` is the state in which the motion on the screen began, None for rest; `story` is "NAME.STEP"
+    (`story_to_settle` where its motion has still to be settled from others), and `question` the Analysis page's with
+    its values, as in a link.
     """
 
     scene: Scene = field(default_factory=lambda: scene("sec2"))
@@ -51,6 +52,7 @@ class Session:
     insisted: Scene | None = None
     pins: tuple[Pin, ...] = ()
     story: str = ""
+    story_to_settle: bool = False
     question: str = ""
 
     @property

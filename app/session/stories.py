@@ -25,11 +25,13 @@ FOLDER = ASSETS / "stories"
 
 #: What a step may point to: the parts of the main page by the names of their elements.
 LOOKS = ("chain", "left", "map", "right", "curve")
+#: Which page a step may offer to open: those over the pictures (tests/dashboard/test_table.py).
+PAGES = ("probe", "stability", "accuracy", "branches", "analysis", "observer", "hard", "paper")
 #: How far a computed force may be from the one a story tells, where the motion repeats and where it does not: there the
 #: largest force depends on the periods that are recorded.
 TOLERANCE, IRREGULAR = 5e-3, 0.1
 _STORY = ("title", "about", "order", "steps")
-_STEP = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "expect")
+_STEP = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "page", "expect")
 _EXPECT = ("regime", "period", "output", "input", "pulse", "speed")
 #: The regime of a motion that nothing drives, as a story calls it.
 UNDRIVEN = "undriven"
@@ -55,7 +57,10 @@ class Expect:
 
 @dataclass(frozen=True)
 class Step:
-    """One step. `via` are frequencies [Hz] at which the chain is settled before, one after the other, from rest."""
+    """One step. `via` are frequencies [Hz] at which the chain is settled before, one after the other, from rest.
+
+    `look` is the part of the main page that it is about, `page` the page over the pictures that it offers to open.
+    """
 
     say: str
     ask: str
@@ -65,6 +70,7 @@ class Step:
     via: tuple[float, ...] = ()
     look: str = ""
     curves: str = ""
+    page: str = ""
 
 
 @dataclass(frozen=True)
@@ -175,7 +181,8 @@ def _step(number: int, data: Any) -> Step:
             shown.evolve(f=frequency)
         return Step(_text(data, "say", "it"), str(data.get("ask", "")), str(data.get("answer", "")), shown,
                     _expect(_table(data, "expect")), tuple(map(float, via)),
-                    _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *EXTRAS["curves"])))
+                    _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *EXTRAS["curves"])),
+                    _one_of(data, "page", ("", *PAGES)))
     except BadInput as problem:
         raise BadInput(f"step {number}: {problem}") from None
 

@@ -19,8 +19,9 @@ from ..stop import Stop
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)
 #: Samples a period of the drawn force; it divides all of them.
 _SAMPLES = 100
-#: Drive periods run from rest, and the last of them, which are shown; without a drive it is one time 1/f.
-_RUN, _SHOWN = 10, 2
+#: Drive periods run from rest, and the last of them, which are shown: a 1:3 resonance pushes once in three. Without a
+#: drive it is one time 1/f.
+_RUN, _SHOWN = 10, 3
 #: Reference.
 _TRUE = adaptive_setting(1e-11)
 
@@ -38,7 +39,7 @@ class PlainSteps(Setting):
 
 @dataclass(frozen=True, eq=False)
 class Naive:
-    """One naive method at one step: the output force it draws [N] and its largest error over the largest force.
+    """One naive method at one step: the output force it draws [N] and its largest error over the run's largest force.
 
     `failure` says why there is none.
     """
@@ -62,10 +63,11 @@ class Lesson:
 def lesson(scene: Scene, stop: Stop) -> Lesson:
     """Run the naive methods at usual steps. Raises `NumbersFailed` where the reference fails, and `Cancelled`."""
     first = (_RUN - _SHOWN) * _SAMPLES if scene.is_driven else 0
-    true = output_force(scene, _TRUE, stop)[first:]
+    whole = output_force(scene, _TRUE, stop)
+    true = whole[first:]
     time = (first + np.arange(len(true))) / _SAMPLES * scene.period
     found = Lesson(time, true)
-    largest = float(np.abs(true).max())
+    largest = float(np.abs(whole).max())
     for method in METHODS.values():
         if method.variables != "uv":
             continue

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from app.dashboard.table import CURVE, PAGES, TABS, TabSpec, check_names
+from app.dashboard.table import CURVE, PAGES, TABS, TabSpec, check_names, overlay_names
+from app.session.stories import PAGES as STORY_PAGES
 
 
 @pytest.mark.parametrize("row", [replace(PAGES[0], name=CURVE), TabSpec(PAGES[0].name, "learn")], ids=["curve", "twice"])
@@ -19,3 +20,7 @@ def test_a_name_that_is_taken_is_refused(row: TabSpec) -> None:
 def test_the_browser_calls_the_curve_as_the_server_does() -> None:
     script = Path(__file__).parents[2] / "app" / "dashboard" / "visibility.js"
     assert f'const CURVE = "{CURVE}";' in script.read_text(encoding="utf-8")
+
+
+def test_stories_open_the_pages_over_the_pictures() -> None:
+    assert set(STORY_PAGES) == set(overlay_names())

@@ -60,6 +60,7 @@ class ObserverRun:
         self.samples = min(_MOST_ROWS, samples_for(scene))
         self.pair = Pair(scene, self.samples, stop)
         self.number, self.since = 0, 0
+        self._largest_input = 0.0  # of all periods so far: an orbit may push in one of three only
         if went_on is not None and went_on.scene.N == scene.N:
             self.number = went_on.number
             self._begin(*went_on.pair.states)
@@ -148,6 +149,7 @@ class ObserverRun:
         scales, number = engine.scaled.scales, self.number
         self.number += 1
         u, v = rows.displacement * scales.length, rows.velocity * scales.velocity
+        self._largest_input = max(self._largest_input, float(engine.maxima[0] * scales.force))
         force, half_mass = rows.force * scales.force, 0.5 * self.scene.masses()
         return Step(
             number=number, samples=self.samples,
@@ -155,7 +157,7 @@ class ObserverRun:
             chain=u[:, :n], observer=u[:, n + 1 :], chain_force=force[:, : n + 1],
             observer_force=np.hstack([force[:, :1], force[:, n + 2 :]]), chain_energy=half_mass * v[:, :n] ** 2,
             observer_energy=half_mass * v[:, n + 1 :] ** 2, distance=np.sqrt((difference**2).sum(axis=1)),
-            largest_input=float(engine.maxima[0] * scales.force),
+            largest_input=self._largest_input,
         )
 
     @property

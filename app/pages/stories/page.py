@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache, partial
 from typing import Any
 
-from granchain_core import BadInput, State
+from granchain_core import BadInput, Settled, State
 
 from ...parts.component import Component
 from ...serve.compiler import PICTURE_PIECES
@@ -27,6 +27,12 @@ def story_places() -> tuple[str, ...]:
     return tuple(f"{story.name}.{number}" for story in _told()[0] for number in range(1, len(story.steps) + 1))
 
 
+def story_step(place: str) -> Step:
+    """The step that has this name in a link."""
+    name, _, number = place.partition(".")
+    return next(story for story in _told()[0] if story.name == name).steps[int(number) - 1]
+
+
 class StoriesPage(Page):
     """It turns the knobs of the dashboard to a step, and sends the tab its words."""
 
@@ -44,6 +50,12 @@ class StoriesPage(Page):
     def scene_changed(self) -> None:
         """The visitor has moved on, or the story has: a step that is still being settled is not shown any more."""
         self._task.cancel()
+
+    def picture_ready(self, picture: Settled) -> None:
+        """The first picture of a link that names a step alone, whose motion comes from others."""
+        if picture.final and self._host.session.story_to_settle:
+            self._host.session.story_to_settle = False
+            self._task.start(partial(self._through, story_step(self._host.session.story)))
 
     def address_taken(self) -> None:
         """The address says which step is told; its motion is in the address, too."""
@@ -64,7 +76,7 @@ class StoriesPage(Page):
     def _words(story: Story, number: int) -> dict[str, Any]:
         words = {name: told_words(story, number, name) for name in ("say", "ask", "answer")}
         return {"name": story.name, "title": story.title, "step": number, "steps": len(story.steps),
-                "look": story.steps[number - 1].look, **words}
+                "look": story.steps[number - 1].look, "page": story.steps[number - 1].page, **words}
 
     def _open(self, message: dict[str, Any]) -> None:
         story = self._stories.get(str(message.get("name")))

@@ -28,7 +28,7 @@ function chooser(model) {
 }
 
 function telling(model, story) {
-  const { name, title, step, steps, say, ask, answer } = story;
+  const { name, title, step, steps, say, ask, answer, page } = story;
   const go = (to) => model.send_msg({ do: "story-open", name, step: to });
   const answered = paragraph(answer, "answer");
   const place = `${name} ${step}`;
@@ -50,7 +50,8 @@ function telling(model, story) {
   const leave = button("✕", () => model.send_msg({ do: "story-close" }), { title: leaving, ariaLabel: leaving });
   const count = element("span", { textContent: `${step} of ${steps}` });
   const row = element("div", { className: "row steps" }, before, count, next, reveal, leave);
-  return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), answered];
+  const open = page ? [button(`open the page “${page}”`, () => window.granchain.openPage(page))] : [];
+  return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), ...open, answered];
 }
 
 // On a phone a step that begins stands at the top of the screen.
