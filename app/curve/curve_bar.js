@@ -27,7 +27,7 @@ function keyOf(kinds) {
       { className: "periods" },
       "repeats after",
       ...periods.map((one) => mark(one, one.name.slice(PERIOD.length))),
-      " periods",
+      element("span", { className: "unit", textContent: "periods" }),
     ),
     ...kinds.filter((one) => !periods.includes(one)).map((one) => mark(one, one.name)),
     element(

@@ -107,9 +107,7 @@ export class Cursor {
     for (const peak of this.stage.querySelectorAll(".peak")) {
       const name = peak.dataset.under;
       const box = { left, right }[name];
-      put(peak, box, name === "left" ? this.left : 0, 0, {
-        top: `${box.bottom - stage.top - peak.offsetHeight - 4}px`,
-      });
+      put(peak, box, name === "left" ? this.left : 0, 0, { bottom: `${stage.bottom - box.bottom + 4}px` });
     }
     const title = titles.at(-1);
     const under = title.offsetTop + title.offsetHeight;

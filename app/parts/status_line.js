@@ -105,8 +105,13 @@ class Line {
   fitPhone() {
     for (const name of NOT_ON_PHONE) if (this.entries.has(name)) this.entries.get(name).hidden = true;
     // More than two lines would cover the pictures.
-    const [shorter] = this.state.regime_shorter ?? [];
-    if (shorter && this.widthOf("regime", this.regime) > 1.8 * this.room) this.regime.textContent = shorter;
+    const { regime_shorter, accuracy_shorter } = this.state;
+    const shorten = (name, [words] = [], lines = 1) => {
+      const entry = this.entries.get(name);
+      if (words && entry && this.widthOf(name, entry) > lines * this.room) entry.textContent = words;
+    };
+    shorten("regime", regime_shorter, 1.8);
+    shorten("accuracy", accuracy_shorter, 0.9);
   }
 
   fitLine() {

@@ -6,10 +6,10 @@ Figures that are made once and follow every knob; app/pictures/motion.py draws t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from bokeh.models import BasicTicker, ColumnDataSource, GlyphRenderer, Line, LinearAxis, Plot, Range1d
+from bokeh.models import BasicTicker, ColumnDataSource, GlyphRenderer, Line, LinearAxis, Plot, Range1d, Span
 
 from granchain_core import Run
 
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 #: The lines in the order in which they are drawn, and whose axes there are.
 _LINES = (DRIVE, INPUT, ELASTIC, OUTPUT)
 _AXES = (DRIVE, INPUT, OUTPUT)
+#: The lines at zero: drive and force have theirs at different places.
+_ZERO: dict[str, Any] = {"line_width": 1, "line_alpha": 0.35, "level": "underlay"}
 #: About how many ticks a force and the time have.
 _TICKS = (3, 6)
 #: The smallest number that is written in the unit of an axis.
@@ -65,6 +67,10 @@ class Trains:
         plot.add_layout(axis, "above")
         quiet_axis(plot.xaxis[1], INPUT.colour)
         plot.yaxis.axis_label = "time"
+        self._zero_of_drive = Span(location=0, dimension="height", x_range_name="drive", line_color=DRIVE.colour,
+                                   **_ZERO)
+        plot.add_layout(self._zero_of_drive)
+        plot.add_layout(Span(location=0, dimension="height", line_color=INPUT.colour, **_ZERO))
         self._lines += [
             plot.add_glyph(self._source, _glyph(DRIVE, "drive"), x_range_name="drive"),
             plot.add_glyph(self._input, _glyph(INPUT)),
@@ -75,6 +81,7 @@ class Trains:
         plot = quiet_plot((GAP, 14), _TICKS, ("below", None), (1,), name="output force", y_range=time,
                           x_range=Range1d(0, 1))
         quiet_axis(plot.xaxis[0], OUTPUT.colour)
+        plot.add_layout(Span(location=0, dimension="height", line_color=OUTPUT.colour, **_ZERO))
         self._lines += [
             plot.add_glyph(self._source, _glyph(ELASTIC, "elastic")),
             plot.add_glyph(self._output, _glyph(OUTPUT)),
@@ -88,6 +95,7 @@ class Trains:
         """
         change(self._axes[0], visible=driven)
         change(self._lines[0], visible=driven)
+        change(self._zero_of_drive, visible=driven)
         scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
         drive_high = round_up(moved)
@@ -129,7 +137,7 @@ class Trains:
             least = float(series.min())
             told = least < -_PULLS * force or least > _PRESSED * force
             words.append([f"max {force / factor:#.{figures}g}".rstrip(".") + f"\N{NO-BREAK SPACE}{unit}",
-                          f"min ≈ {least / factor:.{1 if least < 0.0 else figures}g}\N{NO-BREAK SPACE}{unit}".replace(
+                          f"min ≈ {least / factor:.{1 if least < 0.0 else 2}g}\N{NO-BREAK SPACE}{unit}".replace(
                               "-", "\N{MINUS SIGN}") if told else ""])
         return words
 

@@ -151,4 +151,4 @@ def bad_numbers_picture() -> Picture:
         if j % 2 == 0:
             naive[j // 2] = force[-1] / (stiffness[0] * chosen.A0**1.5)
     return Picture(np.arange(201) / 100.0, "drive periods", "output force, scaled",
-                   (Trace("granchain, which stops and says so", ours), Trace("`if overlap > 0`", naive)))
+                   (Trace("granchain, which stops and says so", ours), Trace("if overlap > 0", naive)))
