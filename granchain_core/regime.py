@@ -87,11 +87,11 @@ class Regime:
     @property
     def evidence(self) -> str:
         """|μ| where it was computed, else the decay that was seen; empty where neither is known."""
+        shown = self.period or self.approaches or 1
         if self.multiplier is not None:
-            return f"|μ| {modulus_words(self.multiplier)}"
+            return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
         if self.decay is None:
             return ""
-        shown = self.period or self.approaches or 1
         return f"decay {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
 
     @property

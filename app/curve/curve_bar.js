@@ -9,7 +9,8 @@ function choiceBox(model, name) {
   return box;
 }
 
-const RATIO = "1:3, for instance: the driver pushes the first bead strongly once in three drive periods.";
+const RATIO =
+  "1:3, for instance: the driver pushes the first bead strongly once in three drive periods. A push is strong above 70 % of the strongest. 2:3 would be two of them in three periods.";
 
 // Every mark with its name, whether the curve has it or not, so that the key keeps its size while a knob moves. The
 // periods have their word once.
@@ -34,7 +35,7 @@ function keyOf(kinds) {
       "span",
       { className: "ratio", title: RATIO },
       element("b", { textContent: "1:n" }),
-      " one push in n periods",
+      " one strong push in n periods",
     ),
   ];
 }

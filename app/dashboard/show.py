@@ -50,7 +50,7 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
           _is_known(run), live=True, running=running)
     views.curve.now(run.scene.knobs["f"], frames.largest_output)
     views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
-                                   **run_entries(run, views.trains.output_words(run.max_output_force, _is_known(run))))
+                                   **run_entries(run, views.trains.output_words(frames.largest_output, _is_known(run))))
 
 
 def _is_known(run: Run) -> bool:

@@ -20,9 +20,14 @@ function termOf(words, name, meaning) {
 }
 
 let pattern = null;
+let meanings = null; // by the term in small letters
 // The terms as one pattern, with their plurals; the longest come first.
 function terms() {
-  pattern ??= new RegExp(`(?<![\\w-])(${Object.keys(window.granchain.terms).join("|")})(?:e?s)?(?![\\w-])`, "i");
+  if (!pattern) {
+    const { terms } = window.granchain;
+    pattern = new RegExp(`(?<![\\w-])(${Object.keys(terms).join("|")})(?:e?s)?(?![\\w-])`, "i");
+    meanings = new Map(Object.entries(terms).map(([name, meaning]) => [name.toLowerCase(), meaning]));
+  }
   return pattern;
 }
 
@@ -32,7 +37,7 @@ function inText(node, seen) {
   const word = found[1].toLowerCase();
   const after = node.splitText(found.index);
   const rest = after.splitText(found[0].length);
-  if (!seen.has(word)) after.replaceWith(termOf(found[0], found[1], window.granchain.terms[word]));
+  if (!seen.has(word)) after.replaceWith(termOf(found[0], found[1], meanings.get(word)));
   seen.add(word);
   inText(rest, seen);
 }

@@ -6,16 +6,16 @@ from collections.abc import Callable
 from typing import Any, ClassVar
 
 import param
-from bokeh.embed import json_item
 from bokeh.models import LayoutDOM
 
+from ..pictures.item import figure_item
 from ..pictures.theme import THEMES, Theme
 from .component import Component
 
 
 def page_and_small(draw: Callable[[bool], LayoutDOM]) -> dict[str, Any]:
     """Bokeh's JSON of a figure for a page and, compact, for its tab; `draw` is told whether it is to be compact."""
-    return {"page": json_item(draw(False)), "small": json_item(draw(True))}
+    return {"page": figure_item(draw(False)), "small": figure_item(draw(True))}
 
 
 class FigurePart(Component):

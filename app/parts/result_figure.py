@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from bokeh.embed import json_item
 from bokeh.models import LayoutDOM
 
+from ..pictures.item import figure_item
 from ..pictures.theme import THEMES, Theme
 from .component import Component
 
@@ -55,4 +55,5 @@ class ResultFigure(Component):
 
     def _send_figure(self, place: str) -> None:
         one = self._drawn[place]
-        self.send(type="figure", place=place, figure=json_item(one.draw(self._theme)), words=one.words, shape=one.shape)
+        figure = figure_item(one.draw(self._theme))
+        self.send(type="figure", place=place, figure=figure, words=one.words, shape=one.shape)

@@ -110,11 +110,13 @@ _ALIKE = 10.0
 
 
 def _worse_forces(run: Run) -> str:
-    """The largest error of a largest force, where it misses the accuracy asked for or is far above that reached."""
-    errors = [error for error in (run.force_errors.output, run.force_errors.input) if error is not None]
-    if run.error_estimate is None or max(errors, default=0.0) <= min(run.scene.accuracy, _ALIKE * run.error_estimate):
+    """The larger error of both largest forces, where it misses the accuracy asked for or is far above that reached."""
+    errors = [(error, name) for error, name in ((run.force_errors.output, "output force"),
+                                                (run.force_errors.input, "input force")) if error is not None]
+    worst, name = max(errors, default=(0.0, ""))
+    if run.error_estimate is None or worst <= min(run.scene.accuracy, _ALIKE * run.error_estimate):
         return ""
-    return f" (forces {short_error(max(errors))})"
+    return f" ({name} {short_error(worst)})"
 
 
 def why_no_error(run: Run) -> str:

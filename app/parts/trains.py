@@ -35,7 +35,7 @@ _TICKS = (3, 6)
 #: The smallest number that is written in the unit of an axis.
 _READABLE = 0.01
 #: The smallest force is told where it is a pull above this part of the largest, or a pressure above that part of it.
-_PULLS, _PRESSED = 0.02, 0.2
+_PULLS, _PRESSED = 0.01, 0.2
 WIDEST_TITLES = {"left": INPUT.label("mN"), "right": OUTPUT.label("mN")}
 """By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`)."""
 

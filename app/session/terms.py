@@ -41,4 +41,4 @@ def _names(terms: str) -> list[str]:
 
 def _plain(text: str) -> str:
     text = re.sub(r"\[([^\]]+)\]\([^)]*\)", r"\1", text.replace("\\|", "|").replace("`", ""))
-    return re.sub(r"\s*\((?:model|design)\.md\)", "", text).strip()
+    return re.sub(r"\s*\((?:model|design|regimes)\.md\)", "", text).strip()

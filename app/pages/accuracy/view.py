@@ -8,7 +8,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from bokeh.embed import json_item
 
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, compared_methods
 
@@ -16,6 +15,7 @@ from ...format import prefixed, short_error
 from ...parts.component import text
 from ...parts.figure_part import FigurePart, page_and_small
 from ...pictures.accuracy import Annotations, accuracy, marks, points
+from ...pictures.item import figure_item
 from ...pictures.naive_forces import naive_forces
 from ...pictures.theme import Theme
 from ...scripts import module
@@ -109,7 +109,7 @@ def naive_message(shown: Lesson, theme: Theme) -> dict[str, Any]:
                     dtype=np.float32)
     return {
         "type": "naive", "columns": len(shown.time),
-        "figure": json_item(naive_forces(rows[0], rows[1], None, f"{unit}s", f"{letter}N", theme)),
+        "figure": figure_item(naive_forces(rows[0], rows[1], None, f"{unit}s", f"{letter}N", theme)),
         "drawn": [{"method": one.method, "steps": one.steps, "failure": one.failure,
                    "error": None if one.failure else one.error,
                    "row": -1 if one.failure else 2 + drawn.index(one)} for one in shown.drawn],

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from bokeh.embed import json_item
 
 from granchain_core.diagram import Attractor, Grid
 from granchain_core.orbits import response
@@ -13,13 +12,14 @@ from granchain_core.regime import modulus_words
 
 from ...format import short_error
 from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models
+from ...pictures.item import figure_item
 from ...pictures.regimes import REGIMES, regime_key
 from ...pictures.theme import Theme
 
 
 def head_message(grid: Grid, theme: Theme) -> dict[str, Any]:
     """The figure of a diagram whose cells are still to come, and the values of its knobs in SI."""
-    return {"type": "map-head", "figure": json_item(diagram(nothing(grid), theme)), "x": list(grid.x.values),
+    return {"type": "map-head", "figure": figure_item(diagram(nothing(grid), theme)), "x": list(grid.x.values),
             "y": list(grid.y.values), "shown": {name: shown_models(name) for name in ("force", "regime")}}
 
 

@@ -6,13 +6,12 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from bokeh.embed import json_item
-
 from granchain_core import Run
 
 from ...format import in_words
 from ...parts.component import text
 from ...parts.figure_part import FigurePart
+from ...pictures.item import figure_item
 from ...pictures.probe import PICTURES, closed_spells, probe_state, without_points
 from ...pictures.theme import Theme
 from ...scripts import module
@@ -21,8 +20,8 @@ from ...scripts import module
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
     """All pictures, and the small one of the tab."""
-    made = {name: json_item(without_points(name, theme)) for name in PICTURES}
-    return {**made, "small": json_item(without_points("phase", theme, compact=True))}
+    made = {name: figure_item(without_points(name, theme)) for name in PICTURES}
+    return {**made, "small": figure_item(without_points("phase", theme, compact=True))}
 
 
 class Probe(FigurePart):

@@ -8,7 +8,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from bokeh.embed import json_item
 
 from granchain_core import Settled
 from granchain_core.integrate.methods import FIXED_STEP
@@ -22,6 +21,7 @@ from ...format import duration, prefixed, short_error
 from ...parts.chain import drawn_chain
 from ...parts.component import text
 from ...parts.figure_part import FigurePart
+from ...pictures.item import figure_item
 from ...pictures.multipliers import multiplier_words, plane, plane_state
 from ...pictures.section import SectionPoints, close_up, section, section_state
 from ...pictures.theme import Theme
@@ -34,8 +34,8 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
     """The plane, also small for the tab, and the section, all without points."""
     empty = plane_state(None)
     nothing = SectionPoints(np.zeros((1, 2)), np.zeros((0, 2)), 1, 0, False, 1, ("m", "m/s"))
-    return {"section": json_item(section(nothing, theme)), "plane": json_item(plane(empty, theme)),
-            "small": json_item(plane(empty, theme, compact=True))}
+    return {"section": figure_item(section(nothing, theme)), "plane": figure_item(plane(empty, theme)),
+            "small": figure_item(plane(empty, theme, compact=True))}
 
 
 class Stability(FigurePart):
@@ -128,9 +128,9 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
     row("regime", f"{kind}, {regime.periods_run} period{'s' * (regime.periods_run != 1)} run from {picture.start}",
         "The regime, and the number of drive periods after which it was decided.")
     if regime.distance is not None:
-        row("distance to the orbit", f"≤ {short_error(regime.distance)}",
-            "Bound on the relative distance of the settled picture: its change over one orbit times r/(1 − r), where r "
-            "is |μ| if it was computed, else the decay, else ½.")
+        row("distance to the orbit", f"≤ {short_error(regime.distance)}, same method",
+            "Bound on the relative distance of the settled picture from the orbit of the method that settled it: its "
+            "change over one orbit times r/(1 − r), where r is |μ| if it was computed, else the decay, else ½.")
     if regime.lyapunov is not None:
         row("Lyapunov exponent", f"{regime.lyapunov[0]:+.4f} ± {regime.lyapunov[1]:.4f} per drive period",
             "Mean rate at which neighbouring motions separate, with its standard error over blocks of periods.")
@@ -167,10 +167,11 @@ def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
         "Change over one orbit, relative to the largest displacement and w, before each Newton step and at the end.")
     if analysis.target.followed:
         row("settled state", f"{short_error(analysis.distance)} away",
-            "Relative distance of the orbit from the settled picture, in which Newton's method was started.")
+            "Relative distance of the settled picture from the orbit of the exact map, which Newton's method found "
+            "from it: the error of the method that settled it.")
     why = ("the smallest multipliers are below rounding" if len(orbit.multipliers) == 2 * orbit.scene.N
            else f"only the {len(orbit.multipliers)} leading multipliers are computed")
-    row("product of all μ", why if orbit.liouville is None else short_error(orbit.liouville),
+    row("product of all μ", why if orbit.liouville is None else f"{short_error(orbit.liouville)} off",
         "Liouville's theorem: the logarithm of the multipliers' product and the integral of the equations' trace are "
         "equal; their relative difference.")
     row("disturbance followed", f"{short_error(max(analysis.mode.closure, 1e-16))} off",
