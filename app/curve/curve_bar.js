@@ -9,12 +9,12 @@ function choiceBox(model, name) {
   return box;
 }
 
-const RATIO =
-  "1:3, for instance: the driver pushes the first bead strongly once in three drive periods. A push is strong above 70 % of the strongest. 2:3 would be two of them in three periods.";
+const ratio = (strong) =>
+  `1:3, for instance: the driver pushes the first bead strongly once in three drive periods. A push is strong above ${Math.round(100 * strong)} % of the strongest. 2:3 would be two of them in three periods.`;
 
 // Every mark with its name, whether the curve has it or not, so that the key keeps its size while a knob moves. The
 // periods have their word once.
-function keyOf(kinds) {
+function keyOf({ kinds, strong }) {
   const mark = ({ symbol, colour }, name) => {
     const drawn = element("b", { textContent: symbol });
     drawn.style.color = colour;
@@ -33,7 +33,7 @@ function keyOf(kinds) {
     ...kinds.filter((one) => !periods.includes(one)).map((one) => mark(one, one.name)),
     element(
       "span",
-      { className: "ratio", title: RATIO },
+      { className: "ratio", title: ratio(strong) },
       element("b", { textContent: "1:n" }),
       " one strong push in n periods",
     ),
@@ -63,7 +63,7 @@ export function render({ model }) {
   const places = new ChapterLabels((f) => model.send_msg({ do: "set", name: "f", value: f }));
   const name = () => {
     key.replaceChildren(
-      ...(model.state.driven ? keyOf(model.state.kinds) : ["This chain has no drive, so there is no resonance curve."]),
+      ...(model.state.driven ? keyOf(model.state) : ["This chain has no drive, so there is no resonance curve."]),
     );
     places.show(model.state.chapters, model.state.stated);
   };

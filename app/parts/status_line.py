@@ -82,13 +82,14 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
     if regime.lyapunov is not None and regime.name != "periodic":
         meanings.append(_LYAPUNOV)
     if regime.evidence:
-        meanings.append(_DECAY if regime.multiplier is None else multiplier_words(regime.multiplier, regime.period))
+        meanings.append(_DECAY if regime.multiplier is None else
+                        multiplier_words(regime.multiplier, regime.period or regime.approaches or 1))
     return " ".join(one for one in meanings if one)
 
 
-def multiplier_words(modulus: float, period: int | None) -> str:
+def multiplier_words(modulus: float, period: int) -> str:
     """What |μ| says of a small disturbance of an orbit of `period` drive periods."""
-    orbit = "drive period" if period in (None, 1) else f"{period} drive periods"
+    orbit = "drive period" if period == 1 else f"{period} drive periods"
     return (f"|μ| {modulus_words(modulus)}: after every {orbit} {100.0 * modulus:.3g} % of a small disturbance is "
             "left; below 1 the orbit is stable.")
 

@@ -153,7 +153,7 @@ def scale_models(cells: np.ndarray) -> dict[str, dict[str, Any]]:
 
 
 def _round_values(low: float, high: float) -> list[float]:
-    """Ticks of a logarithmic scale: powers of ten, or 1, 2 and 5 times them where there are fewer than three."""
+    """Ticks of a logarithmic scale: powers of ten, with 3 or with 2 and 5 times them where there are few."""
     powers = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
     for steps in ((1,), (1, 3), (1, 2, 5)):
         ticks = [float(f"{step}e{power}") for power in powers for step in steps]

@@ -5,12 +5,11 @@ from __future__ import annotations
 import html
 from typing import Any
 
-from bokeh.document import Document
 from bokeh.embed import file_html
-from bokeh.io.doc import patch_curdoc
 from bokeh.models import LayoutDOM
 from bokeh.resources import INLINE
 
+from .item import with_own_document
 from .theme import Theme
 
 #: Height of a line of a caption, the room around a caption, and how many characters a pixel of its width holds.
@@ -40,14 +39,8 @@ def captioned_page(figure: LayoutDOM, title: str, caption: str, theme: Theme) ->
 
 
 def _page(figure: LayoutDOM, title: str, **options: Any) -> str:
-    """Bokeh's page, made with a document of its own as the current one.
-
-    Bokeh asks for the current document, and keeps only a weak reference: in the process of a dashboard that may be the
-    document of a visitor who has left, which is an error.
-    """
-    own = Document()
-    with patch_curdoc(own):
-        return str(file_html(figure, INLINE, title, **options))
+    """Bokeh's page."""
+    return with_own_document(lambda: str(file_html(figure, INLINE, title, **options)))
 
 
 def caption_height(title: str, caption: str, width: int) -> int:

@@ -1,25 +1,33 @@
-"""A figure as Bokeh's JSON, as pages send it to the browser."""
+"""A figure as Bokeh's JSON, as pages send it to the browser, and what Bokeh makes without a visitor's document."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 from bokeh.document import Document
 from bokeh.embed import json_item
 from bokeh.io.doc import patch_curdoc
 from bokeh.models import LayoutDOM
 
+T = TypeVar("T")
+
 
 def figure_item(figure: LayoutDOM) -> dict[str, Any]:
-    """Bokeh's JSON of a figure, made with a document of its own as the current one.
+    """Bokeh's JSON of a figure."""
+    return with_own_document(lambda: dict(json_item(figure)))
 
-    Bokeh asks for the current document. What failed in the document of another visitor may have left that as the
-    current one of the process, and once that visitor has left, asking for it is an error.
+
+def with_own_document(make: Callable[[], T]) -> T:
+    """What `make` returns, called with a document of its own as Bokeh's current one.
+
+    Bokeh asks for the current document and keeps only a weak reference to it. An error in the document of another
+    visitor may have left that one current for the whole process; once that visitor has left, asking for it fails.
     """
     own, failure = Document(), None
-    with patch_curdoc(own):  # it would not be taken back after an error
+    with patch_curdoc(own):  # it is not taken back where an error passes through it
         try:
-            return dict(json_item(figure))
+            return make()
         except Exception as problem:
             failure = problem
     raise failure

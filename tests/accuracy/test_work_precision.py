@@ -14,7 +14,7 @@ import pytest
 import scipy.integrate
 
 from app.cli import main
-from granchain_core import Cancelled, NumbersFailed, scene
+from granchain_core import Cancelled, NumbersFailed, scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, cheapest, compared_methods, work_precision
 from granchain_core.accuracy import work_precision as entry
 from granchain_core.accuracy.compared_methods import measured_settings
@@ -180,6 +180,16 @@ def test_the_naive_force_is_wrong_and_names_where_it_blows_up() -> None:
     assert drawn["rk4-naive", 200].error > 0.1  # 0.49 was measured
     assert drawn["rk4-naive", 2000].error < drawn["rk4-naive", 500].error < drawn["rk4-naive", 200].error
     assert all(one.force.shape == found.force.shape for one in found.drawn if not one.failure)
+
+
+def test_an_error_of_the_force_is_told_of_the_largest_pulse_and_the_pulse_is_shown() -> None:
+    """At 1130 Hz the wall is pressed hard once in three drive periods."""
+    found, whole = lesson(scene("sec2").evolve(f=1130.0), Stop()), settled(scene("sec2").evolve(f=1130.0)).run
+    assert np.abs(found.force).max() == pytest.approx(whole.max_output_force, rel=0.1)  # ten periods from rest
+    for one in found.drawn:
+        if not one.failure:
+            told = np.abs(one.force - found.force).max() / one.error
+            assert told >= np.abs(found.force).max() * (1.0 - 1e-12)
 
 
 def test_a_second_reference_without_preload_or_damping_is_one_too() -> None:

@@ -104,3 +104,10 @@ def test_a_step_back_is_the_step_it_was(visit: Visit) -> None:
     for name, number in (("next", 2), ("back", 1), ("next", 2)):
         tab.get_by_role("button", name=name).click()
         shows(page, story, number)
+
+
+def test_a_term_with_a_capital_has_its_definition(visit: Visit) -> None:
+    page = visit("?story=chaos.2")
+    page.locator("#tabs").get_by_role("button", name="answer").click()
+    page.locator("#tabs dfn", has_text="Lyapunov exponent").hover()
+    expect(page.get_by_role("tooltip")).to_contain_text("mean of the logarithm of a small disturbance's growth")

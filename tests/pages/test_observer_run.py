@@ -55,6 +55,16 @@ def test_a_rate_is_told_when_the_fast_modes_are_gone_and_the_force_is_the_larges
     assert run.measured == pytest.approx(run.predicted, rel=0.02)  # as for the orbit of two periods
 
 
+def test_the_largest_force_is_that_of_all_periods_so_far() -> None:
+    """At 1130 Hz the driver pushes strongly in one of three periods."""
+    shown = scene("sec2").evolve(f=1130.0)
+    picture = settled(shown)
+    run = ObserverRun(shown, picture, Stop(), None)
+    told = [run.step().largest_input for _ in range(6)]
+    assert told == sorted(told)
+    assert told[2:] == pytest.approx([picture.run.max_input_force] * 4, rel=picture.run.force_errors.input)
+
+
 def test_without_multipliers_it_says_why_and_runs() -> None:
     cut = FOUNDED.evolve(f=340.0, dissipation="tsuji", tension="cut")
     run = ObserverRun(cut, None, Stop(), None)

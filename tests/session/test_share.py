@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.dashboard.addresses import take_address
+from app.pages.stories.page import story_step
 from app.session.pins import NAMES, Pin
 from app.session.session import Session
 from app.session.share import EXTRAS, LONGEST, SPEEDS, VIEW, decode, encode, joined, pins_in
@@ -162,6 +163,17 @@ def test_a_page_that_is_only_a_tab_is_opened_by_either_name() -> None:
     session = Session()
     assert take_address(session, "v=1&page=map")[1] == [] and session.place == {"tab": "map"}
     assert take_address(session, "v=1&page=stability")[1] == [] and session.place == {"page": "stability"}
+
+
+def test_a_link_with_a_story_alone_shows_the_motion_of_its_step() -> None:
+    session = Session()
+    step = story_step("coexisting.2")
+    assert take_address(session, "story=coexisting.2&look=dark")[1] == []
+    assert session.scene == step.scene and session.story_to_settle  # it comes from 860 Hz
+    take_address(session, "story=sonic-vacuum.3")
+    assert session.scene == story_step("sonic-vacuum.3").scene and not session.story_to_settle
+    take_address(session, "story=coexisting.2&f=500")  # the page's own links have the motion
+    assert session.scene.f == 500.0 and not session.story_to_settle
 
 
 def test_pins_without_room_are_left_out_with_a_sentence() -> None:

@@ -46,7 +46,7 @@ class AnalysisPage(Page):
         self._question: Question | None = None
         self._text = ""
         self._fields: tuple[Field, ...] = ()
-        self._unasked = False
+        self._visible = self._unasked = False
         self.actions: Actions = {
             "analysis-ask": self._ask, "analysis-compute": self._begin, "analysis-stop": lambda _: self._stop()}
         self.address_taken()
@@ -64,7 +64,8 @@ class AnalysisPage(Page):
 
     def visibility_changed(self, visible: bool) -> None:
         """Somebody opens the page: without a question it begins with the first."""
-        self._unasked = visible and (self._unasked or self._question is None)
+        self._visible = visible
+        self._unasked = self._unasked or (visible and self._question is None)
         self._begin_unasked()
 
     def picture_ready(self, picture: Settled) -> None:
@@ -73,7 +74,7 @@ class AnalysisPage(Page):
             self._begin_unasked()
 
     def _begin_unasked(self) -> None:
-        if self._unasked and self._host.session.picture is not None:
+        if self._visible and self._unasked and self._host.session.picture is not None:
             question = next(iter(QUESTIONS.values()))
             self._offer(question, question.fields(self._host.session.scene), "")
             try:
@@ -85,6 +86,7 @@ class AnalysisPage(Page):
         """The address says what is asked, and with which values; what is on the page already stays."""
         text = self._host.session.question
         if text and text != self._text:
+            self._unasked = False
             question, fields = read_question(text, self._host.session.scene)
             self._offer(question, fields, text)
 
