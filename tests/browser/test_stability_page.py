@@ -68,11 +68,13 @@ def test_what_a_hidden_window_stops(visit: Visit) -> None:
     page.evaluate(hide, False)
     until(page, lambda: looks(page) == ["true", "false", "true"])
     page.get_by_role("tab", name="map").click()
+    # the page says so when it has laid itself out again
+    until(page, lambda: (looks(page, "map"), looks(page, "curve")) == (["true"], ["false"]))
     page.evaluate(hide, True)
     page.evaluate(hide, False)
     page.get_by_role("tab", name="stability").click()
     until(page, lambda: looks(page) == ["true", "false", "true", "false", "true"])
-    assert looks(page, "map") == ["true", "false"] and looks(page, "curve") == ["false", "true"]
+    until(page, lambda: (looks(page, "map"), looks(page, "curve")) == (["true", "false"], ["false", "true"]))
     page.get_by_role("button", name="open the page").click()
     until(page, lambda: looks(page, "curve") == ["false", "true", "false"])
     page.keyboard.press("Escape")
