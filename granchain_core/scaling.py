@@ -235,6 +235,15 @@ def scale_chain(scene: Scene, balance: bool = False) -> ScaledChain:
     return ScaledChain(scene, scales, slots, beta)
 
 
+def scale_like(known: ScaledChain, scene: Scene) -> ScaledChain:
+    """`scale_chain(scene)`; if it differs from the known one only by its frequency, both share their arrays."""
+    if known.slots.balance is not None or vars(known.scene) | {"f": scene.f} != vars(scene):
+        return scale_chain(scene)
+    beta = 2 * math.pi * scene.f / known.scales.rate
+    driver = known.slots.driver._replace(beta=beta)
+    return ScaledChain(scene, known.scales, known.slots._replace(driver=driver), beta).own()
+
+
 _TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
 
 

@@ -80,7 +80,7 @@ def _curve(short: Scene) -> None:
         y = scaled.from_si(rest(short))
         block.put(0, scaled, y, 1, return_at=1)
         block.run()
-        exponents_in_pairs([(scaled, y)], 1, 1, Stop())
+        exponents_in_pairs([(scaled, y)], 1, 1, block)
 
 
 def _orbit(short: Scene) -> None:

@@ -49,7 +49,7 @@ class Batch:
     """Places for as many scenes of one structure and one N as a vector holds, run by one thread."""
 
     def __init__(self, example: Scene, stop: Stop) -> None:
-        scaled = scale_chain(example)
+        self.example = scaled = scale_chain(example)
         self.stop = stop
         n, slots = example.N, scaled.slots
         dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
@@ -74,8 +74,12 @@ class Batch:
             limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
             stages=(_rows(rows), _rows(rows), _rows(rows)),
         )
-        for member in range(BATCH_SIZE):  # an empty place holds the example at rest and is never checked
-            self.put(member, scaled, np.zeros(rows), 1, NEVER, NEVER)
+        for member in range(BATCH_SIZE):
+            self.empty(member)
+
+    def empty(self, member: int) -> None:
+        """Leave a place empty: it holds the example at rest, which is never checked."""
+        self.put(member, self.example, np.zeros(len(self.state.y)), 1, NEVER, NEVER)
 
     def put(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, return_at: int,
             earliest: int = 0) -> None:
@@ -142,17 +146,13 @@ class Batch:
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse member has settled on: from before it was disturbed, if it was."""
         disturbed = self.state.slowest[member] > 0.0
-        return self.state.fine_record[member, FORCES : FORCES + 3].copy() if disturbed else self.maxima(member, period)
+        return (self.state.fine_record[member, FORCES : FORCES + 3].copy() if disturbed
+                else self.maxima(member, period)[0])
 
-    def maxima(self, member: int, periods: int) -> np.ndarray:
-        """Largest input, output and elastic output force of the last `periods` periods, in scaled units."""
-        return self._last(member, periods)[:3]
-
-    def jumps(self, member: int, periods: int) -> np.ndarray:
-        """Largest jumps of input and output force in the same periods."""
-        return self._last(member, periods)[3:]
-
-    def _last(self, member: int, periods: int) -> np.ndarray:
+    def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray]:
+        """Largest input, output and elastic output force (3,) of the last `periods` periods, and largest jumps (2,) of
+        input and output force, in scaled units."""
         run = int(self.state.periods[member])
         places = np.arange(max(1, run - min(periods, STROBES_KEPT) + 1), run + 1) % STROBES_KEPT
-        return self.state.maxima[member, places].max(axis=0)
+        largest = self.state.maxima[member, places].max(axis=0)
+        return largest[:3], largest[3:]

@@ -11,8 +11,8 @@ from ..integrate import Engine
 from ..integrate.batch import NEVER, Batch
 from ..kernels.batch.period_end import STROBES_KEPT
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
+from ..kernels.width import BATCH_SIZE
 from ..scaling import ScaledChain
-from ..stop import Stop
 
 #: Distance of the neighbouring trajectory in drive amplitudes: far above rounding, far below the kinks of the contacts.
 _DISTANCE = 1e-8
@@ -22,8 +22,10 @@ MOST_APART = 2.5
 
 
 def exponents_in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], blocks: int, block: int,
-                       stop: Stop) -> list[tuple[np.ndarray, ...]]:
-    """`exponents` of scenes side by side in pairs of members, each from its scaled state (2(N+2),) at phase 0.
+                       pairs: Batch) -> list[tuple[np.ndarray, ...]]:
+    """`exponents` of scenes side by side in pairs of members of the batch `pairs`, whose earlier members it replaces.
+
+    Each begins in its scaled state (2(N+2),) at phase 0.
 
     Returns for each the exponents (blocks,), its strobes (P, 2, N) of displacement and w, the largest forces of its
     last periods (16, 3), scaled, and its last scaled state; exponents are NaN where the motion did not stay finite. The
@@ -32,10 +34,12 @@ def exponents_in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], blocks: int
     steps = [scaled.steps_per_period() for scaled, _ in scenes]
     if max(steps) > MOST_APART * min(steps):
         raise ValueError(f"steps a period {steps} differ by more than a factor {MOST_APART:g}")
-    pairs, periods = Batch(scenes[0][0].scene, stop), (blocks + 1) * block
+    periods = (blocks + 1) * block
     for i, (scaled, y) in enumerate(scenes):
         pairs.put(2 * i, scaled, y, 1, periods, NEVER)
         pairs.put(2 * i + 1, scaled, y + _offset(scaled.bodies), 1, periods, NEVER)
+    for member in range(2 * len(scenes), BATCH_SIZE):
+        pairs.empty(member)
     growth = pairs.run_pairs(_DISTANCE, periods)
     return [(growth[i, block:].reshape(blocks, block).mean(axis=1), *_record(pairs, 2 * i, periods))
             for i in range(len(scenes))]

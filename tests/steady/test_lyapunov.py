@@ -7,6 +7,7 @@ import pytest
 
 from granchain_core import Scene, State, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.batch import Batch
 from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.scaling import scale_chain
 from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
@@ -38,7 +39,7 @@ def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
     engine.start(state)
     scaled = scale_chain(shown)
     found = exponents(engine, 10, 20)[0], exponents_in_pairs([(scaled, scaled.from_si(state))], 10, 20,
-                                                             Stop())[0][0]
+                                                             Batch(shown, Stop()))[0][0]
     return [(float(growth.mean()), float(growth.std(ddof=1) / np.sqrt(10))) for growth in found]
 
 
@@ -65,9 +66,13 @@ def test_exponents_of_a_scene_do_not_depend_on_those_beside_it() -> None:
     scaled = scale_chain(QUASI)
     y = scaled.from_si(run_until_settled(QUASI, None, None).engine.state)
     slower = scale_chain(QUASI.evolve(f=QUASI.f / 2.2))
-    alone = exponents_in_pairs([(scaled, y)], 5, 20, Stop())[0]
-    beside = exponents_in_pairs([(slower, 0.5 * y), (scaled, y)], 5, 20, Stop())[1]
-    for first, second in zip(alone, beside, strict=True):
-        assert (first == second).all()
+    pairs = Batch(QUASI, Stop())
+    alone = exponents_in_pairs([(scaled, y)], 5, 20, pairs)[0]
+    beside = exponents_in_pairs([(slower, 0.5 * y), (scaled, y)], 5, 20, pairs)[1]
+    lost = exponents_in_pairs([(slower, np.nan * y), (scaled, y)], 5, 20, pairs)
+    after = exponents_in_pairs([(scaled, y)], 5, 20, pairs)[0]  # beside the places of the one that was lost
+    for first, *others in zip(alone, beside, lost[1], after, strict=True):
+        assert all((first == other).all() for other in others)
+    assert np.isnan(lost[0][0]).all()
     with pytest.raises(ValueError, match="differ by more than a factor"):
-        exponents_in_pairs([(scaled, y), (scale_chain(QUASI.evolve(f=QUASI.f / 9.0)), y)], 5, 20, Stop())
+        exponents_in_pairs([(scaled, y), (scale_chain(QUASI.evolve(f=QUASI.f / 9.0)), y)], 5, 20, pairs)

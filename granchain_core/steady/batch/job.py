@@ -27,6 +27,8 @@ from ..steady_state import SteadyState
 FINER = 3
 #: Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
 _LOCATED = fixed_step_setting(8)
+#: Typical relative error of the finer run.
+_FINER_ERROR = typical_error(fixed_step_setting(FINER))
 #: Periods over which the largest force of an irregular motion is taken.
 _IRREGULAR_PERIODS = 100
 
@@ -81,14 +83,14 @@ class Job:
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
         y, distance = batch.state.y[:, member], float(batch.state.last_check[member, DISTANCE])
-        maxima, jumps = batch.maxima(member, regime.period), batch.jumps(member, regime.period)
+        maxima, jumps = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
         left = force_distances(farther, self.scaled, maxima, y)
         # each of the two runs has come to its own orbit: the change is the difference of these orbits
         errors = orbit_force_errors(relative_changes(maxima, before), left,
-                                    least=typical_error(fixed_step_setting(FINER)) / (1.0 - regime.contraction))
-        at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
-        if at_jump.any():
+                                    least=_FINER_ERROR / (1.0 - regime.contraction))
+        if jumps.any() and (jumps > AT_A_JUMP * maxima[:2]).any():
+            at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
             located, apart = self._located_maxima(y, regime, farther, batch.stop)
             maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, apart, errors)
         maxima = maxima * self.scaled.scales.force
@@ -152,14 +154,14 @@ def _periodic(batch: Batch, member: int, run: int) -> Regime:
 
 def _in_doubt(job: Job, batch: Batch, member: int, run: int, record: np.ndarray) -> Job:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
-    maxima = batch.maxima(member, _IRREGULAR_PERIODS) * job.scaled.scales.force
+    maxima = batch.maxima(member, _IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
     return Job(job.scene, job.scaled, y, run, in_doubt=True, record=record, maxima=maxima, number=job.number)
 
 
 def unsettled(job: Job, batch: Batch, member: int, run: int) -> SteadyState:
     """The result of a member whose budget of steps is spent."""
-    maxima = batch.maxima(member, _IRREGULAR_PERIODS) * job.scaled.scales.force
+    maxima = batch.maxima(member, _IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     state = job.scaled.to_si(batch.state.y[:, member])
     return SteadyState(job.scene, maxima, Regime.unsettled(run), None, state,
                       number=job.number)

@@ -11,15 +11,16 @@ time as there are pairs of members. What is still undecided is marked `doubtful`
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
-from ...integrate.batch import NEVER, Batch
+from ...integrate.batch import Batch
 from ...kernels.width import BATCH_SIZE
 from ...regime import Regime
-from ...scaling import scale_chain
+from ...scaling import scale_chain, scale_like
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import rest
@@ -46,21 +47,36 @@ class _JobsInBatch:
 
     def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
         self.batch = Batch(first.scene, stop)
+        self.pairs: Batch | None = None
         self.draft = draft
         self.stop = stop
-        self.waiting = [_new_job(first)]
-        self.starts = starts
+        self.latest = self.batch.example
+        self.starts = itertools.chain([first], starts)
+        self.waiting: list[Job] = []
         self.jobs: dict[int, Job] = {}
+        self.left: set[int] = set()
         self.doubtful: list[Job] = []
 
     def fill(self) -> None:
-        """Put jobs into all free places."""
+        """Put jobs into all free places; those for which there is none are left empty."""
         for member in range(BATCH_SIZE):
             if member not in self.jobs:
-                job = self.waiting.pop() if self.waiting else _job_or_none(self.starts)
+                job = self.waiting.pop() if self.waiting else self._next_job()
                 if job is not None:
                     self.jobs[member] = job
                     self._start(member, job)
+                elif member in self.left:
+                    self.batch.empty(member)
+                self.left.discard(member)
+
+    def _next_job(self) -> Job | None:
+        """The job of the next start, if there is one."""
+        start = next(self.starts, None)
+        if start is None:
+            return None
+        self.latest = scaled = scale_like(self.latest, start.scene)
+        state = rest(start.scene) if start.state is None else start.state
+        return Job(start.scene, scaled, scaled.from_si(state), number=start.number)
 
     def _start(self, member: int, job: Job) -> None:
         """The coarse run is checked once it may have settled, the finer one once the difference has decayed."""
@@ -95,9 +111,9 @@ class _JobsInBatch:
         return None
 
     def _free(self, member: int) -> None:
-        """Leave a place at rest, without checks, until it is filled again."""
-        job = self.jobs.pop(member)
-        self.batch.put(member, job.scaled, np.zeros_like(job.y), 1, NEVER, NEVER)
+        """Take a job out of its place, which `fill` fills or empties."""
+        del self.jobs[member]
+        self.left.add(member)
 
     def undecided(self) -> list[Job]:
         """Doubtful jobs of similar steps a period, one for a pair of members; fewer only if nothing else is to do."""
@@ -110,7 +126,8 @@ class _JobsInBatch:
     def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
         """Classify doubtful jobs by their Lyapunov exponents; one whose neighbours come closer runs on."""
         self.doubtful = [job for job in self.doubtful if job not in jobs]
-        found = exponents_in_pairs([(job.scaled, job.y) for job in jobs], EXPONENT_BLOCKS, PERIODS_IN_BLOCK, self.stop)
+        self.pairs = self.pairs or Batch(jobs[0].scene, self.stop)
+        found = exponents_in_pairs([(job.scaled, job.y) for job in jobs], EXPONENT_BLOCKS, PERIODS_IN_BLOCK, self.pairs)
         for job, (growth, strobes, maxima, y) in zip(jobs, found, strict=True):
             if not np.isfinite(growth).all():
                 yield failed(job)
@@ -192,14 +209,3 @@ def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
     y = scale_chain(scene).from_si(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
     return result if largest < _SURE else replace(result, doubtful=True)
-
-
-def _new_job(start: Start) -> Job:
-    scaled = scale_chain(start.scene)
-    state = rest(start.scene) if start.state is None else start.state
-    return Job(start.scene, scaled, scaled.from_si(state), number=start.number)
-
-
-def _job_or_none(starts: Iterator[Start]) -> Job | None:
-    start = next(starts, None)
-    return None if start is None else _new_job(start)

@@ -104,7 +104,7 @@ def batch_peaks(frequencies: np.ndarray, refine: float) -> Peaks:
         fill(member)
     while place:
         member, _ = batch.run()
-        values[place[member]] = batch.maxima(member, problem.WATCHED)[2]
+        values[place[member]] = batch.maxima(member, problem.WATCHED)[0][2]
         fill(member)
     seconds = time.perf_counter() - began
     evaluations = 4 * total * round(refine * sum(one.steps_per_period() for one in scaled))

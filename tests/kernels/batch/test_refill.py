@@ -58,7 +58,7 @@ def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
         member, finite = batch.run()
         assert finite
         number = held[member]
-        seen_of_it = batch.strobes(member), batch.maxima(member, 99), batch.jumps(member, 99)
+        seen_of_it = batch.strobes(member), *batch.maxima(member, 99)
         found[number] = [one.copy() for one in seen_of_it]
         fill(member)
     return found
