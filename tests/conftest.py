@@ -62,8 +62,10 @@ def pytest_xdist_auto_num_workers() -> int:
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Iterator[None]:
     """Mark the quick tests; once the chosen ones are known, order them for the workers."""
+    paths = {item.path for item in items}
+    quick = {path for path in paths if any(path.is_relative_to(HERE / one) for one in QUICK)}
     for item in items:
-        if any(item.path.is_relative_to(HERE / one) for one in QUICK):
+        if item.path in quick:
             item.add_marker(pytest.mark.quick)
     yield
     workers = getattr(config, "workerinput", {}).get("workercount", 1)
