@@ -95,7 +95,7 @@ def _branch(short: Scene) -> None:
     stroboscopic_map = equations.stroboscopic_map(short.f)
     stroboscopic_map.end(x)
     stroboscopic_map(x)
-    equations.quick_end(x, short.f, quick_steps(short))
+    equations.quick_end(x, short.f, quick_steps(scale_chain(short)))
     record_along(equations, x, short.f)
 
 

@@ -51,14 +51,14 @@ class FixedStep:
         self._simd = simd
         self._no_samples = empty_samples(scaled, 0)
         self._no_periods = np.zeros((0, 2, 0)), np.zeros((0, 3))
-        self.drive = self._driver_table()
+        self.drive = self._driver_table(scaled)
         self.work: Any = Stages(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
                                 np.zeros((ENDS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
 
-    def _driver_table(self) -> np.ndarray:
+    def _driver_table(self, scaled: ScaledChain) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
         sine, cosine = _half_steps(self.grid)
-        driver = self.scaled.slots.driver
+        driver = scaled.slots.driver
         if driver is None:
             return np.zeros((sine.size, 2))
         return np.stack([driver.amplitude * sine, driver.amplitude * driver.beta * cosine], 1)
@@ -75,8 +75,16 @@ class FixedStep:
         """Go on with other values in the same slots, or with other effects."""
         self.scaled = scaled
         self._no_samples = empty_samples(scaled, 0)
-        self.drive = self._driver_table()
+        self.drive = self._driver_table(scaled)
         self.work = self.work._replace(forces=scaled.forces(), simd=self.new_simd_workspace())
+
+    def move(self, scaled: ScaledChain) -> None:
+        """Become the stepper of another scene with the same effects and as many steps a period."""
+        if scaled.slots.chain is self.scaled.slots.chain:  # it differs only by its frequency: `scale_like`
+            self.scaled, self.drive = scaled, self._driver_table(scaled)
+        else:
+            self.use(scaled)
+        self.h = scaled.period / self.grid
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: nothing is remembered of the last."""

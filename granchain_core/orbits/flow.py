@@ -17,7 +17,7 @@ from ..kernels.flow.run import run_flow
 from ..kernels.flow.saltation import VelocityTangent, new_velocity_tangent
 from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
 from ..kernels.status import EVENTS_PER_CONTACT
-from ..scaling import ScaledChain, scale_chain
+from ..scaling import ScaledChain, scale_like
 from ..scene import Scene
 from ..scene.driven import refuse_undriven
 from ..stop import Stop
@@ -65,7 +65,7 @@ class StroboscopicMap:
 
     def move(self, scene: Scene, tolerance: float) -> None:
         """Become the map of another scene with as many beads, to the same bits as a new one at a third of the cost."""
-        engine, scaled = self.engine, scale_chain(scene)
+        engine, scaled = self.engine, scale_like(self.engine.scaled, scene)
         engine.stepper = Adaptive(tolerance, scaled, 1)
         engine.stepper.pause = engine.stop.pause
         self._prepare(tolerance)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...scaling import scale_chain, scale_like
 from ...steady.returns import least_period
 from ...stop import Stop
 from ..flow import BACK, TOLERANCE, Flow, StroboscopicMap
@@ -47,6 +48,7 @@ class BranchEquations:
         self.axis, self.period, self.stop = axis, period, stop
         self.size = 2 * axis.scene.N
         self.weight = np.sqrt(self.size)
+        self._scaled = scale_chain(axis.scene)
         self._reused = threading.local()
 
     def point(self, x: np.ndarray, value: float) -> np.ndarray:
@@ -77,7 +79,7 @@ class BranchEquations:
 
     def quick_steps(self, z: np.ndarray) -> int:
         """Steps in a period of the quick map near z, 0 where the flow takes its place."""
-        return quick_steps(self.axis.scene_at(self.value(z)))
+        return quick_steps(scale_like(self._scaled, self.axis.scene_at(self.value(z))))
 
     def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
         """Where the quick map leads from x, or a rough flow where there are 0 steps."""
