@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..kernels.batch import run as kernels
-from ..kernels.batch.period_end import COARSE_ERROR_LEFT, DISTANCE, FINE_COLUMNS, FORCES, STROBES_KEPT
+from ..kernels.batch.period_end import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, STROBES_KEPT
 from ..kernels.batch.unequal import Unequal
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
@@ -66,11 +66,11 @@ class Batch:
         self.state = kernels.BatchState(
             y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
             steps=whole[0], left=whole[1], periods=whole[2], return_at=whole[3], earliest=whole[4],
-            extrapolate_from=whole[5], pause=whole[6], kept=whole[7], testing=whole[8], due=whole[9], slowest=parts[0],
-            change_before_extrapolation=parts[1], before=np.zeros((BATCH_SIZE, 2, n + 2)),
+            extrapolate_from=whole[5], pause=whole[6], strobe_count=whole[7], testing=whole[8], due=whole[9],
+            slowest=parts[0], change_before_extrapolation=parts[1], before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
-            last_check=np.zeros((BATCH_SIZE, DISTANCE + 1)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
+            last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
             limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
             stages=(_rows(rows), _rows(rows), _rows(rows)),
         )
@@ -105,7 +105,7 @@ class Batch:
         state.steps[member] = state.left[member] = steps
         state.y[:, member], state.overlaps[:, member] = y, 0.0
         state.ends[:, member] = 1.0  # counts as closed, so that no closing is recorded here
-        state.strobes[member, 0], state.kept[member] = y.reshape(2, -1), 1
+        state.strobes[member, 0], state.strobe_count[member] = y.reshape(2, -1), 1
         state.periods[member], state.return_at[member], state.earliest[member] = 0, return_at, earliest
         state.extrapolate_from[member], state.pause[member] = 0, _PAUSE
         state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
@@ -140,13 +140,13 @@ class Batch:
 
     def strobes(self, member: int, most: int = STROBES_KEPT) -> np.ndarray:
         """The last `most` remembered strobes of a member in order, (P, 2, N), displacement and w in scaled units."""
-        kept = int(self.state.kept[member])
+        kept = int(self.state.strobe_count[member])
         return self.state.strobes[member, max(0, kept - most) : kept, :, 1:-1]
 
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse member has settled on: from before it was disturbed, if it was."""
         disturbed = self.state.slowest[member] > 0.0
-        return (self.state.fine_record[member, FORCES : FORCES + 3].copy() if disturbed
+        return (self.state.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy() if disturbed
                 else self.maxima(member, period)[0])
 
     def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray]:

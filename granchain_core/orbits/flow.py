@@ -124,7 +124,7 @@ class StroboscopicMap:
         engine = self.engine
         engine.start_scaled(x)
         self._work.next_step[0] = min(0.1, engine.scaled.period / STAGES)
-        trajectory = engine.stepper.trajectory(engine.y)._replace(work=self._work)
+        trajectory = engine.stepper.trajectory(engine.y)._replace(workspace=self._work)
         status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._contacts, tangent), self.periods,
                                        engine.counts.array, engine.stop.flag)
         engine.raise_for(status, done)

@@ -49,6 +49,15 @@ def filled(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.parametrize("private", ["FunctionCache", "UserProvidedCacheLocator", "Cache._index_key", "Cache._load_overload",
+                                     "Cache._guard_against_spurious_io_errors", "CacheImpl._locator_classes"])
+def test_with_another_numba_kernels_are_compiled_for_the_process_and_one_line_says_so(private: str, tmp_path: Path) -> None:
+    lacking = f"import numba\nfrom numba.core import caching\ndel caching.{private}\n"
+    answer, messages = used(tmp_path, lacking + PROGRAM)
+    assert answer["right"] and answer["loaded"] == 0 and not list(tmp_path.rglob("*.nbc"))
+    assert len(messages) == 1 and private.split(".")[-1].lstrip("_") in messages[0] and "this process only" in messages[0]
+
+
 def halved(content: bytes) -> bytes:
     return content[: len(content) // 2]
 
