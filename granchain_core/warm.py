@@ -34,7 +34,7 @@ from .scaling import scale_chain
 from .scene import Scene, scene
 from .scene.effects import effects_of
 from .state import rest
-from .steady.lyapunov import exponents, exponents_in_pairs
+from .steady.lyapunov import exponents
 from .stop import Stop
 
 #: Names of the pieces of one structure's kernels.
@@ -80,7 +80,6 @@ def _curve(short: Scene) -> None:
         y = scaled.from_si(rest(short))
         block.put(0, scaled, y, 1, return_at=1)
         block.run()
-        exponents_in_pairs([(scaled, y)], 1, 1, block)
 
 
 def _orbit(short: Scene) -> None:

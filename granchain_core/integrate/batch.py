@@ -46,7 +46,7 @@ def _rows(rows: int) -> np.ndarray:
 
 
 class Batch:
-    """Places for as many scenes of one structure and one N as a vector holds, run by one thread."""
+    """BATCH_SIZE lanes for scenes of one structure and one N, run by one thread."""
 
     def __init__(self, example: Scene, stop: Stop) -> None:
         self.example = scaled = scale_chain(example)
@@ -61,13 +61,13 @@ class Batch:
             turn=_rows(2), beta=_rows(1), h=_rows(1),
         )
         rows = 2 * (n + 2)
-        whole = [np.zeros(BATCH_SIZE, dtype=np.int64) for _ in range(10)]
-        parts = [np.zeros(BATCH_SIZE) for _ in range(2)]
+        counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
+            "steps", "left", "periods", "return_at", "earliest", "extrapolate_from", "pause", "due", "shadow",
+            "strobe_count", "testing")}
+        numbers = {name: np.zeros(BATCH_SIZE) for name in ("slowest", "change_before_extrapolation", "distance")}
         self.state = kernels.BatchState(
-            y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
-            steps=whole[0], left=whole[1], periods=whole[2], return_at=whole[3], earliest=whole[4],
-            extrapolate_from=whole[5], pause=whole[6], strobe_count=whole[7], testing=whole[8], due=whole[9],
-            slowest=parts[0], change_before_extrapolation=parts[1], before=np.zeros((BATCH_SIZE, 2, n + 2)),
+            **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2),
+            peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)), before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
             last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
@@ -78,7 +78,7 @@ class Batch:
             self.empty(member)
 
     def empty(self, member: int) -> None:
-        """Leave a place empty: it holds the example at rest, which is never checked."""
+        """Leave a lane empty: it holds the example at rest, which is never checked."""
         self.put(member, self.example, np.zeros(len(self.state.y)), 1, NEVER, NEVER)
 
     def put(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, return_at: int,
@@ -110,6 +110,7 @@ class Batch:
         state.extrapolate_from[member], state.pause[member] = 0, _PAUSE
         state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
         state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0
+        state.shadow[member] = kernels.NO_SHADOW
 
     def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, rate: float,
                  maxima: np.ndarray) -> None:
@@ -121,22 +122,28 @@ class Batch:
         self.put(member, scaled, y, refine, NEVER, orbits * period)
         self.state.fine_record[member] = period, rate, *maxima, orbits, 0.0
 
+    def put_pair(self, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, offset: np.ndarray,
+                 distance: float, periods: int) -> None:
+        """Make a scene a member, with a shadow in another lane: a trajectory that begins at y + offset.
+
+        After each period the shadow is brought back to `distance`, the length of `offset`. The member is due after
+        `periods` periods, at most STROBES_KEPT of them.
+        """
+        self.put(member, scaled, y, 1, periods, NEVER)
+        self.put(shadow, scaled, y + offset, 1, NEVER, NEVER)
+        state = self.state
+        state.shadow[member], state.shadow[shadow], state.distance[member] = shadow, kernels.IS_SHADOW, distance
+
+    def growth(self, member: int) -> np.ndarray:
+        """Logarithm of the growth of the distance to the member's shadow in each period (periods,); NaN if lost."""
+        return self.state.growth[member, : int(self.state.periods[member])]
+
     def run(self) -> tuple[int, bool]:
         """Run until a member is due for a check; its number, and whether it is finite."""
         status, member = kernels.run_batch(self.members, self.state, self.stop.flag)
         if status == CANCELLED:
             raise Cancelled
         return int(member), status == DONE
-
-    def run_pairs(self, start: float, periods: int) -> np.ndarray:
-        """Run members (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (pairs, periods).
-
-        It is NaN for a pair that did not stay finite.
-        """
-        growth = np.zeros((BATCH_SIZE // 2, periods))
-        if kernels.run_pairs(self.members, self.state, start, growth, self.stop.flag) == CANCELLED:
-            raise Cancelled
-        return growth
 
     def strobes(self, member: int, most: int = STROBES_KEPT) -> np.ndarray:
         """The last `most` remembered strobes of a member in order, (P, 2, N), displacement and w in scaled units."""

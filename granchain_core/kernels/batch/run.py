@@ -24,8 +24,8 @@ from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_batch_ends
 
-#: `return_at` of a pair that is not in use, or no longer.
-NOT_IN_USE = -1
+#: `shadow` of a member that has none, and of one that is a shadow itself.
+NO_SHADOW, IS_SHADOW = -1, -2
 
 
 class Members(NamedTuple):
@@ -62,6 +62,9 @@ class BatchState(NamedTuple):
     extrapolate_from (L,)    period from which a transient may be extrapolated
     pause (L,)               periods without extrapolation after the next one that is undone
     due (L,)                 1 where a check is due, else 0
+    shadow (L,)              lane of the member's shadow, a neighbouring trajectory; NO_SHADOW, or IS_SHADOW
+    distance (L,)            distance to which the shadow is brought back after each period
+    growth (L, R)            logarithm of the factor by which that distance has grown in each period; NaN if lost
     strobe_count (L,)        strobes kept
     slowest (L,)             slowest decay known
     change_before_extrapolation (L,)  change per orbit before an extrapolation that is not confirmed yet, else 0
@@ -90,6 +93,9 @@ class BatchState(NamedTuple):
     extrapolate_from: np.ndarray
     pause: np.ndarray
     due: np.ndarray
+    shadow: np.ndarray
+    distance: np.ndarray
+    growth: np.ndarray
     strobe_count: np.ndarray
     slowest: np.ndarray
     change_before_extrapolation: np.ndarray
@@ -131,6 +137,23 @@ def batch_steps(members, state, count):
     restore_subnormals(before)
 
 
+@inline_numba
+def bring_back(state, member):
+    """Record how far a member and its shadow have parted in a period, and bring the shadow back."""
+    y, shadow, rows = state.y, state.shadow[member], state.y.shape[0]
+    if not (np.isfinite(y[1, member]) and np.isfinite(y[1, shadow])):
+        state.growth[member, :] = np.nan
+        state.due[member] = 1
+        return
+    total = 0.0
+    for i in range(rows):
+        total += (y[i, shadow] - y[i, member]) ** 2
+    start, now = state.distance[member], max(sqrt(total), 1e-300)
+    state.growth[member, state.periods[member] - 1] = log(now / start)
+    for i in range(rows):
+        y[i, shadow] = y[i, member] + (y[i, shadow] - y[i, member]) * (start / now)
+
+
 @kernel
 def run_batch(members, state, stop):
     """Run until a member is due for a check; returns (status, member).
@@ -150,49 +173,8 @@ def run_batch(members, state, stop):
         batch_steps(members, state, count)
         for member in range(BATCH_SIZE):
             state.left[member] -= count
-            if state.left[member] == 0 and end_period(state, member):
+            if state.left[member] == 0 and end_period(state, member) and state.shadow[member] != IS_SHADOW:
                 state.due[member] = 1
-
-
-@inline_numba
-def renormalise(state, bodies, start, growth, member):
-    """Record how far a pair of members has parted in a period, and put the second back to the distance `start`."""
-    y, total = state.y, 0.0
-    for i in range(2 * bodies):
-        total += (y[i, member + 1] - y[i, member]) ** 2
-    now = max(sqrt(total), 1e-300)
-    growth[member // 2, state.periods[member] - 1] = log(now / start)
-    for i in range(2 * bodies):
-        y[i, member + 1] = y[i, member] + (y[i, member + 1] - y[i, member]) * (start / now)
-
-
-@kernel
-def run_pairs(members, state, start, growth, stop):
-    """Run members in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
-
-    growth (pairs, P) holds the logarithm of each period's growth, NaN for a pair that did not stay finite; only pairs
-    whose `return_at` is P count; the others are not in use.
-    """
-    bodies, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
-    while busy:
-        count = STEPS_BETWEEN_STOP_CHECKS
         for member in range(BATCH_SIZE):
-            count = min(count, state.left[member])
-        batch_steps(members, state, count)
-        busy = False
-        for member in range(0, BATCH_SIZE, 2):
-            counted = state.periods[member] < periods and state.return_at[member] == periods
-            for one in range(member, member + 2):
-                state.left[one] -= count
-                if state.left[one] == 0:
-                    end_period(state, one)
-            if counted and state.left[member] == state.steps[member]:
-                if np.isfinite(state.y[1, member]) and np.isfinite(state.y[1, member + 1]):
-                    renormalise(state, bodies, start, growth, member)
-                else:
-                    growth[member // 2] = np.nan
-                    state.return_at[member], counted = NOT_IN_USE, False
-            busy = busy or (counted and state.periods[member] < periods)
-        if stop[0] != 0:
-            return CANCELLED
-    return DONE
+            if state.shadow[member] >= 0 and state.left[member] == state.steps[member]:
+                bring_back(state, member)
