@@ -34,8 +34,9 @@ from .compile_lock import CompileLock
 from .sources import FOLDER, constants_hash, hash_of_code, sources_hash, wording_hash
 
 #: Numba's classes; where one is missing, no kernel is kept on disk.
-_Impl: Any = getattr(caching, "CompileResultCacheImpl", object)
+_CLASSES = ("FunctionCache", "CompileResultCacheImpl", "UserProvidedCacheLocator")
 _FunctionCache: Any = getattr(caching, "FunctionCache", object)
+_Impl: Any = getattr(caching, "CompileResultCacheImpl", object)
 _UserProvidedLocator: Any = getattr(caching, "UserProvidedCacheLocator", object)
 #: Private methods of `FunctionCache` that `KernelCache` calls.
 _NEEDED = ("_load_overload", "_index_key", "_guard_against_spurious_io_errors")
@@ -317,6 +318,8 @@ def keep_on_disk(compiled: Any) -> None:
     if CACHE_FOLDER is None:
         return
     try:
+        for name in _CLASSES:
+            getattr(caching, name)
         _ = compiled._cache
         compiled._cache = KernelCache(compiled.py_func)
     except AttributeError as missing:

@@ -35,11 +35,6 @@ _APPROACHING = 0.97
 _WORTH_EXTRAPOLATING = 1e-2
 
 
-#: How much farther than the nearest state so far another one must be to be given up before its distance is complete:
-#: more than the rounding of a product and a quotient.
-_CLEARLY_FARTHER = 1.000001
-
-
 class Detected(NamedTuple):
     """What a record of strobes shows: an orbit, or the approach to one.
 
@@ -190,20 +185,6 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
     return Detected(0, 0.0, 0.0, approached, approach_rate, approach_change)
 
 
-@internal
-def distance_within(strobes, scale, now, then, limit):
-    """`change_between` if that is at most `limit`; else it, or ∞ as soon as one bead is clearly farther."""
-    change = 0.0
-    for q in range(2):
-        largest, most = 0.0, _CLEARLY_FARTHER * limit * scale[q]
-        for i in range(strobes.shape[2]):
-            largest = max(largest, abs(strobes[now, q, i] - strobes[then, q, i]))
-            if largest > most:
-                return np.inf
-        change = max(change, largest / scale[q])
-    return change
-
-
 @kernel
 def nearest_neighbours(strobes, scale, nearest):
     """Distance of every state in the later half of a record from the nearest one in the earlier half."""
@@ -213,7 +194,7 @@ def nearest_neighbours(strobes, scale, nearest):
         nearest[p] = np.inf
         for q in range(half):
             if abs(strobes[half + p, 0, 0] - strobes[q, 0, 0]) < nearest[p] * scale[0]:
-                nearest[p] = min(nearest[p], distance_within(strobes, scale, half + p, q, nearest[p]))
+                nearest[p] = min(nearest[p], change_between(strobes, scale, half + p, q))
 
 
 @kernel
