@@ -114,8 +114,8 @@ def by_slot(absent, forceinline=False):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 
     The decorated function is the code for an absent effect (slot None). `function.of(Slot, …)` registers the code
-    for slots of these NamedTuple classes. The code for None returns an argument as it is, or a zero that callers only
-    add, which leaves no instruction. Tested in short chains, batches and the flow with tangents
+    for slots of these NamedTuple classes. The code for None returns an argument unchanged, or a zero that callers
+    only add, which leaves no instruction. Tested in short chains, batches and the flow with tangents
     (tests/kernels/test_machine_code.py). A slot without code is a TypeError that
     names slot and function, in Python and while a kernel is typed.
     """

@@ -1,8 +1,8 @@
 """One chain with SIMD along it: RK4 steps in which no contact opens or closes, eight bodies at a time.
 
 Rows of bodies are blocks of eight; a contact's two bodies come from one block and the next by a shuffle, so that
-every memory access is aligned. The signs of all overlaps are compared from step to step: a step in which one
-changes is not taken here: it is left, with the state before it, to the scalar method, which splits it.
+every memory access is aligned. The signs of all overlaps are compared from step to step. A step in
+which a sign changes is not taken here: the scalar method takes it from the state before, and splits it.
 """
 
 from __future__ import annotations
