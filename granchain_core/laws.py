@@ -31,7 +31,7 @@ class Law:
 
     @property
     def exponent(self) -> float:
-        """a."""
+        """The damping exponent a."""
         return float(_dissipation().exponent(self.slot(1.0)))
 
     @property

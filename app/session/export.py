@@ -54,9 +54,7 @@ def trains_csv(run: Run) -> str:
 
 
 def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
-    """The resonance curves, one row a point: largest forces, and the relative error of the output force where one is
-    claimed.
-    """
+    """The resonance curves, one row a point: largest forces, and the stated relative error of the output force."""
     titles = ["start", "frequency_Hz", "force_N", "elastic_part", "at_the_driver", "claim", "regime", "period"]
 
     def row(start: str, point: CurvePoint) -> list[str]:
@@ -74,7 +72,7 @@ def script(screen: Screen) -> str:
 
 
 def notebook(screen: Screen) -> str:
-    """The same as a Jupyter notebook, with pictures."""
+    """A Jupyter notebook that computes what is on the screen, compares the results and draws them."""
     cells: list[dict[str, Any]] = []
     for words, source in [*_pieces(screen), *_drawings(screen)]:
         if words:

@@ -1,7 +1,7 @@
 """Comparing results: whether two of them are the same steady state.
 
 Periodic results are the same if all their stroboscopic states agree for some shift by whole periods, so that the n
-copies of a period-n orbit count once; first within the errors claimed for them, then, when each has been brought onto
+copies of a period-n orbit count once; first within the errors stated for them, then, when each has been brought onto
 its orbit by Newton's method, within the error of that. Motions that are not periodic are the same if their sections
 lie in each other: the median distance of the states of one to the nearest of the other is no larger than `_APART`
 times that within each.
@@ -147,6 +147,6 @@ def _to_nearest(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> float:
 
 
 def _own(section: np.ndarray, scale: np.ndarray) -> float:
-    """The same between the later and the earlier half of one section."""
+    """Median relative distance of the states of a section's later half to the nearest of its earlier half."""
     half = len(section) // 2
     return _to_nearest(section[half:], section[:half], scale)

@@ -163,7 +163,7 @@ class SeriesTarget:
 
     @property
     def frequencies(self) -> np.ndarray:
-        """None of its own: it is compared at the scene's."""
+        """Empty: a series is compared at the scene's own drive frequency."""
         return np.zeros(0)
 
     @property

@@ -50,7 +50,7 @@ class Driven(Motion):
     max_input_force, max_output_force, max_output_force_elastic : float
         Largest forces from the start to the end [N], between the knots too.
     force_errors : ForceErrors
-        Relative errors of these.
+        Relative errors of these forces.
     error_estimate : float
         Largest error of any displacement over the largest displacement.
     energy_residual : float
@@ -59,7 +59,7 @@ class Driven(Motion):
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost
-        What it took.
+        Computing time, steps and evaluations.
 
     Examples
     --------

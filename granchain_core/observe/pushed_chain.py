@@ -35,8 +35,8 @@ MOST_STEPS = 200_000_000
 class ChainInPieces:
     """A scaled chain whose driver has one polynomial (T − 1, k) between two times [s]; `counts` adds up over its runs.
 
-    `pieces` are scaled, constant term first. `overlap` is about how large overlaps are, in scaled units: the live
-    method's step is for 1, and more makes contacts stiffer.
+    `pieces` are scaled, constant term first. `overlap` is the expected size of overlaps in scaled units: the default
+    step of the fixed-step method is for 1, and larger overlaps make contacts stiffer.
     """
 
     def __init__(self, scaled: ScaledChain, time: np.ndarray, pieces: np.ndarray, overlap: float, stop: Stop,

@@ -66,8 +66,8 @@ def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.n
     """Mean exponent per period of each block of `block` periods, after one block to turn into the leading direction.
 
     `engine` is a fixed-step one at phase 0 and goes on; returns the exponents (blocks,) and its strobes (P, 2, N).
-    Period by period both motions are run by the kernel that everything else uses, the shadow's disturbance is measured
-    and brought back to its first length.
+    In each period the usual kernel runs the chain and the neighbouring trajectory (`shadow`); then the distance between
+    them is measured, and the neighbour is put back to the first distance.
     """
     row, count = 2 * engine.scaled.bodies, (blocks + 1) * block
     shadow = Engine(engine.scaled.scene, engine.setting, engine.samples, stop=engine.stop)

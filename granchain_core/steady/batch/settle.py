@@ -38,7 +38,7 @@ from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
 _DRAFT = 300
 #: Decay per orbit above which an orbit found by extrapolation needs its multipliers.
 _SLOW_DECAY = 0.998
-#: Largest |μ|, by one-sided differences, that settles it.
+#: Such an orbit is accepted if its largest |μ|, by one-sided differences, is below this.
 _SURE = 0.995
 
 

@@ -31,7 +31,7 @@ from .settling import Settling, run_until_settled
 PICTURE_SAMPLES = 96
 #: Periods shown of a motion that is not periodic.
 _SHOWN = 4
-#: Finest steps of a picture without a drive, the fixed-step method's over this.
+#: Finest steps for a motion without a drive: how many of them take the place of one default step.
 _MOST_REFINED = 64
 #: Time after which a first picture is shown although nothing is decided yet [s].
 _PREVIEW_AFTER = 0.012
