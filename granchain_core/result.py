@@ -15,8 +15,20 @@ from .motion import Motion, motion_columns
 from .regime import Regime
 from .scene import Scene
 from .scene.validity import overlap_warnings
+from .state import State
 from .tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
 from .tables.provenance import Attribute
+
+#: Where a run can have begun, its `start`: at rest, with the initial velocities of its scene, or in a given state.
+AT_REST, INITIAL_VELOCITY, GIVEN_STATE = "rest", "initial velocity", "given state"
+RUN_STARTS = (AT_REST, INITIAL_VELOCITY, GIVEN_STATE)
+
+
+def start_words(scene: Scene, start: State | None) -> str:
+    """Where a motion of `scene` from `start` begins, one of `RUN_STARTS`; without a start it is the scene's own."""
+    if start is not None:
+        return GIVEN_STATE
+    return INITIAL_VELOCITY if scene.moves_at_start else AT_REST
 
 
 @dataclass(frozen=True)
@@ -162,7 +174,7 @@ class Run(Motion):
     status : str
         "done", "accuracy-not-reached" or "over-budget".
     start : str
-        Where the motion began: "rest", "initial velocity" or "given state".
+        Where the motion began, one of `RUN_STARTS`: "rest", "initial velocity" or "given state".
     cost : Cost
         What it took.
     jumps : Jumps
@@ -193,7 +205,7 @@ class Run(Motion):
     error_estimate: float | None
     energy_residual: float | None
     cost: Cost
-    start: str = "rest"
+    start: str = AT_REST
     force_errors: ForceErrors = ForceErrors()
     jumps: Jumps = field(default_factory=Jumps)
 
@@ -266,8 +278,10 @@ def residual(energy: np.ndarray | None) -> float | None:
 
 
 def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime, error: float | None,
-             cost: Cost, status: str = "done", force_errors: np.ndarray | None = None) -> Run:
+             cost: Cost, *, start: str, status: str = "done", force_errors: np.ndarray | None = None) -> Run:
     """The `Run` of recorded samples; time counts from drive phase 0, `first_sample` being the index of row 0.
+
+    `start` is where the motion began, one of `RUN_STARTS`.
 
     The arrays of `samples` become the run's and are scaled in place: of a long chain they have hundreds of megabytes,
     and copies took up to a third of a second, in which the computation could not be cancelled.
@@ -286,7 +300,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
         drive_displacement=scene.drive_amplitude * np.sin(2 * np.pi * inside / engine.samples),
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
         status=status, regime=regime, error_estimate=error, energy_residual=residual(samples.energy), cost=cost,
-        force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
+        start=start, force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
     )
 
 

@@ -29,7 +29,7 @@ from .orbits.branch.axis import KnobAxis
 from .orbits.branch.equations import BranchEquations
 from .orbits.branch.point import record_along
 from .orbits.branch.quick import quick_steps
-from .orbits.flow import StroboscopicMap
+from .orbits.stroboscopic_map import StroboscopicMap
 from .scaling import scale_chain
 from .scene import Scene, scene
 from .scene.effects import effects_of
@@ -102,7 +102,7 @@ def _branch(short: Scene) -> None:
 def _observer(short: Scene) -> None:
     """The motion of a chain with its observer, and the observer's tangents."""
     Pair(short, 2).engine.record(2)
-    if not short.cuts_tension:  # such a scene has no multipliers to compute (orbits/flow.py)
+    if not short.cuts_tension:  # such a scene has no multipliers to compute (orbits/stroboscopic_map.py)
         StroboscopicMap(short, 1)(np.zeros(2 * short.N), observer=True)
 
 

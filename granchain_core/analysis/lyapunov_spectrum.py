@@ -20,7 +20,7 @@ import numpy as np
 from ..errors import check_range
 from ..integrate import State
 from ..integrate.methods import ADAPTIVE
-from ..orbits.flow import StroboscopicMap
+from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene
 from ..steady.settling.nearby_orbit import MOST_BEADS
 from ..steady.settling.settling import run_until_settled

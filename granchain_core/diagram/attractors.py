@@ -19,7 +19,7 @@ from ..result import ForceErrors
 from ..scene import Scene
 from ..state import rest
 from ..steady.batch.job import Start
-from ..steady.regime import grows, is_neutral
+from ..steady.regime_criteria import grows, is_neutral
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .attractor import Attractor, Attractors, Origin
@@ -184,8 +184,8 @@ def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
 def _regime(regimes: list[Regime]) -> Regime:
     """The regime of a group, of irregular motions by the mean of their Lyapunov exponents with its standard error.
 
-    The rule is that of steady/regime.py. The error that falls as 1/periods is alike in all of them, and their mean
-    does not reduce it: an exponent counts as zero within the error of a single one.
+    The rule is that of steady/regime_criteria.py. The error that falls as 1/periods is alike in all of them, and their
+    mean does not reduce it: an exponent counts as zero within the error of a single one.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     if regimes[0].period is not None or not known:

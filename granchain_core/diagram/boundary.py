@@ -23,7 +23,7 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
 from ..integrate import State
-from ..orbits.flow import StroboscopicMap
+from ..orbits.stroboscopic_map import StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene
 from ..stop import Stop

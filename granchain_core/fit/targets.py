@@ -19,7 +19,7 @@ from ..scene import Amplitude, Scene
 from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.resonance import peaks_and_valleys
 from ..steady.curve.resonance_curve import resonance_curve
-from ..steady.settling.recorded import settled
+from ..steady.settling.settle import settle
 from ..stop import Stop
 from .trains import Train, moved
 
@@ -177,7 +177,7 @@ class SeriesTarget:
         largest = max(float(np.abs(values).max()) for values in measured.values())
         sigma = self.error or ASSUMED * largest
         try:
-            found = settled(scene, samples=_TRAIN, stop=stop)
+            found = settle(scene, samples=_TRAIN, stop=stop)
         except NumbersFailed:
             count = sum(map(len, measured.values()))
             return Evaluation(np.full(count, FAILED), 0.0, ("failed",), np.full(count, np.nan))

@@ -7,13 +7,13 @@ import numpy as np
 from ..integrate import Engine, adaptive_setting
 from ..observe.drift import observer_drift
 from ..orbits import periodic_orbit
-from ..orbits.flow import StroboscopicMap
+from ..orbits.stroboscopic_map import StroboscopicMap
 from ..run.run import run
 from ..scene import scene
 from ..steady.curve.curve import CurvePoint
 from ..steady.curve.resonance_curve import iter_curve
-from ..steady.regime import find_period
-from ..steady.settling.recorded import settled
+from ..steady.regime_criteria import find_period
+from ..steady.settling.settle import settle
 from .case import Measurement, Picture, Trace
 from .naive_solvers import observed_apart
 from .oracle import Plain
@@ -107,7 +107,7 @@ def chain_claims(count: int) -> tuple[int, int]:
     checked, outside = 0, 0
     for frequency in np.linspace(560.0, 640.0, count):
         chosen = scene("sec2").evolve(f=float(frequency))
-        found = settled(chosen)
+        found = settle(chosen)
         if found.regime.name != "periodic":
             continue
         orbit = periodic_orbit(chosen, found.regime.period, found.state)
@@ -158,10 +158,10 @@ def two_attractors(quick: bool) -> list[Measurement]:
     found, chosen = arrivals(), scene("sec2").evolve(f=_SHARED)
     orbits = {start: periodic_orbit(chosen, p.regime.period, p.state) for start, p in found.items()}
     forces = [p.max_output_force for p in found.values()]
-    again = {start: settled(chosen, p.state) for start, p in found.items()}
+    again = {start: settle(chosen, p.state) for start, p in found.items()}
     same = max(abs(again[s].run.max_output_force / found[s].max_output_force - 1.0) for s in found)
     leading = max(float(np.abs(o.multipliers).max()) for o in orbits.values())
-    named = [settled(chosen).start == "rest", *(one.start == "previous state" for one in again.values()),
+    named = [settle(chosen).start == "rest", *(one.start == "previous state" for one in again.values()),
              run(chosen, periods=0, record=1, samples=4).start == "rest",
              run(chosen, periods=0, record=1, samples=4, start=found["up"].state).start == "given state"]
     return [

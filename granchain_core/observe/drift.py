@@ -11,8 +11,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..orbits import Orbit
-from ..orbits.flow import StroboscopicMap
 from ..orbits.modes import eigenpair
+from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene
 
 #: A multiplier this near to the unit circle counts as on it: the error of the tangents.

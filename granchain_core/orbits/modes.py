@@ -20,9 +20,9 @@ from ..integrate import Engine, adaptive_setting
 from ..steady.poincare import Section
 from ..steady.settling.nearby_orbit import MOST_BEADS
 from ..stop import Stop
-from .flow import TOLERANCE, StroboscopicMap
 from .krylov import arnoldi
 from .orbit import Orbit
+from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
 #: Size of the carried disturbance relative to the motion.
 _SMALL = 1e-5

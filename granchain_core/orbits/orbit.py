@@ -19,7 +19,7 @@ from ..integrate.methods import ADAPTIVE
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
-from ..steady.regime import LONGEST_PERIOD
+from ..steady.regime_criteria import LONGEST_PERIOD
 from ..steady.returns import relative_change
 from ..steady.settling.nearby_orbit import MOST_BEADS
 from ..steady.settling.settling import run_until_settled
@@ -27,8 +27,8 @@ from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
 from ..tables.provenance import Attribute
 from ..tables.words import multiplier_columns, state_columns
-from .flow import Flow, StroboscopicMap, refuse_cut
 from .multiplier_errors import derivative_change, errors_of
+from .stroboscopic_map import Flow, StroboscopicMap, refuse_cut
 
 #: Residual at which an orbit is found, relative to the largest displacement and w.
 CONVERGED = 1e-11

@@ -18,11 +18,11 @@ from ..integrate.methods import jump_errors, setting_of, typical_error
 from ..integrate.stated import Computations, force_differences
 from ..kernels.samples import Samples
 from ..regime import Regime
-from ..result import Cost, Run, residual, run_from
+from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..state import rest
-from ..steady.regime import find_period
+from ..steady.regime_criteria import find_period
 from ..steady.settling.regime_decisions import REMEMBERED, regime_without_continuing
 from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
@@ -133,8 +133,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     regime = _regime(scene, last, periods + record, stop)
     cost = Cost.of(time.perf_counter() - began, total, setting.method)
     first = periods * samples + round(begin.phase * samples)
-    result = run_from(last.engine, last.samples, first, regime, float(error), cost, status, np.array(forces))
-    return replace(result, start=_origin(scene, start))
+    return run_from(last.engine, last.samples, first, regime, float(error), cost, status=status,
+                    force_errors=np.array(forces), start=start_words(scene, start))
 
 
 def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Setting, samples: int,
@@ -161,12 +161,6 @@ def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Sett
         if spent.seconds + _REFINED_COST_RATIO * lap.seconds > budget:
             return now, "over-budget", errors.final(done=False)
         before = now
-
-
-def _origin(scene: Scene, start: State | None) -> str:
-    if start is not None:
-        return "given state"
-    return "initial velocity" if scene.moves_at_start else "rest"
 
 
 def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:

@@ -11,7 +11,7 @@ from granchain_core.orbits.branch import point as points
 from granchain_core.orbits.branch import quick
 from granchain_core.orbits.branch.equations import BranchEquations
 from granchain_core.orbits.branch.steps import LONGEST, next_step, predicted
-from granchain_core.orbits.flow import TOLERANCE, Flow, StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 from granchain_core.steady.returns import relative_change
 
 

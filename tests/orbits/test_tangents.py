@@ -15,8 +15,8 @@ from granchain_core.kernels.forces.peaks import PEAKS
 from granchain_core.kernels.status import CANCELLED
 from granchain_core.orbits import krylov, periodic_orbit
 from granchain_core.orbits import orbit as orbits
-from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.orbits.orbit import sorted_multipliers
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.state import rest
 from granchain_core.stop import Stop
 

@@ -8,7 +8,7 @@ import pytest
 from granchain_core import Scene, State, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
-from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scaling import scale_chain
 from granchain_core.steady.lyapunov import exponents, exponents_in_pairs
 from granchain_core.steady.settling.settling import run_until_settled

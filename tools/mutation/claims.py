@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settling/recorded.py"
+_SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime_criteria.py", "steady/settling/pictures.py"
 _RUN, _STATED, _METHODS = "run/run.py", "integrate/stated.py", "integrate/methods.py"
 
 STEADY = (
@@ -28,7 +28,7 @@ STEADY = (
            "a settled picture states no error of its integration", k.SETTLED),
     Mutant("settled-error-not-amplified", _PICTURES, "    integration /= 1.0 - motion.regime.contraction\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
-    Mutant("relaxed-by-change", "steady/settling/relax.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
+    Mutant("relaxed-by-change", "steady/settling/refine_orbit.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
            "the converged orbit is left too early", k.CLAIMS_SETTLED),
     Mutant("shadow-not-pulled-back", "steady/lyapunov.py", "offset *= _DISTANCE / distance", "offset *= 1.0",
            "the exponent is that of a distance long since large", k.LYAPUNOV),

@@ -8,9 +8,9 @@ from typing import Any
 from panel.io import unlocked
 
 from granchain_core import BadInput, Scene, Settled, State
-from granchain_core.orbits.flow import refuse_cut
+from granchain_core.orbits.stroboscopic_map import refuse_cut
 from granchain_core.steady.poincare import Section
-from granchain_core.steady.regime import LONGEST_PERIOD
+from granchain_core.steady.regime_criteria import LONGEST_PERIOD
 from granchain_core.warm import ORBIT
 
 from ...pictures.multipliers import plane_state

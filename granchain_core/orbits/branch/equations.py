@@ -14,7 +14,7 @@ import numpy as np
 
 from ...steady.returns import least_period
 from ...stop import Stop
-from ..flow import BACK, TOLERANCE, Flow, StroboscopicMap
+from ..stroboscopic_map import BACK, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
 from .newton import ROUGH, Near, Newton
 from .quick import QuickMap, quick_steps

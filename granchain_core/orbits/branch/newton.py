@@ -20,7 +20,7 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...steady.returns import relative_change
-from ..flow import TOLERANCE, Flow, StroboscopicMap
+from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
 #: Tolerance of the rough map, the flow where exactness is not needed.
 ROUGH = 1e-10

@@ -18,7 +18,7 @@ from ...scene import Scene
 from ...state import rest
 from ...stop import Stop
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
-from ..regime import SLOW_RECORD, some_changes_shrink
+from ..regime_criteria import SLOW_RECORD, some_changes_shrink
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
 from ..settling.settling import MOST_STEPS
 from ..steady_state import SteadyState

@@ -6,7 +6,8 @@ Coarse run: `check_coarse` (kernels/batch/period_end.py) bounds the distance to 
 extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run, a third of the step:
 `check_fine`, until that bound is small or six extrapolations are spent; what is left goes into the stated error, with
 the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, twice, as many at a
-time as there are pairs of members. What is still undecided is marked `doubtful` and settled alone (settling/alone.py).
+time as there are pairs of members. What is still undecided is marked `doubtful` and settled alone
+(settling/single_chain.py).
 """
 
 from __future__ import annotations
@@ -26,7 +27,7 @@ from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
 from ..lyapunov import MOST_APART, exponents_in_pairs
-from ..regime import agree, clearly_chaotic, find_period, regime_from_exponents, undecided
+from ..regime_criteria import agree, clearly_chaotic, find_period, regime_from_exponents, undecided
 from ..settling.nearby_orbit import MOST_BEADS, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK, REMEMBERED
 from ..steady_state import SteadyState

@@ -18,7 +18,7 @@ from ...scheduler import dealt, results
 from ...stop import Stop
 from ..batch.settle import batch_results
 from ..batch.threads import on_all_cores
-from ..settling.alone import safe_state, settled_alone
+from ..settling.single_chain import safe_state, settled_alone
 from .curve import Curve, CurvePoint
 from .order import used_and_missing
 

@@ -17,7 +17,7 @@ from ...errors import NumbersFailed
 from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
 from ...stop import Stop
-from ..regime import changes
+from ..regime_criteria import changes
 from ..returns import shorter_periods, sizes
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
@@ -48,7 +48,7 @@ _SLOW_DIRECTION = 0.3
 #: Length to which a departure is enlarged along the growing directions, relative to the motion.
 _ENLARGED_TO = 3e-3
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period. The fixed-step map
-#: is known less well than the one of `granchain_core/orbits/flow.py`.
+#: is known less well than the one of `granchain_core/orbits/stroboscopic_map.py`.
 _BACK = 1e-6
 
 

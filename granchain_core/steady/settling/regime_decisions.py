@@ -15,7 +15,7 @@ from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
 from ..lyapunov import exponents
-from ..regime import agree, changes, clearly_chaotic, converging, departing, regime_from_exponents, undecided
+from ..regime_criteria import agree, changes, clearly_chaotic, converging, departing, regime_from_exponents, undecided
 from .nearby_orbit import MOST_BEADS, NEAR, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.

@@ -1,8 +1,8 @@
 """Running a chain to its steady state until its regime is decided.
 
-The fixed-step method runs from the start until the distance bound is small (regime.py) or the regime is decided
-otherwise (regime_decisions.py). A periodic orbit is then computed again with finer steps (relax.py); recorded.py
-records what was reached.
+The fixed-step method runs from the start until the distance bound is small (steady/regime_criteria.py) or the regime
+is decided otherwise (regime_decisions.py). A periodic orbit is then computed again with finer steps (refine_orbit.py);
+pictures.py records what was reached.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
-from ..regime import find_period
+from ..regime_criteria import find_period
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
 #: Most steps of the fixed-step method while settling: about half a minute.

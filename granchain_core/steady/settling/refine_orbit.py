@@ -7,7 +7,7 @@ import numpy as np
 from ...integrate import Engine, Setting, State, method_for
 from ...kernels.strobes.extrapolation import ORBITS
 from ...scene import Scene
-from ..regime import changes
+from ..regime_criteria import changes
 from .reduced_rank import reduced_rank, within_reach
 from .settling import Settling
 
@@ -24,7 +24,7 @@ def orbit_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
     return method_for(max(1e-13, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)), scene.cuts_tension)
 
 
-def relax(settling: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
+def refined_orbit(settling: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
     """The finer method on its own orbit, and the bound on the distance left.
 
     The orbit of the fixed-step method differs from the true one by its error; a few more periods remove it. With r the

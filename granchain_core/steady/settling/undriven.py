@@ -1,0 +1,48 @@
+"""The motion of a chain without a drive, which has no steady state: from its start, to the accuracy asked for."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+from ...integrate import Counts, Engine, Setting, State, fixed_step_setting
+from ...integrate.methods import typical_error
+from ...kernels.samples import Samples
+from ...regime import Regime
+from ...result import Cost, run_from, start_words
+from ...scene import Scene
+from ...state import rest
+from ...stop import Stop
+from ..orbit_errors import errors_between
+from .settled import Settled
+
+#: Finest steps, the fixed-step method's over this.
+_MOST_REFINED = 64
+
+
+def undriven_motion(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
+    """The motion of a chain without a drive from its start, over the time 1/f, to the accuracy asked for."""
+    begin, setting, total = rest(scene) if start is None else start, fixed_step_setting(), Counts()
+
+    def recorded(chosen: Setting) -> tuple[Engine, Samples]:
+        engine = Engine(scene, chosen, samples, stop=stop)
+        engine.start(begin)
+        rows = engine.record(samples)
+        total.array += engine.counts.array
+        return engine, rows
+
+    coarse, before = recorded(setting)
+    while True:
+        setting = setting.finer_than(coarse.scaled, samples)
+        fine, rows = recorded(setting)
+        largest = float(np.abs(rows.displacement).max())
+        change = float(np.abs(rows.displacement - before.displacement).max()) / largest if largest > 0 else 0.0
+        if change <= scene.accuracy or setting.refine >= _MOST_REFINED:
+            break
+        coarse, before = fine, rows
+    regime, cost = Regime.undriven(1), Cost.of(time.perf_counter() - began, total, setting.method)
+    forces = errors_between(fine, coarse.maxima, 0.0, 0.0)
+    run = run_from(fine, rows, 0, regime, max(change, typical_error(setting)), cost, force_errors=forces,
+                   start=start_words(scene, start))
+    return Settled(run, regime, begin, preview=False, final=True)
