@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .diagram import Attractor, Attractors, Diagram, attractors, diagram
+    from .driven import Driven, Signal, drive
     from .fit import Fit, fit
-    from .observe import Driven, Observation, Signal, drive, observe
+    from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
     from .orbits import periodic_orbit as orbit
@@ -57,7 +58,7 @@ _MODULES = {
     "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
     "diagram": ("Attractor", "Attractors", "Diagram", "attractors", "diagram"),
-    "observe": ("Driven", "Observation", "Signal", "drive", "observe"),
+    "driven": ("Driven", "Signal", "drive"), "observe": ("Observation", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),

@@ -14,9 +14,10 @@ import numpy as np
 
 from ..errors import BadInput, check_range
 from ..integrate import Counts, Engine, Setting, State, fixed_step_setting, method_for
-from ..integrate.methods import jump_errors, setting_of, typical_error
-from ..integrate.stated import Computations, force_differences
+from ..integrate.methods import setting_of
+from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
+from ..motion import MOST_RECORDED
 from ..regime import Regime
 from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
@@ -30,8 +31,6 @@ from .run_checkpoints import Reached, RunCheckpoints
 
 #: Most drive periods of one run.
 MOST_PERIODS = 10_000_000
-#: Most recorded values of one run: rows times beads.
-MOST_VALUES = 50_000_000
 #: Stated error above which a motion may be chaotic: finer computations do not help then.
 _CHAOS_SUSPECTED_ABOVE = 0.3
 #: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.
@@ -168,9 +167,10 @@ def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
                                    ("samples", samples, 1, 1_000_000)):
         check_range(f"{name} =", value, low, high)
     rows = record * samples * scene.N
-    if rows > MOST_VALUES:
+    if rows > MOST_RECORDED:
+        most = max(1, MOST_RECORDED // (samples * scene.N))
         raise BadInput(f"{record} periods of {samples} samples for {scene.N} beads are {rows:.1e} values; at most "
-                       f"{MOST_VALUES:.0e} are recorded: record {max(1, MOST_VALUES // (samples * scene.N))} periods.")
+                       f"{MOST_RECORDED:.0e} are recorded: record {most} periods.")
 
 
 def _attempt(reached: Reached, sizes: tuple[int, int], progress: Callable[[float], None] | None, total: Counts,
@@ -205,29 +205,21 @@ def _strobes(rows: Samples, samples: int) -> np.ndarray:
     return np.stack([rows.displacement[::samples], rows.velocity[::samples]], axis=1)
 
 
-def _difference(now: _Attempt, before: _Attempt) -> float:
-    """Largest difference of any displacement sample over the largest displacement."""
-    largest = float(np.abs(now.samples.displacement).max())
-    if largest == 0.0:
-        return 0.0
-    return float(np.abs(now.samples.displacement - before.samples.displacement).max()) / largest
-
-
 def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
     """Relative differences (4,) of the displacements and of the largest input, output and elastic output force.
 
     The differences of forces are taken with a factor for caution.
     """
     jumps = now.engine.scaled.scene.forces_jump
-    return np.array([_difference(now, before), *force_differences(now.engine.maxima, before.engine.maxima, jumps)])
+    return np.array([relative_difference(now.samples.displacement, before.samples.displacement),
+                     *force_differences(now.engine.maxima, before.engine.maxima, jumps)])
 
 
 def _least(now: _Attempt, setting: Setting) -> np.ndarray:
-    """Lower limits of the stated errors (4,): typical for this step, and for forces at jumps `jump_errors`."""
+    """Lower limits of the stated errors (4,)."""
     engine = now.engine
     step = setting.step(engine.scaled, engine.samples)
-    jumps = jump_errors(setting, engine.scaled, step, engine.jumps, engine.maxima)
-    return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])
+    return least_errors(setting, engine.scaled, step, engine.jumps, engine.maxima)
 
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime:

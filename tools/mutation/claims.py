@@ -43,8 +43,8 @@ STATED = (
            "two computations by the same steps are compared", k.SAME_STEPS),
     Mutant("error-without-floor", _STATED, "np.maximum(least, self.rounding))", "self.rounding)",
            "an error of exactly nothing is stated", k.SAME_STEPS),
-    Mutant("error-of-last-sample", _RUN, "np.abs(now.samples.displacement - before.samples.displacement).max()) / largest",
-           "np.abs(now.samples.displacement - before.samples.displacement)[0].max()) / largest",
+    Mutant("error-of-last-sample", _STATED, "np.abs(one - other).max()) / largest",
+           "np.abs(one - other)[0].max()) / largest",
            "the first sample's difference is stated for all", k.HONESTY),
     Mutant("done-too-early", _RUN, "if error <= scene.accuracy:\n", "if error <= 1e4 * scene.accuracy:\n",
            "a run is called done that is not as accurate as asked for",
@@ -86,7 +86,7 @@ OBSERVED = (
            "between samples a measured force is above both, or below 0", k.SAMPLING),
     Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.rate ** np.arange(4)", "/ scales.rate ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observe/observation.py", "=IRREGULAR * _difference(", "=1e-3 * IRREGULAR * _difference(",
+    Mutant("loss-between-samples", "observe/observation.py", "=IRREGULAR * relative_difference(", "=1e-3 * IRREGULAR * relative_difference(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 

@@ -9,9 +9,8 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
-import numpy as np
-
 from ...integrate import Engine
+from ...integrate.stated import relative_difference
 from ...result import Cost, run_from
 from ..orbit_errors import errors_between
 from .refine_orbit import refined_orbit
@@ -50,8 +49,7 @@ def orbit_picture(motion: Settling, samples: int, began: float, origin: str) -> 
     coarse = Engine(motion.scene, engine.setting, samples, stop=motion.stop)
     coarse.start(start)
     other = coarse.record(n * samples)
-    largest = float(np.abs(record.displacement).max())
-    integration = float(np.abs(record.displacement - other.displacement).max()) / largest if largest > 0 else 0.0
+    integration = relative_difference(record.displacement, other.displacement)
     fine.counts.array += motion.engine.counts.array + engine.counts.array + coarse.counts.array
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(motion.regime, distance=distance)

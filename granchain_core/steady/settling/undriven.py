@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import time
 
-import numpy as np
-
 from ...integrate import Counts, Engine, Setting, State, fixed_step_setting
 from ...integrate.methods import typical_error
+from ...integrate.stated import relative_difference
 from ...kernels.samples import Samples
 from ...regime import Regime
 from ...result import Cost, run_from, start_words
@@ -36,8 +35,7 @@ def undriven_motion(scene: Scene, start: State | None, samples: int, began: floa
     while True:
         setting = setting.finer_than(coarse.scaled, samples)
         fine, rows = recorded(setting)
-        largest = float(np.abs(rows.displacement).max())
-        change = float(np.abs(rows.displacement - before.displacement).max()) / largest if largest > 0 else 0.0
+        change = relative_difference(rows.displacement, before.displacement)
         if change <= scene.accuracy or setting.refine >= _MOST_REFINED:
             break
         coarse, before = fine, rows
