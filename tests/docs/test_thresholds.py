@@ -11,9 +11,11 @@ import pytest
 from documents import ROOT
 
 from granchain_core import orbit, scene
+from granchain_core.integrate import methods
+from granchain_core.kernels.batch import period_end
 from granchain_core.regime import Regime
 from granchain_core.steady import regime_criteria
-from granchain_core.steady.settling import nearby_orbit, regime_decisions
+from granchain_core.steady.settling import nearby_orbit, refine_orbit, regime_decisions
 
 MODEL, OBSERVERS, DESIGN, REGIMES = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
                                      for name in ("model", "observers", "design", "regimes"))
@@ -37,8 +39,12 @@ def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
     assert len(ROWS) == REGIMES.count(".py` |") > 20
     assert {file for _, _, file in ROWS} == {
         "kernels/strobes/periodicity", "kernels/batch/period_end", "steady/regime_criteria", "steady/lyapunov",
-        "steady/settling/regime_decisions",
+        "steady/settling/regime_decisions", "steady/steady_state", "regime",
         "steady/settling/nearby_orbit", "steady/batch/settle"}
+
+
+def test_a_batch_keeps_the_strobes_on_which_a_decision_is_based() -> None:
+    assert period_end.STROBES_KEPT >= regime_decisions.REMEMBERED
 
 
 def test_the_caps_of_the_contraction_are_the_pages() -> None:
@@ -71,6 +77,12 @@ def test_the_limit_of_the_return_distance_is_the_pages() -> None:
 def test_the_decisions_the_design_page_names_are_the_codes() -> None:
     assert f"a growth of {regime_criteria.CLEAR_GROWTH:g}," in DESIGN and f"the last {regime_decisions.REMEMBERED} strobes" in DESIGN
     assert f"give |μ| to about {number(nearby_orbit.UNSURE)}" in DESIGN
+
+
+def test_the_setting_of_a_refined_orbit_is_the_design_pages() -> None:
+    part, most = refine_orbit.INTEGRATION_PART, refine_orbit.LEAST_ACCURATE
+    assert (f"{part:g} · accuracy · (1 − r), with the accuracy at most {number(most)} and the contraction factor r, "
+            f"is below {number(methods.FIXED_STEP_IS_CHEAPER)}") in DESIGN
 
 
 @pytest.mark.parametrize(("name", "f", "leading", "pages"), [

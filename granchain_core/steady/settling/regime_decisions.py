@@ -26,7 +26,7 @@ MOST_PERIODS = 4000
 EXPONENT_BLOCKS = 10
 #: Drive periods in a block.
 PERIODS_IN_BLOCK = 20
-#: Strobes on which a decision is based.
+#: Strobes on which a decision is based. A batch keeps a few more (`STROBES_KEPT` in kernels/batch/period_end.py).
 REMEMBERED = 420
 #: Measurements of the Lyapunov exponent for a motion that is not followed any further.
 _MEASUREMENTS = 3

@@ -12,7 +12,7 @@ from ...regime import Regime
 from ...scene import Scene
 from ...stop import Stop
 from ..orbit_errors import errors_between
-from ..steady_state import SteadyState
+from ..steady_state import IRREGULAR_PERIODS, SteadyState
 from .refine_orbit import refined_orbit
 from .settling import Settling, run_until_settled
 
@@ -25,7 +25,7 @@ def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     settling = run_until_settled(scene, start, stop)
     if settling.regime.name == "periodic":
         return _on_its_orbit(settling)
-    maxima = settling.maxima[-min(len(settling.maxima), 100) :].max(axis=0) * settling.engine.scaled.scales.force
+    maxima = settling.maxima[-IRREGULAR_PERIODS:].max(axis=0) * settling.engine.scaled.scales.force
     return SteadyState(scene, maxima, settling.regime, None, settling.engine.state)
 
 
