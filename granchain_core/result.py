@@ -225,9 +225,9 @@ class Run(Motion):
     def _single(self) -> dict[str, Column]:
         """Largest forces, errors and regime: columns without an axis."""
         forces = np.array([getattr(self, name) for name in MAXIMA])
+        kinds = ("input", "output", "elastic output")
         errors = {name: Column(np.array(error), (), "1", f"relative error of the largest {force} force, NaN if unknown")
-                  for name, error, force in zip(ERRORS, self.force_errors.row, ("input", "output", "elastic output"),
-                                                strict=True)}
+                  for name, error, force in zip(RUN_ERRORS, self.force_errors.row, kinds, strict=True)}
         return {**force_columns(forces, (), "over the recorded time"), **errors,
                 "error_estimate_displacement": Column(
                     np.array(or_nan(self.error_estimate)), (), "1",
@@ -244,7 +244,7 @@ class Run(Motion):
                 "energy_residual": or_nan(self.energy_residual), "samples_per_period": self.samples,
                 "cost": json.dumps(asdict(self.cost)), "regime": json.dumps(asdict(self.regime)),
                 **{name: getattr(self, name) for name in MAXIMA},
-                **dict(zip(ERRORS, self.force_errors.row, strict=True))}
+                **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 
     def summary(self) -> list[str]:
         """Regime, largest forces and errors."""
@@ -254,7 +254,7 @@ class Run(Motion):
 
 
 #: Attributes with the relative errors of a run's largest forces.
-ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
+RUN_ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
 
 
 def said_forces(found: HasForces) -> list[str]:

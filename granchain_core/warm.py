@@ -30,23 +30,23 @@ from .orbits.branch.equations import BranchEquations
 from .orbits.branch.point import record_along
 from .orbits.branch.quick import quick_steps
 from .orbits.stroboscopic_map import StroboscopicMap
+from .pieces import (
+    ACCURACY_KERNELS,
+    ADAPTIVE_KERNELS,
+    BRANCH_KERNELS,
+    COST_ACCOUNT_KERNELS,
+    COST_KERNELS,
+    CURVE_KERNELS,
+    FIXED_STEP_KERNELS,
+    OBSERVER_KERNELS,
+    ORBIT_KERNELS,
+)
 from .scaling import scale_chain
 from .scene import Scene, scene
 from .scene.effects import effects_of
 from .state import rest
 from .steady.lyapunov import exponents, exponents_in_pairs
 from .stop import Stop
-
-#: Names of the pieces of one structure's kernels.
-CURVE = "curve"
-ADAPTIVE = "adaptive"
-FIXED_STEP = "fixed step"
-ORBIT = "orbit"
-BRANCH = "branch"
-OBSERVER = "observer"
-ACCURACY = "accuracy"
-COST = "cost"
-COST_ACCOUNT = "cost account"
 
 
 def structure(shown: Scene) -> str:
@@ -118,9 +118,10 @@ def _cost(balance: bool) -> Callable[[Scene], None]:
 
 #: Every piece with the function that compiles it by a short run, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
-    CURVE: _curve, ADAPTIVE: _engine(adaptive_setting(1e-3)), FIXED_STEP: _engine(fixed_step_setting()),
-    ORBIT: _orbit, BRANCH: _branch, OBSERVER: _observer,
-    ACCURACY: compile_methods, COST: _cost(balance=False), COST_ACCOUNT: _cost(balance=True),
+    CURVE_KERNELS: _curve, ADAPTIVE_KERNELS: _engine(adaptive_setting(1e-3)),
+    FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
+    ORBIT_KERNELS: _orbit, BRANCH_KERNELS: _branch, OBSERVER_KERNELS: _observer,
+    ACCURACY_KERNELS: compile_methods, COST_KERNELS: _cost(balance=False), COST_ACCOUNT_KERNELS: _cost(balance=True),
 }
 
 
@@ -132,7 +133,7 @@ def compile_piece(shown: Scene, piece: str) -> None:
             _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 
-def is_warm(shown: Scene, pieces: Iterable[str] = (FIXED_STEP, ADAPTIVE)) -> bool:
+def is_warm(shown: Scene, pieces: Iterable[str] = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)) -> bool:
     """Whether these pieces of the scene's structure have been compiled on this machine."""
     if CACHE_FOLDER is None:
         return False

@@ -25,7 +25,7 @@ from bokeh.plotting import figure
 from bokeh.transform import factor_cmap, transform
 
 from granchain_core.diagram import Axis, Diagram, Grid
-from granchain_core.diagram.cells import REGIMES as NAMES
+from granchain_core.diagram.cells import CELL_REGIMES as NAMES
 from granchain_core.diagram.cells import empty_cells
 
 from ..format import in_words, short_error

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import Cancelled, NumbersFailed
 from ..integrate import Counts
+from ..integrate.adaptive import LEAST_STEPS_PER_PERIOD
 from ..kernels.dop853.step import evaluate
 from ..kernels.status import EVALUATIONS
 from ..scaling import ScaledChain, scale_chain
@@ -43,8 +44,6 @@ SOLVERS: dict[str, Solver] = {
                "Hairer, Nørsett & Wanner 1993, section II.5"),
     )
 }
-#: The largest step is a period over this number, so that the driver is never stepped over.
-_LEAST_STEPS = 16
 #: Least relative tolerance SciPy takes without changing it.
 _LEAST_RTOL = 3e-14
 #: A contact event nearer to a step's start than this fraction of the period is the event that the step started from.
@@ -117,7 +116,7 @@ def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray,
 
     def start(t: float, state: np.ndarray, end: float) -> Any:
         make = getattr(integrate, solver.name)
-        return make(motion, t, state, end, max_step=period / _LEAST_STEPS, atol=tolerance,
+        return make(motion, t, state, end, max_step=period / LEAST_STEPS_PER_PERIOD, atol=tolerance,
                     rtol=max(tolerance, _LEAST_RTOL))
 
     one, event = start(0.0, inner, period), period

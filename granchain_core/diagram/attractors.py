@@ -24,7 +24,7 @@ from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .attractor import Attractor, Attractors, Origin
 from .compute import settle_on_all_cores
-from .sameness import LIVE_SETTING, Found, found, merged
+from .sameness import SECTION_SETTING, Found, found, merged
 
 #: Frequencies of a sweep before the one asked for.
 _SWEEP = 8
@@ -122,7 +122,7 @@ def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
     u, v = orbit.state.displacement, orbit.state.velocity
     for one in group:
         shape = np.random.default_rng(one.result.number).standard_normal((2, len(u)))
-        engine = Engine(orbit.scene, LIVE_SETTING, 1, stop=stop)
+        engine = Engine(orbit.scene, SECTION_SETTING, 1, stop=stop)
         engine.start(State(u + _BESIDE * np.abs(u).max() * shape[0], v + _BESIDE * np.abs(v).max() * shape[1]))
         engine.periods(_RUN_ON)
         yield Start(orbit.scene, engine.state, one.result.number)
@@ -163,7 +163,7 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
 
 def _run_on(scene: Scene, state: State, stop: Stop | None) -> tuple[State, np.ndarray, float]:
     """State after `_PASS` periods by the fixed-step method, scaled strobes on the way, the unit of velocity [m/s]."""
-    engine = Engine(scene, LIVE_SETTING, 1, stop=stop)
+    engine = Engine(scene, SECTION_SETTING, 1, stop=stop)
     engine.start(state)
     strobes, _ = engine.periods(_PASS)
     return engine.state, strobes, engine.scaled.scales.velocity

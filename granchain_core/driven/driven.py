@@ -19,7 +19,7 @@ from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..motion import MOST_RECORDED, Motion, motion_columns
-from ..result import ERRORS, Cost, ForceErrors, residual, said_forces
+from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
@@ -102,7 +102,7 @@ class Driven(Motion):
         return {**provenance(self.scene, self.cost.method, self.error_estimate), "status": self.status,
                 "drive": self.signal.words, "energy_residual": self.energy_residual,
                 "cost": json.dumps(asdict(self.cost)), **{name: getattr(self, name) for name in MAXIMA},
-                **dict(zip(ERRORS, self.force_errors.row, strict=True))}
+                **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 
     def summary(self) -> list[str]:
         """The signal, largest forces and errors."""

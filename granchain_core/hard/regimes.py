@@ -28,9 +28,9 @@ def normal_form(rng: np.random.Generator, kind: str, closeness: float,
                 count: int) -> tuple[np.ndarray, np.ndarray, int]:
     """Strobes (count + 1, 2, N) of a map near a bifurcation, its orbit (q, 2, N) and the orbit's period q.
 
-    In the coordinates of the normal form one direction has the multiplier 1 − ε (fold), −(1 − ε) (flip) or a pair
-    (1 − ε)e^{±iθ} (Neimark–Sacker) with a quadratic or cubic term; the others decay fast. A random linear change of
-    coordinates hides it, and rounding of 1e-15 is added. Beyond a flip the orbit has period 2.
+    In the coordinates of the normal form one direction has the multiplier 1 − ε (fold), −(1 − ε) (period doubling) or a
+    pair (1 − ε)e^{±iθ} (Neimark–Sacker) with a quadratic or cubic term; the others decay fast. A random linear change
+    of coordinates hides it, and rounding of 1e-15 is added. Beyond a period doubling ("doubled") the period is 2.
     """
     size = 2 * _BEADS
     basis = np.linalg.qr(rng.standard_normal((size, size)))[0] + 0.2 * rng.standard_normal((size, size))
@@ -45,7 +45,7 @@ def normal_form(rng: np.random.Generator, kind: str, closeness: float,
         new = fast * x
         if kind == "fold":
             new[0], new[1] = (1.0 - closeness) * x[0] - 0.5 * x[0] ** 2, 0.0
-        elif kind == "flip":
+        elif kind == "period_doubling":
             new[0], new[1] = -(1.0 - closeness) * x[0] + 0.5 * x[0] ** 3, 0.3 * x[1]
         elif kind == "doubled":
             new[0], new[1] = -(1.0 + 0.5 * closeness) * x[0] + x[0] ** 3, 0.3 * x[1]
@@ -53,7 +53,7 @@ def normal_form(rng: np.random.Generator, kind: str, closeness: float,
             z = turn * (x[0] + 1j * x[1]) * (1.0 - 0.5 * abs(x[0] + 1j * x[1]) ** 2)
             new[0], new[1] = z.real, z.imag
         x = new
-    # beyond the flip the two points ±√(ε/2) are exchanged, with multiplier (1 − ε)² there
+    # beyond the period doubling the two points ±√(ε/2) are exchanged, with multiplier (1 − ε)² there
     orbit = np.array([0.0]) if kind != "doubled" else np.sqrt(0.5 * closeness) * np.array([1.0, -1.0])
     points = np.stack([middle + basis[:, 0] * a for a in orbit])
     return out.reshape(-1, 2, _BEADS), points.reshape(-1, 2, _BEADS), len(orbit)
@@ -72,7 +72,7 @@ def claims(count: int, seed: int) -> tuple[int, int, int]:
     rng = np.random.default_rng(seed)
     made, wrong, slow = 0, 0, 0
     for _ in range(count):
-        kind = str(rng.choice(["fold", "flip", "doubled", "neimark-sacker"]))
+        kind = str(rng.choice(["fold", "period_doubling", "doubled", "neimark_sacker"]))
         closeness = 10.0 ** rng.uniform(-5.0, -0.5)
         strobes, orbit, period = normal_form(rng, kind, closeness, _STROBES)
         found = find_period(strobes)
@@ -103,7 +103,7 @@ def near_bifurcation(quick: bool) -> list[Measurement]:
 
 
 def chain_claims(count: int) -> tuple[int, int]:
-    """Settled chains near the flip of section 2's chain, and those further from Newton's orbit than they state."""
+    """Settled chains near a period doubling of `sec2`, and those further from Newton's orbit than they state."""
     checked, outside = 0, 0
     for frequency in np.linspace(560.0, 640.0, count):
         chosen = scene("sec2").evolve(f=float(frequency))
@@ -121,7 +121,7 @@ def chain_claims(count: int) -> tuple[int, int]:
 
 def near_bifurcation_picture() -> Picture:
     """Distance from the orbit of a slow approach, the change per period, and our bound where claimed."""
-    strobes, orbit, _ = normal_form(np.random.default_rng(8), "flip", 0.02, 1_000)
+    strobes, orbit, _ = normal_form(np.random.default_rng(8), "period_doubling", 0.02, 1_000)
     scale, marks = np.abs(strobes).max(axis=(0, 2)), np.arange(20, 1_000, 20)
     true = [distance(strobes[i], orbit, scale) for i in marks]
     change = [float((np.abs(strobes[i] - strobes[i - 2]).max(axis=1) / scale).max()) for i in marks]

@@ -23,7 +23,7 @@ from .counts import Counts
 from .stepper import empty_samples
 
 #: More steps than this are refused: minutes of computing.
-MOST_STEPS = 200_000_000
+MOST_RECORD_STEPS = 200_000_000
 #: Most halvings of the steps: beyond it rounding and the error of the events dominate.
 MOST_HALVINGS = 7
 
@@ -69,9 +69,9 @@ class ChainInPieces:
         scaled, n, row = self.scaled, self.scaled.beads, self.scaled.bodies
         if len(start.displacement) != n:
             raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
-        if self.steps(halvings) > MOST_STEPS:
-            raise BadInput(f"The record needs {self.steps(halvings):.1e} steps; at most {MOST_STEPS:.0e} are allowed: "
-                           "give a shorter record or ask for less accuracy.")
+        if self.steps(halvings) > MOST_RECORD_STEPS:
+            raise BadInput(f"The record needs {self.steps(halvings):.1e} steps; at most {MOST_RECORD_STEPS:.0e} are "
+                           "allowed: give a shorter record or ask for less accuracy.")
         y = np.zeros(scaled.size)
         displacement, velocity = scaled.rows(y)
         displacement[:] = start.displacement / scaled.scales.length

@@ -21,7 +21,7 @@ from ..scaling import scales_of
 from ..scene import Scene
 from ..steady.regime_criteria import LONGEST_PERIOD
 from ..steady.returns import relative_change
-from ..steady.settling.nearby_orbit import MOST_BEADS
+from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
@@ -260,7 +260,7 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
 
 
 def _dense(x: np.ndarray) -> bool:
-    return len(x) <= 2 * MOST_BEADS
+    return len(x) <= 2 * MOST_BEADS_WITH_MULTIPLIERS
 
 
 def _flow(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Flow:

@@ -25,7 +25,7 @@ from ..result import ForceErrors
 from ..scene import Amplitude, Scene
 from ..state import rest
 from ..steady.curve.curve import Curve, CurvePoint
-from ..steady.curve.order import STARTS
+from ..steady.curve.order import CURVE_STARTS
 from ..tables import MAXIMA
 from ..tables.words import ERRORS, EVIDENCE, MORE_EVIDENCE
 from .writing import or_none, write_file, write_result
@@ -62,7 +62,7 @@ def _read(file: File) -> Curve:
     proven = _evidence(file, shape)
     points = [_point(scene, *one) for one in zip(numbers.T, periods, names, outcomes, proven, strict=True)]
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
-    return Curve(scene, one_of("start", file.text("start"), STARTS), points, file.number("wall_s"), amplitude)
+    return Curve(scene, one_of("start", file.text("start"), CURVE_STARTS), points, file.number("wall_s"), amplitude)
 
 
 def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:

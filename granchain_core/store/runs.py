@@ -17,7 +17,7 @@ from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..regime import NAMES, Regime
-from ..result import AT_REST, ERRORS, GIVEN_STATE, RUN_STARTS, Cost, ForceErrors, Jumps, Run
+from ..result import AT_REST, GIVEN_STATE, RUN_ERRORS, RUN_STARTS, Cost, ForceErrors, Jumps, Run
 from ..tables import MAXIMA
 from .writing import or_none
 
@@ -72,7 +72,7 @@ def _read(file: File) -> Run:
         regime=_regime(file), cost=_cost(file), jumps=_read_jumps(file, scene.N),
         error_estimate=or_none(file.number("accuracy_reached")),
         energy_residual=or_none(file.number("energy_residual")),
-        force_errors=ForceErrors(*(or_none(file.number(name, absent=np.nan)) for name in ERRORS)),
+        force_errors=ForceErrors(*(or_none(file.number(name, absent=np.nan)) for name in RUN_ERRORS)),
         **arrays, **largest,  # type: ignore[arg-type]  # names of its fields
     )
 

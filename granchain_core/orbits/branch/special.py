@@ -5,9 +5,9 @@ period_doubling  a real multiplier passes −1
 neimark_sacker   a complex pair passes the unit circle
 grazing          a contact touches or separates once more, or once less, along the orbit
 
-Each change lies between two computed orbits. For flips, Neimark–Sacker points and grazings the interval is that of the
-two orbits. A fold's extends beyond them by a bound from both tangents, which assumes that the branch turns by less than
-30° between them. Test functions only choose the next orbit to compute, so a wrong one cannot make an interval wrong.
+Each change lies between two computed orbits, which are the ends of its interval; only a fold's extends beyond them, by
+a bound from both tangents, which assumes that the branch turns by less than 30° between them. Test functions only
+choose the next orbit to compute, so a wrong one cannot make an interval wrong.
 """
 
 from __future__ import annotations
@@ -21,6 +21,9 @@ from .axis import KnobAxis
 from .between import Between
 from .point import BranchPoint
 
+#: Where stability changes, and all kinds of special points; results, files and JSON spell them so.
+BIFURCATIONS = ("fold", "period_doubling", "neimark_sacker")
+SPECIAL_KINDS = (*BIFURCATIONS, "grazing")
 #: An interval is narrow enough at this width relative to the knob, or to a thousandth of the range's larger end.
 WIDTH = 1e-5
 #: The tangents at both ends of a bracket meet within this factor times its length, because the branch turns by at most
@@ -40,6 +43,7 @@ _DEEPEST = 60
 class SpecialPoint:
     """A special point: its kind, the knob there, the interval that holds it, and the two orbits around it.
 
+    `kind` is one of `SPECIAL_KINDS`.
     `contact` and `event` ("touch" or "separation") belong to a grazing; `multiplier` is the one that passes the unit
     circle.
     """

@@ -20,7 +20,7 @@ from ...stop import Stop
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
 from ..regime_criteria import SLOW_RECORD, some_changes_shrink
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
-from ..settling.settling import MOST_STEPS
+from ..settling.settling import MOST_SETTLING_STEPS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
 #: Steps of the finer run of a batch for one of the coarse run.
@@ -68,7 +68,7 @@ class Job:
     @property
     def affordable_periods(self) -> int:
         """Periods of the coarse run that the budget of steps allows."""
-        return max(2, MOST_STEPS // self.steps)
+        return max(2, MOST_SETTLING_STEPS // self.steps)
 
     @property
     def affordable(self) -> bool:

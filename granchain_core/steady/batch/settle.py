@@ -28,7 +28,7 @@ from ...state import rest
 from ...stop import Stop
 from ..lyapunov import MOST_APART, exponents_in_pairs
 from ..regime_criteria import agree, clearly_chaotic, find_period, regime_from_exponents, undecided
-from ..settling.nearby_orbit import MOST_BEADS, seen_modulus
+from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK, REMEMBERED
 from ..steady_state import SteadyState
 from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
@@ -205,7 +205,8 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
 def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
     """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
-    if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW_DECAY or scene.N > MOST_BEADS:
+    slow = regime.followed and (regime.decay or 0.0) > _SLOW_DECAY
+    if regime.period is None or not slow or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
         return result
     y = scale_chain(scene).from_si(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)

@@ -22,7 +22,7 @@ from ..regime_criteria import find_period
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
 #: Most steps of the fixed-step method while settling: about half a minute.
-MOST_STEPS = 100_000_000
+MOST_SETTLING_STEPS = 100_000_000
 #: Periods until the motion is first looked at for a period, and at least between two looks.
 _FIRST_LOOK, _BETWEEN_LOOKS = 2, 8
 
@@ -65,7 +65,7 @@ class Settling:
             left = end - time.perf_counter()
             if per_period and left < per_period:
                 return False
-            chunk = _FIRST_LOOK if per_period == 0.0 else max(1, int(min(left / per_period, MOST_STEPS)))
+            chunk = _FIRST_LOOK if per_period == 0.0 else max(1, int(min(left / per_period, MOST_SETTLING_STEPS)))
             chunk = min(chunk, self._look_at - self._here, self._stop_at - self._here,
                         max(1, self._steps_left() // self._steps))
             began = time.perf_counter()
@@ -89,7 +89,7 @@ class Settling:
         self.regime = replace(self.regime, periods_run=self._run + self._here)
 
     def _steps_left(self) -> int:
-        return MOST_STEPS - self.engine.counts.steps
+        return MOST_SETTLING_STEPS - self.engine.counts.steps
 
     @property
     def _finished(self) -> bool:
