@@ -90,11 +90,11 @@ class Jumps:
         return self.time[mine], self.force[mine]
 
     def axis(self) -> dict[str, Column]:
-        """Their numbers."""
+        """The axis of the jumps: their numbers, from 0."""
         return axis("jump", np.arange(len(self.time)), "1", "number of the closing at which a contact force jumps")
 
     def columns(self) -> dict[str, Column]:
-        """Their times, contacts and forces as columns of a table."""
+        """Times, contacts and forces of the jumps as columns of a table."""
         more = {"missing": self.missing, "unresolved": self.unresolved}
         return {"jump_time": Column(self.time, ("jump",), "s", "time at which a contact closes in motion", more),
                 "jump_contact": Column(self.contact, ("jump",), "1", "contact that closes"),

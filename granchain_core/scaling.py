@@ -108,7 +108,7 @@ class ScaledChain:
         return y[1 : row - 1], y[row + 1 : 2 * row - 1]
 
     def beads_of(self, y: np.ndarray) -> np.ndarray:
-        """The same in one array x (2N,)."""
+        """Displacements and w of the beads in one array x (2N,), from a state array y (2(N + 2),)."""
         return np.concatenate(self.rows(y))
 
     def embed(self, x: np.ndarray) -> np.ndarray:

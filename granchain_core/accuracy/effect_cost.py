@@ -57,7 +57,7 @@ class EffectCost:
 
     @property
     def percent(self) -> float:
-        """The same in per cent of the step without it."""
+        """The difference in per cent of the step without the effect."""
         return 100.0 * self.difference / self.without
 
 

@@ -45,8 +45,8 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
                progress: Callable[[float], None] | None = None) -> Attractors:
     """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
-    Random states are uniform in a box of displacements and velocities, 1.5 times those of the motion from rest;
-    the shares are relative to it (docs/diagram.md).
+    Random states are uniform in a box of displacements and velocities, 1.5 times the largest of the motion from rest,
+    and at least A0 and 2π f A0; the shares are relative to it (docs/diagram.md).
 
     Parameters
     ----------

@@ -263,7 +263,10 @@ def _stepped(scene: Scene, kind: str, way: list[BoundaryPoint], end: float, peri
 
 
 def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
-    """The direction along which a branch passes its fold: the null vector of the map's derivative less one."""
+    """The direction (2N + 1,) of state and knob along which a branch passes its fold, from the fold's state (2N,).
+
+    It is the null vector of the map's derivative less one; the knob does not change along it.
+    """
     _, derivative = branch.map(np.append(state, 1.0))
     _, _, rows = np.linalg.svd(derivative - np.eye(len(state)))
     return np.append(rows[-1], 0.0)

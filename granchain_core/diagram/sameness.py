@@ -139,7 +139,7 @@ def _distance(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _to_nearest(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> float:
-    """Median relative distance of the states of one section to the nearest of another."""
+    """Median relative distance of the states of a section (P, 2, N) to the nearest of another; `scale` (1, 2, 1)."""
     from scipy.spatial.distance import cdist
 
     flat = [(section / scale).reshape(len(section), -1) for section in (a, b)]
@@ -147,6 +147,6 @@ def _to_nearest(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> float:
 
 
 def _own(section: np.ndarray, scale: np.ndarray) -> float:
-    """The same between the later and the earlier half of one section."""
+    """Median relative distance of the states of a section's later half to the nearest of its earlier half."""
     half = len(section) // 2
     return _to_nearest(section[half:], section[:half], scale)

@@ -237,7 +237,7 @@ def _counted(problem: Problem, data: int, freedom: int) -> int:
 
 
 def _probability(problem: Problem, place: np.ndarray, data: int, freedom: int) -> float | None:
-    """Of a χ² as large as this if the model were true; None where no errors are known, or nothing is left free."""
+    """Probability of a χ² as large as this if the model is true; None where no errors are known, or nothing is free."""
     counted = _counted(problem, data, freedom)
     return float(chi2.sf(problem.chi_squared(place), counted)) if problem.target.sigma_known and counted > 0 else None
 

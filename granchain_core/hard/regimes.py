@@ -230,7 +230,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
 
 
 def _two_runs(tolerance: float, count: int) -> np.ndarray:
-    """The same (count,) where chain and observer are two runs of SciPy from the same state on the chain's orbit."""
+    """Distance (count,) of an observer from its chain, period by period, as two runs of SciPy from one state."""
     orbit = periodic_orbit(scene("fig11-free"))
     scales = Engine(orbit.scene, adaptive_setting()).scaled.scales
     start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])

@@ -25,6 +25,8 @@ from ..stop import Stop
 NEVER = int(np.iinfo(np.int64).max)
 #: Drive periods until the next extrapolation after a failed one, at the start.
 _PAUSE = 16
+#: Whole numbers that a batch keeps of each member (`BatchState`).
+_COUNTERS = ("steps", "left", "periods", "return_at", "earliest", "extrapolate_from", "pause", "kept", "testing", "due")
 #: Fewest orbits in one round of a finer run.
 _FEWEST = 2
 
@@ -61,18 +63,16 @@ class Batch:
             turn=_rows(2), beta=_rows(1), h=_rows(1),
         )
         rows = 2 * (n + 2)
-        whole = [np.zeros(BATCH_SIZE, dtype=np.int64) for _ in range(10)]
-        parts = [np.zeros(BATCH_SIZE) for _ in range(2)]
+        counters = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in _COUNTERS}
         self.state = kernels.BatchState(
             y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
-            steps=whole[0], left=whole[1], periods=whole[2], return_at=whole[3], earliest=whole[4],
-            extrapolate_from=whole[5], pause=whole[6], kept=whole[7], testing=whole[8], due=whole[9], slowest=parts[0],
-            change_before_extrapolation=parts[1], before=np.zeros((BATCH_SIZE, 2, n + 2)),
+            slowest=np.zeros(BATCH_SIZE), change_before_extrapolation=np.zeros(BATCH_SIZE),
+            before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
             last_check=np.zeros((BATCH_SIZE, DISTANCE + 1)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
             limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
-            stages=(_rows(rows), _rows(rows), _rows(rows)),
+            stages=(_rows(rows), _rows(rows), _rows(rows)), **counters,
         )
         for member in range(BATCH_SIZE):
             self.empty(member)

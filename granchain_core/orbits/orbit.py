@@ -59,10 +59,10 @@ class Orbit(Labelled):
     multipliers : numpy.ndarray of complex, shape (2N,)
         Sorted by modulus, largest first; of more than 100 beads the leading ones only.
     liouville : float or None
-        Difference between the logarithm of their product and ∫ trace, relative to the latter; None where not all are
-        known or the smallest are rounding.
-    changes : numpy.ndarray
-        Contact events along the orbit.
+        Difference between the logarithm of their product and ∫ trace, relative to the latter where that is above 1;
+        None where not all are known or the smallest are rounding.
+    changes : numpy.ndarray, shape (events, 2)
+        Contact events along the orbit: contact + 1, negative where it opens, and the time in drive periods.
     observer_multipliers : numpy.ndarray of complex or None
         Those of the observer of model (4), where they were requested.
     monodromy, observer_monodromy : numpy.ndarray or None, shape (2N, 2N)
@@ -99,7 +99,7 @@ class Orbit(Labelled):
 
     @functools.cached_property
     def observer_multiplier_errors(self) -> np.ndarray | None:
-        """The same of the observer's multipliers; None where they were not requested."""
+        """How far each of the observer's multipliers may be off, absolute (2N,); None where they were not requested."""
         return self._errors(observer=True)
 
     def find_errors(self, stop: Stop) -> None:
@@ -126,7 +126,7 @@ class Orbit(Labelled):
 
     @property
     def observer_stability_certain(self) -> bool | None:
-        """The same of `observer_stable`; None where the observer's multipliers were not requested."""
+        """Whether `observer_stable` holds in spite of the errors; None where the multipliers were not requested."""
         if self.observer_multipliers is None:
             return None
         return _is_certain(self.observer_multipliers, self.observer_multiplier_errors)

@@ -96,7 +96,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     OverBudget
         The run would take longer than `budget` from the beginning; it is a `BadInput`.
     NumbersFailed
-        The motion is no longer finite, or a step has shrunk to nothing; the message says which bead, when and why.
+        The motion is no longer finite, a step has shrunk to nothing, a period takes millions of steps, or contacts open
+        and close endlessly (chatter); the message says when and why.
     Cancelled
         `stop` was set.
 

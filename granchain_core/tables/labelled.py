@@ -31,11 +31,11 @@ class Labelled:
             raise NotImplementedError
 
     def tables(self) -> tuple[Table, ...]:
-        """Its tables, the main one first; each is a group of its file."""
+        """The tables of the result, the main one first; each is a group of its file."""
         raise NotImplementedError
 
     def attributes(self) -> dict[str, Attribute]:
-        """What it has one of, with where it comes from: the attributes of its file's root."""
+        """What the result has one of, and where it comes from: the attributes of its file's root."""
         raise NotImplementedError
 
     def summary(self) -> Sequence[str]:
@@ -83,5 +83,5 @@ class Labelled:
         return as_html(self.heading(), self.summary(), self.tables())
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
-        """The same for a notebook and for a terminal; both would print whole arrays."""
+        """What a notebook and a terminal show in place of whole arrays: HTML, and the summary as text."""
         return {"text/html": self._repr_html_(), "text/plain": as_text(self.heading(), self.summary())}

@@ -67,7 +67,7 @@ class BranchEquations:
         return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop, tolerance)
 
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
-        """The same as `stroboscopic_map` until the thread's next call."""
+        """The map at a knob value, in the thread's one object: it is valid until the thread's next call."""
         found: StroboscopicMap | None = getattr(self._reused, "map", None)
         if found is None:
             found = self._reused.map = self.stroboscopic_map(value, tolerance=tolerance)
@@ -111,7 +111,7 @@ class BranchEquations:
         return Solved(newton.z, flow, self.knob_slope(newton.z, flow.end, TOLERANCE), tuple(newton.residuals))
 
     def solve_near(self, z: np.ndarray, normal: np.ndarray, near: Near, farthest: float = np.inf) -> Solved:
-        """The same where P_x and P_p are known nearby, so that few further derivatives are needed."""
+        """The orbit where P_x and P_p are known nearby, so that few further derivatives are needed."""
         newton = Newton(self, z, normal, farthest)
         newton.approach(near)
         flow = newton.finish()

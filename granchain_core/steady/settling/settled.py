@@ -64,7 +64,7 @@ class Settled(Labelled):
         return (*self.run.tables(), state)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Those of its run; `regime` is its own."""
+        """The attributes of its run, with the regime of the steady state."""
         return {**self.run.attributes(), "regime": json.dumps(asdict(self.regime))}
 
     def summary(self) -> list[str]:
