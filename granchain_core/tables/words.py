@@ -58,10 +58,12 @@ MORE_EVIDENCE = {
 
 def evidence_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
     """All evidence for regimes along an axis."""
+
     def whole(values: list[int], meaning: str) -> Column:
         return Column(np.array(values, dtype=np.int64), (along,), "1", meaning)
 
-    numbers = np.array([_evidence(one) for one in found], dtype=float).reshape(len(found), -1)
+    meanings = EVIDENCE | MORE_EVIDENCE
+    numbers = np.array([_evidence(one) for one in found], dtype=float).reshape(-1, len(meanings))
     return {
         "periods_run": whole([one.periods_run for one in found], "drive periods run until that was decided"),
         "followed": whole([one.followed for one in found],
@@ -69,7 +71,7 @@ def evidence_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
         "approaches": whole([one.approaches or 0 for one in found],
                             "period of an orbit that an unsettled motion approaches, 0 where none is known"),
         **{name: Column(values, (along,), "1", meaning)
-           for (name, meaning), values in zip((EVIDENCE | MORE_EVIDENCE).items(), numbers.T, strict=True)}}
+           for (name, meaning), values in zip(meanings.items(), numbers.T, strict=True)}}
 
 
 def _evidence(regime: Regime) -> tuple[float, ...]:
