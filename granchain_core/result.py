@@ -176,7 +176,7 @@ class Run(Motion):
     start : str
         Where the motion began, one of `RUN_STARTS`: "rest", "initial velocity" or "given state".
     cost : Cost
-        What it took.
+        What the computation took.
     jumps : Jumps
         Forces that jump from 0 because a contact with a linear dashpot closes in motion.
 

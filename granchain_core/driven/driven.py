@@ -55,7 +55,7 @@ class Driven(Motion):
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost
-        What it took.
+        What the computation took.
 
     Examples
     --------

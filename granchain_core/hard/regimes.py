@@ -65,9 +65,9 @@ def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
 
 
 def claims(count: int, seed: int) -> tuple[int, int, int]:
-    """Of `count` maps near a bifurcation: settled claims, claims whose bound or period is wrong, slow ones claimed.
+    """How often `count` maps near a bifurcation are called settled, how often wrongly, and how many slow ones are.
 
-    A slow one has a multiplier so near 1 that it cannot have settled within its strobes.
+    Wrong is a bound or a period. A slow map has a multiplier so near 1 that it cannot have settled within its strobes.
     """
     rng = np.random.default_rng(seed)
     made, wrong, slow = 0, 0, 0

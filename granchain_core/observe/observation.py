@@ -65,7 +65,7 @@ class Observation(Motion):
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost
-        What it took.
+        What the computation took.
     residual, residual_elastic : Residual or None
         Difference from the measured output force, of the total and of the elastic force: `rms`, `largest` [N],
         `relative`.
