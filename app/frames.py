@@ -142,7 +142,7 @@ def jumps_of(run: Run, contact: int) -> np.ndarray:
 
 
 def samples_for(scene: Scene) -> int:
-    """Rows per drive period: as many as the pulses need, which are short in a slow drive.
+    """Rows per drive period: enough for the pulses, which are short compared with a long drive period.
 
     Without a drive a picture is one time 1/f, and has the rows of the periods that it would show otherwise.
     """
@@ -179,7 +179,7 @@ _LOCK = threading.Lock()
 def prepared_frames(run: Run) -> Frames:
     """The frames of a settled run with all that every visitor's drawing needs, the same for all who show the run.
 
-    They are kept for as long as somebody keeps them. To be called in a thread, before the event loop draws.
+    The frames are cached for as long as anything refers to them. Call this in a thread, before the event loop draws.
     """
     with _LOCK:
         known = _PREPARED.get(run)

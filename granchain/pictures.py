@@ -11,10 +11,11 @@ if TYPE_CHECKING:
 
 def figure(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
            **options: Any) -> LayoutDOM:
-    """The picture of a result: a figure of Bokeh, by the functions that draw the dashboard's pages.
+    """A Bokeh figure of a result, drawn by the same functions as the dashboard's pages.
 
-    Only the dashboard's main picture and its resonance curve, which follow every move, are drawn by code of their own.
-    `bokeh.io.show` shows it; in a notebook after `bokeh.io.output_notebook()`. `bokeh.plotting.save` writes it.
+    Only the dashboard's main picture and its resonance curve have separate drawing code, because they follow every move
+    of a knob. `bokeh.io.show` displays the figure, in a notebook after `bokeh.io.output_notebook()`;
+    `bokeh.plotting.save` writes it to a file.
 
     Parameters
     ----------
@@ -24,7 +25,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
     theme : str
         "light", "dark" or "projector".
     width, height : int, optional
-        Its size [px]; what suits a notebook's cell if not given.
+        Size of the figure [px]; by default one that suits a notebook's cell.
     **options
         Of some pictures: `elastic` of a curve, `shown` ("force", "regime" or "both") of a diagram, `bead` of a strobe
         diagram, `asked` (an accuracy) of a work-precision diagram, `now` (a value of the knob) of a branch, `rank` of

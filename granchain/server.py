@@ -33,9 +33,9 @@ class Dashboard:
     Attributes
     ----------
     url : str
-        Its address, with the scene.
+        Address of the dashboard, with the scene.
     height : int
-        Of the frame in a cell [px].
+        Height of the frame in a cell [px].
 
     Examples
     --------
@@ -82,11 +82,11 @@ def dashboard(shown: Scene | str = "sec2", height: int = 800, port: int = 0) -> 
     Parameters
     ----------
     shown : Scene or str
-        A scene or the name of a preset. Of a scene the dashboard is given its preset and the knobs that differ from it.
+        A scene or the name of a preset. From a scene, the dashboard takes its preset and the knobs that differ from it.
     height : int
-        Of the frame in a cell [px].
+        Height of the frame in a cell [px].
     port : int
-        Where it listens; a free one if 0.
+        Port at which the server listens; 0 chooses a free one.
 
     Returns
     -------
@@ -96,7 +96,7 @@ def dashboard(shown: Scene | str = "sec2", height: int = 800, port: int = 0) -> 
     Raises
     ------
     BadInput
-        The scene is unknown, or the server did not start; what it said is in the message.
+        The scene is unknown, or the server did not start; the message has the server's last line.
 
     Examples
     --------

@@ -89,10 +89,10 @@ def __getattr__(name: str) -> Any:
 
 
 class _PublicPackage(types.ModuleType):
-    """The package itself, in which a function keeps its name though a subpackage has the same one.
+    """The package itself, in which a function keeps its name although a subpackage has the same name.
 
-    Python binds a subpackage to its name here when it is first imported; `granchain_core.run` would then be the folder
-    and no longer the function.
+    Python binds a subpackage to its name here when it is first imported; `granchain_core.run` would then be the
+    subpackage instead of the function.
     """
 
     def __setattr__(self, name: str, value: object) -> None:

@@ -23,7 +23,7 @@ from .errors import BadInput
 BLOCK = 128
 #: Time after which a smaller block is written [s].
 SECONDS = 0.5
-#: Writing takes at most one part in so many of the time.
+#: Writing takes at most one over this of the time.
 _SHARE = 20.0
 #: Ending of a block's file name.
 _SUFFIX = ".block"
@@ -63,7 +63,7 @@ class Kept(Generic[Piece]):
         self._problem: BadInput | None = None
 
     def open(self, resume: bool) -> None:
-        """Look what is there: an unfinished computation must be this one and be resumed. Raises `BadInput`."""
+        """Check the folder: an unfinished computation in it must be this one and be resumed. Raises `BadInput`."""
         try:
             if not self._head_file.exists():
                 self._clear()  # what has no head cannot be told apart from what belongs to another computation
@@ -78,8 +78,8 @@ class Kept(Generic[Piece]):
         found = json.loads(head)
         if (found.get("version"), found.get("digest")) != (_VERSION, self._head["digest"]):
             raise BadInput(f"{self.folder} holds another {self._kind}, {found.get('words', 'of another version')}, not "
-                           f"{self._words} with these knobs; give that one's words, another --out, or delete the "
-                           "folder.")
+                           f"{self._words} with these knobs; add --resume to the command line of that {self._kind}, "
+                           "give another --out, or delete the folder.")
 
     def blocks(self) -> Iterator[bytes]:
         """The contents of the blocks that are whole, in the order in which they were written."""

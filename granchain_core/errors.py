@@ -45,11 +45,11 @@ class NumbersFailed(ArithmeticError):
     bead : int or None
         The first bead that failed.
     time : float or None
-        When [s].
+        Time of the failure since the start [s].
     step : int or None
-        The step of its drive period, counted from 0.
+        Number of the failed step within its drive period, from 0.
     cost : dict or None
-        Steps, rhs, events and rejected steps until then.
+        Counts up to the failure: steps, rhs (evaluations of the equations), events, rejected steps.
 
     Examples
     --------
@@ -76,7 +76,7 @@ class OverBudget(BadInput):
     Attributes
     ----------
     estimate, budget : float
-        What it would take and what it may take [s].
+        Estimated and allowed computing time [s].
 
     Examples
     --------
@@ -130,7 +130,7 @@ def unknown_name(kind: str, name: object, known: Iterable[str]) -> BadInput:
 
 
 def check_range(what: str, value: float, low: float, high: float) -> None:
-    """`BadInput` with the range and the nearest valid value if `value` is outside; `what` stands before it."""
+    """Raise `BadInput` if `value` is outside the range; its sentence begins with `what` and names the nearest one."""
     if not low <= value <= high:
         raise BadInput(f"{what} {value} is outside {low} to {high}; the nearest valid value is "
                        f"{min(max(value, low), high)}.")

@@ -36,7 +36,7 @@ class Law:
 
     @property
     def exponent(self) -> float:
-        """a."""
+        """The damping exponent a."""
         return float(_dissipation().exponent(self.slot(1.0)))
 
     @property

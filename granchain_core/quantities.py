@@ -23,7 +23,7 @@ class Quantity:
     is the cube of the position, fine near 0. `step` is the fine step of the keyboard; 0 stands for half a decade.
     `choices` is set for knobs that are words; `numeric` says whether a plain number is accepted too. `main` knobs are
     always on the page, the others under "more knobs". `short` is the label beside a number where `label` is too long.
-    `at_zero` says in a few words what 0 means where that switches something off. `shown_in` is the factor and unit on
+    `at_zero` says in a few words what 0 means if 0 switches something off. `shown_in` is the factor and unit on
     the page if that is not `unit`. `changes_motion` is False for a knob of the computation alone, `at_start` true for
     one that changes where a motion begins and not the chain.
     """
@@ -121,8 +121,8 @@ _TABLE = (
     Quantity("A0", "A₀", "m", "A_0", "drive amplitude", "How far the driver moves from its middle position.",
              1e-12, 1e-4, "log", 1e-9, main=True, shown_in=(1e-6, "µm")),
     Quantity("D", "D", "N s/m", "D", "contact damping",
-             "Force of the contact's dashpot per speed of approach; where it grows with the overlap its value at the "
-             "scene's reference overlap.", 0.0, 1e6, "linear", 0.1, main=True, short="damping",
+             "Force of the contact's dashpot per speed of approach; for a law in which it grows with the overlap, its "
+             "value at the scene's reference overlap.", 0.0, 1e6, "linear", 0.1, main=True, short="damping",
              at_zero="contacts lose no energy"),
     Quantity("k", "k", "N/m", "k", "foundation stiffness", "Spring from every bead to the ground (the flexures).",
              0.0, 1e10, "cubic", 10.0, main=True, short="foundation",
@@ -139,7 +139,7 @@ _TABLE = (
              "Mass of beads 2, 4, … over that of the others; of the same material, so the radius goes with its cube "
              "root. 1 is a chain of equal beads.", 1e-3, 1e3, "log", short="dimer"),
     Quantity("taper", "R_N/R₁", "1", "R_N/R_1", "taper",
-             "Radius of the last bead over that of the first; each is the same part of the one before it.",
+             "Radius of the last bead over that of the first; the radii form a geometric sequence.",
              0.01, 100.0, "log"),
     Quantity("striker", "mₛ/m", "1", "m_s/m", "mass of bead 1",
              "Mass of bead 1 (the striker) relative to a regular bead at its place.",
@@ -155,7 +155,7 @@ _TABLE = (
              "Speed at which bead 1 moves towards the wall at time 0.", 0.0, 100.0, "cubic", 0.001, short="strike",
              at_zero="bead 1 starts at rest", at_start=True),
     Quantity("end", "", "", "", "driven end", "The end that the driver touches; the wall is at the other. "
-             "With the last one a chain of unequal beads is turned round.", choices=ENDS, numeric=False),
+             "“last” drives a chain of unequal beads from its other end.", choices=ENDS, numeric=False),
     Quantity("wall", "W", "1", r"K_N/K", "right wall",
              "Stiffness of the last contact: a fixed bead (K), a flat wall of the same material (√2 K), "
              "a rigid flat wall (2√2 K), or a number times K.",

@@ -22,9 +22,9 @@ class Regime:
     name : str
         One of `NAMES`.
     period : int or None
-        In drive periods, where the motion is periodic.
+        Period of the motion in drive periods; None if it is not periodic.
     decay : float or None
-        Factor by which changes shrank per orbit, where that was observed.
+        Factor by which changes shrank per orbit; None if no decay was observed.
     distance : float or None
         Bound on the relative distance to the orbit.
     periods_run : int
@@ -32,7 +32,7 @@ class Regime:
     lyapunov : tuple of float or None
         Lyapunov exponent per drive period and its standard error over blocks of periods, where it was measured.
     multiplier : float or None
-        Largest |μ| of the n-period map, where it was computed.
+        Largest |μ| of the n-period map; None if it was not computed.
     followed : bool
         Whether the motion was still approaching its orbit, which was then found by Newton's method or extrapolation.
     approaches : int or None
@@ -43,7 +43,7 @@ class Regime:
         Median distance from the strobes of a record's second half to the nearest of its first half, relative to the
         largest displacement and velocity; known where the Lyapunov exponent is zero within its error.
     return_limit : float or None
-        What that distance must be below for a quasi-periodic motion.
+        Limit of `return_distance`: that of a quasi-periodic motion is below it.
     window_ratios : tuple of float or None
         Smallest and largest ratio of the largest change in a window of periods to that in the window before, over three
         windows and all periods tried; known where the Lyapunov exponent is zero within its error.

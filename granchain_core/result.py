@@ -74,8 +74,9 @@ class Jumps:
 
     Methods that do not locate events keep those of the first and last contact only.
 
-    time (J,) [s], contact (J,) and force (J,) [N], the right limit; `missing` is how many more were not kept,
-    `unresolved` how many belong to touches shorter than a step, which methods without located events do not resolve.
+    `time` (J,) [s], `contact` (J,) and `force` (J,) [N], the force just after the jump (its right limit). `missing` is
+    how many more jumps were not kept, `unresolved` how many belong to touches shorter than a step, which methods
+    without located events do not resolve.
     """
 
     time: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -103,7 +104,7 @@ class Jumps:
 
 @dataclass(frozen=True)
 class ForceErrors:
-    """Relative errors of the largest input, output and elastic output force; None where none is claimed."""
+    """Relative errors of the largest input, output and elastic output force; None where none is stated."""
 
     input: float | None = None
     output: float | None = None
@@ -116,7 +117,7 @@ class ForceErrors:
 
     @property
     def row(self) -> tuple[float, float, float]:
-        """The three as numbers, NaN where none is claimed."""
+        """The errors of input, output and elastic force as numbers, NaN where none is stated."""
         values = (self.input, self.output, self.elastic)
         return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
 
@@ -143,29 +144,30 @@ class Run(Motion):
     scene : Scene
         The chain.
     samples : int
-        Samples a drive period.
+        Samples per drive period.
     time : numpy.ndarray, shape (T,)
-        Since the start, at drive phase 0 [s].
+        Time [s] from drive phase 0 of the first period, discarded periods included.
     displacement, velocity : numpy.ndarray, shape (T, N)
-        [m] and [m/s].
+        Of every bead: displacement from its rest position [m], and velocity [m/s].
     force : numpy.ndarray, shape (T, N + 1)
         Total force of every contact, elastic and damping [N].
     drive_displacement : numpy.ndarray, shape (T,)
-        [m]
+        Displacement of the driver [m].
     kinetic_energy : numpy.ndarray, shape (T, N)
-        [J]
+        Kinetic energy of every bead [J].
     input_force, output_force, output_force_elastic : numpy.ndarray, shape (T,)
-        Force of the driver on bead 1, force on the wall, and the elastic part of that, the paper's F_out [N].
+        Force of the driver on bead 1, force on the wall, and the elastic part of the force on the wall, which is the
+        paper's F_out [N].
     overlap : numpy.ndarray, shape (T, N + 1)
         Overlap of every contact, negative where there is a gap [m].
     max_input_force, max_output_force, max_output_force_elastic : float
         Suprema over the recorded time [N], between the samples too, with the right limits at `jumps`.
     force_errors : ForceErrors
         Stated relative errors of these three suprema, `input`, `output`, `elastic`: numerical error only, an empirical
-        bound (docs/design.md), not a proof; None where none is claimed.
+        bound (docs/design.md), not a proof; None where none is stated.
     error_estimate : float or None
         Stated largest error of any displacement over the largest displacement: numerical error only, an empirical
-        bound (docs/design.md), not a proof; None where none is claimed.
+        bound (docs/design.md), not a proof; None where none is stated.
     energy_residual : float or None
         |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
         energy; None where no account was kept.
@@ -176,7 +178,7 @@ class Run(Motion):
     start : str
         Where the motion began, one of `RUN_STARTS`: "rest", "initial velocity" or "given state".
     cost : Cost
-        What the computation took.
+        Computing time, steps and evaluations.
     jumps : Jumps
         Forces that jump from 0 because a contact with a linear dashpot closes in motion.
 
@@ -248,7 +250,7 @@ class Run(Motion):
 
     def summary(self) -> list[str]:
         """Regime, largest forces and errors."""
-        reached = "no error claimed" if self.error_estimate is None else f"relative error {self.error_estimate:.1e}"
+        reached = "no error stated" if self.error_estimate is None else f"relative error {self.error_estimate:.1e}"
         return [self.regime.sentence, *said_forces(self),
                 f"{len(self.time)} samples; displacements: {reached}; {self.status.replace('-', ' ')}"]
 
@@ -261,7 +263,7 @@ def said_forces(found: HasForces) -> list[str]:
     """The largest forces in words, with their errors."""
     errors = (found.force_errors.output, found.force_errors.elastic, found.force_errors.input)
     forces = (found.max_output_force, found.max_output_force_elastic, found.max_input_force)
-    return [f"largest {name} force {force:.6g} N" + (", no error claimed" if e is None else f", relative error {e:.1e}")
+    return [f"largest {name} force {force:.6g} N" + (", no error stated" if e is None else f", relative error {e:.1e}")
             for name, force, e in zip(("output", "elastic output", "input"), forces, errors, strict=True)]
 
 

@@ -1,7 +1,7 @@
 """From a scene in SI to scaled arrays and one slot per effect; nothing else converts between the two.
 
 Scales (Zhang et al. 2016, section 2): length A0, time 1/φ with φ² = K√A0/m, force K A0^{3/2}, m and K those of
-bead 1. Displacements are kept, never positions; the drive phase is never a product of a large time.
+bead 1. The state holds displacements, never positions; the drive phase is never computed as 2πf times a large time.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ class ScaledChain:
         return y[1 : row - 1], y[row + 1 : 2 * row - 1]
 
     def beads_of(self, y: np.ndarray) -> np.ndarray:
-        """Displacements and w of the beads in one array x (2N,), from a state array y (2(N + 2),)."""
+        """Displacements and w of the beads in one array x (2N,), copied from a state array y."""
         return np.concatenate(self.rows(y))
 
     def embed(self, x: np.ndarray) -> np.ndarray:

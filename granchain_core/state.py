@@ -16,10 +16,10 @@ class State:
     Attributes
     ----------
     displacement : numpy.ndarray, shape (N,)
-        Of each bead from its rest position [m]: under preload from the compressed rest, else from where neighbours
-        first touch.
+        Displacement of each bead from its rest position [m]: under preload from the compressed rest, else from where
+        neighbours first touch.
     velocity : numpy.ndarray, shape (N,)
-        [m/s]
+        Velocity of each bead [m/s].
     phase : float
         Drive phase as a fraction of a period, 0 to 1.
 

@@ -45,7 +45,7 @@ from .scaling import scale_chain
 from .scene import Scene, scene
 from .scene.effects import effects_of
 from .state import rest
-from .steady.lyapunov import exponents, exponents_in_pairs
+from .steady.lyapunov import exponents
 from .stop import Stop
 
 
@@ -80,7 +80,6 @@ def _curve(short: Scene) -> None:
         y = scaled.from_si(rest(short))
         block.put(0, scaled, y, 1, return_at=1)
         block.run()
-        exponents_in_pairs([(scaled, y)], 1, 1, block)
 
 
 def _orbit(short: Scene) -> None:
@@ -95,7 +94,7 @@ def _branch(short: Scene) -> None:
     stroboscopic_map = equations.stroboscopic_map(short.f)
     stroboscopic_map.end(x)
     stroboscopic_map(x)
-    equations.quick_end(x, short.f, quick_steps(short))
+    equations.quick_end(x, short.f, quick_steps(scale_chain(short)))
     record_along(equations, x, short.f)
 
 

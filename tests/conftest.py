@@ -62,8 +62,10 @@ def pytest_xdist_auto_num_workers() -> int:
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Iterator[None]:
     """Mark the quick tests; once the chosen ones are known, order them for the workers."""
+    paths = {item.path for item in items}
+    quick = {path for path in paths if any(path.is_relative_to(HERE / one) for one in QUICK)}
     for item in items:
-        if any(item.path.is_relative_to(HERE / one) for one in QUICK):
+        if item.path in quick:
             item.add_marker(pytest.mark.quick)
     yield
     workers = getattr(config, "workerinput", {}).get("workercount", 1)
@@ -76,22 +78,22 @@ def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
 
     Each worker begins with an equal number of tests in a row, and who has ended takes the last half of the longest row.
     So two rows begin with the browser's tests, for which a worker needs a server and a browser of its own, the others
-    with long tests, and what is left at the end is short. Tests of one page ask for the same curves, which a server
-    computes once, so that a file is not divided.
+    with long tests, and what is left at the end is short. The files of both are not divided: their tests share what a
+    fixture made, and those of one page ask for the same curves, which a server computes once.
     """
     place = {name: number for number, name in enumerate(LONG)}
     files: dict[Path, list[pytest.Item]] = {}
-    long: list[pytest.Item] = []
-    for item in sorted(items, key=lambda item: place.get(_name(item), len(place))):  # others stay in their order
-        if item.path.is_relative_to(HERE / "browser"):
-            files.setdefault(item.path, []).append(item)
-        elif _name(item) in place:
-            long.append(item)
+    for item in items:
+        files.setdefault(item.path, []).append(item)
+    first = {path: min(place.get(_name(item), len(place)) for item in group) for path, group in files.items()}
     rows: list[list[pytest.Item]] = [[] for _ in range(workers)]
-    for group in files.values():
-        min(rows[:2], key=lambda row: sum(_LONG_IS if _name(item) in place else 1 for item in row)).extend(group)
-    for number, item in enumerate(long):
-        rows[-1 - number % max(1, workers - 2)].append(item)
+    number = 0
+    for path in sorted(files, key=lambda path: first[path]):  # others stay in their order
+        if path.is_relative_to(HERE / "browser"):
+            min(rows[:2], key=lambda row: sum(_LONG_IS if _name(item) in place else 1 for item in row)).extend(files[path])
+        elif first[path] < len(place):
+            rows[-1 - number % max(1, workers - 2)].extend(files[path])
+            number += 1
     begun = {item for row in rows for item in row}
     others = iter([item for item in items if item not in begun])
     for number, row in enumerate(rows):  # as long as worksteal makes them: the rest of a division goes to the last

@@ -25,7 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def do(arguments: argparse.Namespace) -> int:
-    """Run all hard cases; the exit status is 3 if a row is above its bar, and stderr names it."""
+    """Run all hard cases; the exit status is 3 if a value is above its limit, and stderr names it."""
     from granchain_core.hard.runner import in_order, run_cases
     from granchain_core.hard.table import CASES
 
@@ -45,12 +45,12 @@ def do(arguments: argparse.Namespace) -> int:
         write_figure(arguments.picture, "The hard cases", _drawn())
     missed = [row.case for row in every if not row.passed]
     if missed:
-        say(f"{len(missed)} of {len(every)} rows are above their bars: {'; '.join(missed)}.")
+        say(f"{len(missed)} of {len(every)} values are above their limits: {'; '.join(missed)}.")
     return 3 if missed else 0
 
 
 def _say_case(number: str, name: str, rows: list[Check]) -> None:
-    """Say on stderr how a case went, with the rows that missed their bars."""
+    """Say on stderr how a case went, with the values above their limits."""
     verdict = "passed" if all(row.passed for row in rows) else "FAILED"
     say(f"{number}  {name}: {verdict}, {rows[0].seconds:.1f} s")
     for row in rows:

@@ -39,9 +39,9 @@ def announce_compiling() -> None:
 
 @contextmanager
 def compiling_beside(chosen: Scene, *pieces: str) -> Iterator[None]:
-    """Where Numba begins to compile in this block, compile these pieces (granchain_core/warm.py) in another process.
+    """When Numba begins to compile in this block, compile these pieces (granchain_core/warm.py) in another process.
 
-    They are what the block needs later; when it does, it waits for them or loads them. With one core, nothing is done.
+    The block needs the pieces later; it then waits for them or loads them. With one core, nothing is done.
     """
     if (os.cpu_count() or 1) < 2:
         yield

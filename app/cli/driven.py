@@ -90,7 +90,7 @@ def _json(found: Driven) -> dict[str, Any]:
 
 def _show(found: Driven) -> None:
     errors = found.force_errors
-    inward, outward, elastic = ("none claimed" if e is None else f"{e:.1e}"
+    inward, outward, elastic = ("none stated" if e is None else f"{e:.1e}"
                                 for e in (errors.input, errors.output, errors.elastic))
     print(f"{found.scene.name}: {found.signal.words}; {found.status}")
     print(f"largest output force {found.max_output_force:.6g} N (elastic {found.max_output_force_elastic:.6g} N), "

@@ -90,7 +90,7 @@ def _wait(reading: int) -> None:
 
 
 def keeps(folder: str) -> None:
-    """Name the folder of what is finished, for the sentence with which a computation ends that does not end in time."""
+    """Name the folder of finished pieces, for the last sentence of a computation that does not end in time."""
     _ASKED.kept = folder
 
 

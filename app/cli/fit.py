@@ -28,7 +28,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--free", action="append", default=[], metavar="NAME=low:high",
                         help="a parameter with its bounds [SI]: A0, k, kappa, D, K, F0 or wall; once for each")
     parser.add_argument("--prior", action="append", default=[], metavar="NAME=mean:sd",
-                        help="what is known of a parameter beside the data")
+                        help="mean and standard deviation of what is known of a parameter besides the data")
     parser.add_argument("--per-frequency", action="store_true", help="one A0 for each frequency")
     parser.add_argument("--error", type=number, metavar="E",
                         help="standard deviation of the data where the file states none: a part of each force (curve), "

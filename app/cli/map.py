@@ -151,5 +151,5 @@ def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
 
 
 def _largest(errors: np.ndarray) -> float:
-    """The largest error that is claimed; NaN where none is."""
+    """The largest error that is stated; NaN where none is."""
     return float(np.nanmax(errors)) if np.isfinite(errors).any() else math.nan

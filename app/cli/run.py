@@ -158,7 +158,7 @@ def _show_run(result: Run) -> None:
     print(f"largest output force {result.max_output_force:.6g} N (elastic {result.max_output_force_elastic:.6g} N), "
           f"input force {result.max_input_force:.6g} N")
     errors = result.force_errors
-    inward, outward, elastic = ("none claimed" if e is None else f"{e:.1e}"
+    inward, outward, elastic = ("none stated" if e is None else f"{e:.1e}"
                                 for e in (errors.input, errors.output, errors.elastic))
     energy = ("no energy account" if result.energy_residual is None
               else f"energy closes to {result.energy_residual:.1e}")

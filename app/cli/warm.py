@@ -9,7 +9,7 @@ from .common import say
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `warm`."""
-    parser.add_argument("scene", nargs="*", help="scenes whose kernels are compiled; the paper's if none is named")
+    parser.add_argument("scene", nargs="*", help="scenes whose kernels are compiled; by default the paper's scenes")
 
 
 def do(arguments: argparse.Namespace) -> None:

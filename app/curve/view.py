@@ -163,7 +163,7 @@ class Curve:
         self._pinned.draw(self._scale[0])
 
     def pinned_curves(self, curves: Sequence[list[CurvePoint]]) -> None:
-        """Draw the curves of the pins, in their order, dashed as their trains are; an empty one is the present one."""
+        """Draw the pins' curves in their order, dashed like their force trains; an empty curve is the present one."""
         if self._pinned.take(curves):
             self._rescale()
             self._pinned.draw(self._scale[0])
@@ -269,7 +269,7 @@ class Curve:
                 self.measured(self._measurement)
         # Room for the names of the peaks, and for those that the paper states above them.
         change(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
-        # Its heading says that it is the largest.
+        # The heading of the figure says that this is the largest force.
         change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:

@@ -182,7 +182,7 @@ class Pictures:
             yield picture
 
     def _found(self, picture: object) -> None:
-        """Keep a new picture for the event loop; it replaces one that a busy loop has not looked at yet."""
+        """Keep a new picture for the event loop; it replaces an older picture that a busy loop has not fetched yet."""
         assert isinstance(picture, (Settled, LivePicture))
         if isinstance(picture, Settled):
             self._frames.append(prepared_frames(picture.run))

@@ -168,14 +168,14 @@
   let ping = null,
     closed = false,
     leaving = false;
-  // Milliseconds since the last ping without an answer (null if all are answered), since the last answer, since the
-  // last attempt to reach a lost server, and since that answered HTTP again (null if it does not).
+  // Milliseconds since the last unanswered ping (null if all are answered), since the last answer, since the last
+  // attempt to reach a lost server, and since the lost server answered HTTP again (null if it does not).
   let sincePing = null,
     sinceAnswer = 0,
     sinceTry = RETRY_EVERY,
     sinceReached = null;
 
-  // The last pictures as one image: they stay, grey, until the page built again has its own.
+  // The last pictures as one image, shown in grey until the rebuilt page has its own.
   const canvases = (node) =>
     [...node.querySelectorAll("*")].flatMap((element) => [
       ...(element.tagName === "CANVAS" ? [element] : []),

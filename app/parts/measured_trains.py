@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 #: The forces in the order of the figures, and the place of the shaker's displacement after them.
 _FORCES = ("input_force", "output_force")
 _DRIVE = 2
-#: Most points of a line; beyond that the series ends before the picture does.
+#: Most points of a line; a longer series is cut and ends before the picture does.
 _MOST = 30_000
 _EMPTY = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
 

@@ -17,8 +17,8 @@ const ENTRIES = [
   ["effects", (v) => v.join(" · "), "The effects being computed; an absent one has no code and costs nothing."],
 ];
 
-// What gives way, in this order, where the line has no room for all: an entry goes, or has fewer words, as often as the
-// server has a shorter form of them.
+// The order in which entries give way where the line is too short: an entry first gets its shorter words, as often as
+// the server has a shorter form, and is then left out.
 const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime", "accuracy"];
 const NOT_ON_PHONE = ["force", "method", "start", "effects"];
 
@@ -43,7 +43,7 @@ class Line {
     this.el = element("div", { className: "line" });
     this.pen = document.createElement("canvas").getContext("2d");
     this.fonts = new Map(); // by the entry's name; asking the browser for them costs a layout
-    // They stay and change their words: a press on one that was replaced meanwhile would be no click.
+    // The elements stay and change their words: a press on an element that is replaced before the release is no click.
     this.regime = emptyEntry("regime", "b");
     this.others = new Map(ENTRIES.map(([name]) => [name, emptyEntry(name)]));
     this.rest = emptyEntry("rest");

@@ -6,7 +6,7 @@ import { button, element, PHONE } from "./dom.js";
 const KEPT_AS = "granchain-toured"; // in the browser, from visit to visit
 const STEPS = [
   ["knobs", "The driver, red, pushes the chain f times a second. Move f: all pictures follow at once."],
-  ["chain", "Steel beads that touch but are not bonded, so they can separate. The brighter a bead, the more it moves."],
+  ["chain", "Steel beads that touch but are not bonded, so they can separate. The brighter a bead, the faster it is."],
   ["map", "The same chain over time: each bead is a column, time runs down, bright is fast. A stripe is a pulse."],
   ["right", "What arrives at the wall over the same time: pulses of force, green."],
   [

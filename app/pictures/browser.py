@@ -75,7 +75,7 @@ def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
 
 
 def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int]) -> str:
-    """The same as SVG."""
+    """A figure with its title and caption as the text of an SVG picture of `size` [px]."""
     _without_tools(figure)
     for plot in _plots(figure):
         plot.output_backend = "svg"

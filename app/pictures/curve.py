@@ -21,9 +21,9 @@ from .theme import Theme, apply_theme, frame, themed
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
 """Dashes of the line by the start of a sweep."""
 WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
-"""The same in words."""
+"""Starts of a sweep in words."""
 LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈○"}
-"""The same for a choice beside the curve, with a piece of the line."""
+"""Starts of a sweep for a choice beside the curve, with a piece of the line."""
 KEY = "Solid line: from rest; dashed: frequency rising; dotted, with hollow marks: frequency falling."
 """What the dashes mean, in a sentence."""
 FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
@@ -88,7 +88,7 @@ def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:
 @functools.lru_cache(maxsize=4096)
 def _force(newtons: float, relative: float | None) -> str:
     """Remembered: a growing curve is drawn again and again, for every visitor of a class."""
-    error = ", no error claimed" if relative is None else f", relative error {short_error(relative)}"
+    error = ", no error stated" if relative is None else f", relative error {short_error(relative)}"
     return in_words(newtons, "N", 5) + error
 
 

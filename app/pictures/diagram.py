@@ -194,7 +194,7 @@ def cell_words(grid: Grid, cell: np.ndarray) -> str:
         return f"{place}: computation failed"
     regime = f"period {int(cell['period'])}" if cell["period"] else name
     error = float(cell["error_estimate"])
-    sure = f", relative error {short_error(error)}" if np.isfinite(error) else ", largest observed, no error estimate"
+    sure = f", relative error {short_error(error)}" if np.isfinite(error) else ", largest observed, no error stated"
     exponent = (f"; Lyapunov exponent {cell['lyapunov']:.3f} ± {cell['lyapunov_error']:.3f}"
                 if np.isfinite(cell["lyapunov"]) else "")
     return f"{place}: {regime}, largest output force {in_words(float(cell['max_output_force']), 'N')}{sure}{exponent}"

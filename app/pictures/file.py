@@ -32,7 +32,7 @@ def page_of(figure: LayoutDOM, title: str) -> str:
 
 
 def captioned_page(figure: LayoutDOM, title: str, caption: str, theme: Theme) -> str:
-    """The same with the title in bold and a caption under the figure."""
+    """A whole page with a figure, its title in bold and a caption under it."""
     words = f"<b>{html.escape(title)}.</b> {html.escape(caption)}".replace("{", "&#123;")
     template = _PAGE % {"card": theme.card, "ink": theme.ink, "line": _LINE, "caption": words}
     return _page(figure, title, template=template)

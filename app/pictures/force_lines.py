@@ -26,7 +26,7 @@ class Look:
 
     @property
     def colour(self) -> str:
-        """The same in every theme."""
+        """The line's colour, which is the same in every theme."""
         return str(getattr(THEMES["light"], self.role))
 
     def label(self, unit: str, narrow: bool = False) -> str:

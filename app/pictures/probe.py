@@ -40,7 +40,7 @@ def probe(name: str, run: Run, bead: int, theme: Theme) -> figure:
 
 
 def without_points(name: str, theme: Theme, compact: bool = False) -> figure:
-    """The same picture for a page, which fills it with `probe_state`; `compact` has no tools."""
+    """The picture of this name without data, for a page that fills it with `probe_state`; `compact` has no tools."""
     plot = PICTURES[name]()
     if compact:
         plot.toolbar_location = None

@@ -15,7 +15,7 @@ from .theme import Theme, apply_theme, frame, themed
 
 
 def transfer(found: Transfer, theme: Theme) -> LayoutDOM:
-    """Gain above phase, a point for each line at which the input force has a part that counts.
+    """Gain above phase, a point for each line at which the input force is not negligible.
 
     Raises `BadInput` where the input force has none.
     """

@@ -130,7 +130,7 @@ def written(events: list[DocumentPatchedEvent]) -> bytes | None:
 
 
 def _encoded(document: Document, events: list[DocumentPatchedEvent], connection: Any) -> bytes:
-    """The same by Bokeh, which sends along models that the browser does not have yet."""
+    """The bytes of the message as Bokeh makes it, with the models that the browser does not have yet."""
     message = connection.protocol.create("PATCH-DOC", events)
     parts: list[bytes | memoryview] = []
     for text in (message.header_json, message.metadata_json, message.content_json):
@@ -240,7 +240,7 @@ def change(model: Model, **values: Any) -> None:
 
 
 def _hold(events: list[Any], event: Any) -> None:
-    """Keep an event in place of an earlier one of the same property, which nobody needs any more."""
+    """Keep an event, and drop an earlier event of the same property."""
     for place, one in enumerate(events):
         if type(one) is type(event) and one.model is event.model and one.attr == event.attr:
             events[place] = event

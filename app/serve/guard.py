@@ -129,7 +129,7 @@ class Guard(RequestHandler):
 
 
 class GuardedSocket(Guard):
-    """The same for a websocket: one connection for a session, not too many messages, and none that no page sends."""
+    """Guard of a websocket: one connection for a session, not too many messages, and none that no page sends."""
 
     _tokens = FRAMES_AT_ONCE
     _at = 0.0
@@ -207,7 +207,7 @@ class GuardedSocket(Guard):
 
 
 def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:
-    """The handler, with a guard before it; one of files gives them compressed."""
+    """The handler class with a guard before it; a handler of files also sends them compressed."""
     guard = GuardedSocket if issubclass(handler, WSHandler) else Guard
     files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
     return type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})

@@ -1,7 +1,8 @@
 """Where computations of the dashboard run: named queues shared by all visitors, and latest-wins jobs, of which each
 visitor has one for the picture and one for drafts of the curve.
 
-Kernels release the GIL, so threads are enough; fair turns of those that compute pictures are in turns.py. Long work has
+Kernels release the GIL, so threads are enough; turns.py shares the processor fairly among the computations of
+pictures. Long work has
 queues of its own, because a picture must never wait for it.
 """
 
@@ -34,8 +35,8 @@ class Queue:
     The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
     `patient` queue give way to others (priorities.py).
 
-    Each piece of work has its thread from the beginning, or waits because there is none: a thread that has been given
-    something and has not begun yet must not count as free, or what comes then waits for as long as that takes.
+    Work is assigned to a thread at once, or waits because no thread is free. A thread that has been given work and has
+    not begun it must not count as free: the next work would otherwise wait until the first is done.
     """
 
     def __init__(self, name: str, workers: int, patient: bool = False) -> None:

@@ -35,10 +35,10 @@ class _Computation(Generic[Item]):
 
 
 class Shared(Generic[Item]):
-    """Computations by their keys. `kept` chooses what is kept of the items of a finished one, `size` is their memory.
+    """Computations by their keys. `kept` chooses which items of a finished one are kept; `size` gives their memory.
 
-    The finished ones take at most `memory` bytes; the one that has not been asked for longest goes first. With `turns`
-    the computations take turns (turns.py).
+    Finished computations take at most `memory` bytes; the least recently used is dropped first. With `turns` the
+    computations take turns (turns.py).
     """
 
     def __init__(self, queue: Queue, memory: int, size: Callable[[Item], int],

@@ -28,12 +28,12 @@ _BEGINNING = 0.03
 #: How long a turn is kept although others wait [s]. At every pause would be too often: passing it to another thread
 #: costs some waits for the interpreter.
 _SLICE = 0.02
-#: Over how many beginnings, and in which time [s], waits are averaged.
+#: Waits are averaged over so many computations that began, within so many seconds.
 _REMEMBERED, _LATELY = 200, 10.0
 #: After so long a wait a computation has a slice although others use all cores [s].
 _LONGEST_WAIT = 0.5
-#: How often those that wait look whether there is room, which also comes as time passes [s]; each waits longer the more
-#: there are, up to so many times as long.
+#: Time between two checks of a waiting computation whether it may begin [s]: it may when a turn ends or grows too old.
+#: The more computations wait, the longer this time, up to so many times as long.
 _LOOK, _MOST_LOOKS = 0.05, 20
 
 #: Time in which half of what a visitor has used is forgotten [s].
@@ -85,7 +85,7 @@ class _Turn:
         self.granted = threading.Event()
 
     def rank(self, now: float) -> tuple[bool, bool, float]:
-        """Of those that wait, who has the lowest is next."""
+        """Place in the queue: of the computations that wait, the one with the lowest rank is next."""
         return not self.begins, now - self.at < _LONGEST_WAIT, self.cpu_time.used
 
 
@@ -144,9 +144,9 @@ class FairScheduler:
             self._grant()
 
     def should_yield(self, turn: _Turn, begins: bool) -> bool:
-        """Whether a turn is to be given up now that the computation has just begun, or no longer has.
+        """Whether a turn must be given up; `begins` says whether its computation has only just begun.
 
-        It is if another has a better claim, or if more compute than `at_once` and this one has used most.
+        It must if another has a better claim, or if more than `at_once` compute and this one has used most.
         """
         if begins:
             return False
@@ -278,7 +278,7 @@ class SchedulerSlot(Flag):
             yield result
 
     def _give_way(self) -> None:
-        """What has not just begun is not only later in turn, the system also gives it less of a processor."""
+        """Lower the system's priority of this thread, unless the computation has only just begun."""
         if not self.begins:
             give_way()
 

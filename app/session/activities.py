@@ -16,7 +16,7 @@ def picture_activities(session: Session, busy: bool) -> list[Activity]:
     picture, live = session.picture, session.mode == "live"
     running = COMPUTING if busy else READY
     return [
-        ("chain, map, force trains", running, f"from one {'live' if live else 'settled'} run"),
+        ("chain, map, forces", running, f"from one {'live' if live else 'settled'} run"),
         ("live run", (COMPUTING if session.playing else READY) if live else OFF,
          ("goes on" if session.playing else "paused") if live else "the page shows the steady state"),
         ("steady state", OFF if live else running,

@@ -55,9 +55,9 @@ def trains_csv(run: Run) -> str:
 
 
 def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
-    """The resonance curves, one row a point: largest forces, the regime with its evidence, empty where none is known.
+    """The resonance curves, one row a point: largest forces, and the regime with its evidence.
 
-    `claim` is the relative error of the output force.
+    `claim` is the stated relative error of the output force; a cell is empty where a number is not known.
     """
     told = [(start, point) for start, points in curves.items() for point in points]
     evidence = evidence_columns([point.regime for _, point in told], "frequency")
@@ -80,7 +80,7 @@ def script(screen: Screen) -> str:
 
 
 def notebook(screen: Screen) -> str:
-    """The same as a Jupyter notebook, with pictures."""
+    """A Jupyter notebook that computes what is on the screen, compares the results and draws them."""
     cells: list[dict[str, Any]] = []
     for words, source in [*_pieces(screen), *_drawings(screen)]:
         if words:

@@ -23,7 +23,7 @@ class Page:
 
     @property
     def activity(self) -> Activity | None:
-        """Name, state and detail for the list of what is computed now; None where the page has no line in it."""
+        """Name, state and detail for the list of running computations; None if the page has no line in the list."""
         return None
 
     def picture_requested(self) -> None:

@@ -57,7 +57,7 @@ def label(setting: Setting) -> str:
 
 
 def measured_settings() -> Iterator[MeasuredSetting]:
-    """Every setting of every way, the cheap ones of each first."""
+    """Every setting of every method, for each method the cheap ones first."""
     for method in METHODS.values():
         values = _TOLERANCES if method.adaptive else _REFINES
         for value in values:

@@ -27,7 +27,7 @@ _TURNS = 7
 _RUN = 0.004
 #: Method that shows the cost of an effect's code alone.
 CODE = "rk4"
-#: Method that shows its cost in the motion of the live picture.
+#: Method that shows an effect's cost in this motion, with steps split at contact events.
 MOTION = FIXED_STEP
 
 #: Drive periods that are run before timing, so that the chain is in motion.
@@ -57,7 +57,7 @@ class EffectCost:
 
     @property
     def percent(self) -> float:
-        """The difference in per cent of the step without the effect."""
+        """Time that the effect adds to a step, in per cent of a step without it."""
         return 100.0 * self.difference / self.without
 
 

@@ -17,7 +17,7 @@ from ..stop import Stop
 
 #: Usual choices of steps in a drive period; the second is shown first.
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)
-#: Samples a period of the drawn force; it divides all of them.
+#: Samples a period of the drawn force, a divisor of all these numbers of steps.
 _SAMPLES = 100
 #: Drive periods run from rest, and the last of them, which are shown: a 1:3 resonance pushes once in three. Without a
 #: drive it is one time 1/f.

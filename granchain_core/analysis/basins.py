@@ -104,7 +104,7 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
     Raises
     ------
     BadInput
-        Another coordinate, twice the same, or too many starts.
+        An unknown coordinate, the same one twice, or too many starts.
     NumbersFailed
         No start stays finite.
 

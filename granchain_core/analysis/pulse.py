@@ -30,8 +30,8 @@ _PART = 0.02
 def solitary_speed(scene: Scene, force: float, constant: float = DISCRETE) -> float:
     """Speed of a solitary wave with this largest force [N], c K^{1/3} F^{1/6} / √m [beads/s].
 
-    NaN for dimers, tapered and precompressed chains, whose waves are others. A striker and an impurity, which are
-    single beads, do not matter.
+    NaN for dimers, tapered and precompressed chains, which carry other waves. A striker and an impurity are single
+    beads and are ignored.
     """
     if len(scene.pattern) > 1 or scene.dimer != 1.0 or scene.taper != 1.0 or scene.F0 > 0.0:
         return math.nan
@@ -50,11 +50,11 @@ class Pulse(Labelled):
     contact : numpy.ndarray, shape (N - 1,)
         Contact c joins beads c and c + 1.
     time : numpy.ndarray, shape (N - 1,)
-        When its force is largest [s].
+        Time at which the contact's force is largest [s].
     force : numpy.ndarray, shape (N - 1,)
-        That force [N].
+        The largest force [N].
     speed : numpy.ndarray, shape (N - 1,)
-        Speed of the maximum between the contact before and the one behind [beads/s]; NaN at both ends.
+        Speed of the maximum from the previous contact to the next one [beads/s]; NaN at both ends.
     width : numpy.ndarray, shape (N - 1,)
         Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN at
         both ends.

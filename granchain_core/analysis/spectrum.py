@@ -1,12 +1,13 @@
 """Spectra of forces, and the transfer from the input force to the output force.
 
 Equation   F(t) = Σ_m A_m cos(2π m f t / n + φ_m) for a motion of period n: its Fourier series, without a window
-           H_m = F̂_out,m / F̂_in,m at the lines at which the input force has a part that counts
+           H_m = F̂_out,m / F̂_in,m at the lines at which the input force is not negligible
 Note       The spectrum of a motion without a period is no such series: quasi-periodic motion has lines at combinations
            of its frequencies, chaotic motion a continuous part. Its record is weighted by a Hann window, and a peak's
            height is that of a sine that stands alone; two peaks closer than 2 / duration are one.
-           Samples see nothing above half their frequency, and what is there is folded back. `aliasing` estimates it:
-           twice the largest difference from the lines that every second sample gives, below half of its frequencies.
+           Frequencies above half the sampling frequency are folded back (aliased). `aliasing` estimates the error of
+           this: twice the largest difference from the lines computed from every second sample, in the lower half of
+           their frequencies.
 """
 
 from __future__ import annotations
@@ -40,9 +41,9 @@ class Spectrum(Labelled):
     frequency : numpy.ndarray, shape (M,)
         From 0 to half the sampling frequency [Hz].
     amplitude : numpy.ndarray, shape (M,)
-        Of the cosine at each frequency, the mean at 0 [N].
+        Amplitude of the cosine at each frequency; at frequency 0 the mean of the force [N].
     phase : numpy.ndarray, shape (M,)
-        Of the cosine at each frequency, counted from drive phase 0 [rad].
+        Phase of the cosine at each frequency, counted from drive phase 0 [rad].
     period : int or None
         Drive periods of the motion whose Fourier series it is; None: a windowed record of a motion without period.
     aliasing : float
@@ -87,7 +88,7 @@ class Spectrum(Labelled):
                 "resolution": self.resolution}
 
     def summary(self) -> list[str]:
-        """Of what it is, and its largest lines."""
+        """Which force it belongs to, and its largest lines."""
         top = [i for i in np.argsort(-self.amplitude) if self.frequency[i] > 0.0][:3]
         kind = f"lines of a motion of period {self.period}" if self.period else "windowed record, no period"
         return [f"{self.force} force, {kind}; {self.resolution:.4g} Hz apart",
@@ -140,7 +141,7 @@ class Transfer(Labelled):
     def summary(self) -> list[str]:
         """How many lines, and what passes at the drive frequency."""
         at = int(np.argmin(np.abs(self.frequency - self.scene.f)))
-        return [f"{len(self.frequency)} lines at which the input force has a part that counts",
+        return [f"{len(self.frequency)} lines at which the input force is not negligible",
                 f"at {self.frequency[at]:.6g} Hz: gain {self.gain[at]:.4g}, phase {self.phase[at]:+.3f} rad"]
 
 

@@ -63,7 +63,7 @@ class StrobeDiagram(Labelled):
     scene : Scene
         The chain.
     knob : str
-        What is varied.
+        Name of the knob that is varied.
     start : str
         "rest": every value from rest; "up" or "down": the state is carried along.
     points : list of StrobePoint

@@ -83,7 +83,7 @@ class Attractor:
 
     @property
     def error_estimate(self) -> float | None:
-        """Relative error of the output force; None where none is claimed."""
+        """Relative error of the output force; None where none is stated."""
         return self.force_errors.output
 
     @property

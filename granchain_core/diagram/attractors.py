@@ -46,7 +46,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
     Random states are uniform in a box of displacements and velocities, 1.5 times the largest of the motion from rest,
-    and at least A0 and 2π f A0; the shares are relative to it (docs/diagram.md).
+    and at least A0 and 2π f A0; the shares refer to this box (docs/diagram.md).
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     random_states : int
         How many random states, 0 to 10,000.
     seed : int
-        Of the random states; the same seed gives the same answer.
+        Seed of the random states; the same seed gives the same answer.
     stop : Stop, optional
         When set, the search ends with what it has found, or raises `Cancelled` if that is nothing.
     progress : callable, optional

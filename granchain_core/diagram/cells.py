@@ -29,8 +29,8 @@ from .grid import Grid
 
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
 CELL_REGIMES = (*NAMES, "failed")
-#: One cell. Forces in N, NaN where the computation failed; error estimates are relative, `error_estimate` that of the
-#: output force, NaN where none is claimed; `period` in drive periods, 0 where not periodic; `decay` per orbit,
+#: One cell. Forces in N, NaN where the computation failed; stated errors are relative, `error_estimate` that of the
+#: output force, NaN where none is stated; `period` in drive periods, 0 where not periodic; `decay` per orbit,
 #: `multiplier` (the largest |μ|) and `lyapunov` (per drive period) NaN where not seen or not computed.
 CELL = np.dtype([
     ("number", "<i4"), ("regime", "i1"), ("period", "<i2"), ("periods_run", "<i4"), ("max_input_force", "<f8"),

@@ -1,7 +1,7 @@
 """Comparing results: whether two of them are the same steady state.
 
 Periodic results are the same if all their stroboscopic states agree for some shift by whole periods, so that the n
-copies of a period-n orbit count once; first within the errors claimed for them, then, when each has been brought onto
+copies of a period-n orbit count once; first within the errors stated for them, then, when each has been brought onto
 its orbit by Newton's method, within the error of that. Motions that are not periodic are the same if their sections
 lie in each other: the median distance of the states of one to the nearest of the other is no larger than `_APART`
 times that within each.

@@ -46,7 +46,7 @@ class Driven(Motion):
     max_input_force, max_output_force, max_output_force_elastic : float
         Largest forces from the start to the end [N], between the knots too.
     force_errors : ForceErrors
-        Relative errors of these.
+        Relative errors of these forces.
     error_estimate : float
         Largest error of any displacement over the largest displacement.
     energy_residual : float
@@ -55,7 +55,7 @@ class Driven(Motion):
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost
-        What the computation took.
+        Computing time, steps and evaluations.
 
     Examples
     --------

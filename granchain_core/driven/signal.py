@@ -36,11 +36,11 @@ class Signal:
     time : numpy.ndarray, shape (T,)
         Knots [s], ascending.
     displacement : numpy.ndarray, shape (T,)
-        Of the driver [m].
+        Displacement of the driver at the knots [m]; it is the integral of the velocity.
     velocity : numpy.ndarray, shape (T,)
-        Of the driver [m/s]; a straight line between two knots, of which the displacement is the integral.
+        Velocity of the driver at the knots [m/s]; between two knots it is linear in time.
     words : str
-        What it is.
+        Description of the signal.
 
     Examples
     --------
@@ -98,7 +98,7 @@ class Signal:
 
     @classmethod
     def chirp(cls, amplitude: float, low: float, high: float, duration: float) -> Signal:
-        """A sin 2π(f₀ t + (f₁ − f₀) t²/2T): the frequency goes evenly from f₀ to f₁ [Hz] in T [s]."""
+        """A linear chirp, A sin 2π(f₀ t + (f₁ − f₀) t²/2T): the frequency goes from f₀ to f₁ [Hz] in T [s]."""
         def velocity(t: np.ndarray) -> np.ndarray:
             rate = low + (high - low) * t / duration
             phase = low * t + 0.5 * (high - low) * t * t / duration
@@ -130,10 +130,10 @@ class Signal:
 
     @classmethod
     def noise(cls, amplitude: float, low: float, high: float, duration: float, seed: int = 0) -> Signal:
-        """Noise of even power from f₀ to f₁ [Hz] with the root mean square A/√2 of a sine of amplitude A.
+        """Noise with a flat spectrum of displacement from f₀ to f₁ [Hz] and the rms A/√2 of a sine of amplitude A.
 
-        Two hundred sines of random frequencies and phases, the same for the same seed; it grows from nothing over the
-        first two periods of f₀.
+        The sum of two hundred sines of random frequencies and phases, the same for the same seed. The noise grows from
+        zero over the first two periods of f₀.
         """
         rng = np.random.default_rng(seed)
         omega = 2.0 * np.pi * rng.uniform(low, high, _SINES)

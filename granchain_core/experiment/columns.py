@@ -38,9 +38,9 @@ class Convention:
     units : dict
         The unit of a quantity whose title has none.
     insisted : tuple of str
-        Quantities of which no title may have another unit than that.
+        Quantities whose titles may not name a unit other than the one in `units`.
     same : dict
-        A quantity that is another one in this reader.
+        Quantities that this reader takes for another one, such as a force for the input force.
     """
 
     untitled: tuple[str, ...] = ()

@@ -18,7 +18,7 @@ UNITS: dict[str, dict[str, float]] = {
     "displacement": {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9, "cm": 1e-2},
     "acceleration": {"m/s²": 1.0, "mm/s²": 1e-3, "g": _GRAVITY},
 }
-#: A voltage is no quantity of the chain: it needs its sensor's sensitivity.
+#: Units of voltage: a column in volts needs the sensitivity of its sensor.
 VOLTS = {"V": 1.0, "mV": 1e-3}
 #: Quantities of a file and the dimension of each. A curve's force is the largest output force.
 QUANTITIES = {"frequency": "frequency", "force": "force", "error": "force", "time": "time", "velocity": "velocity",

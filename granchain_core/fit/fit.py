@@ -48,9 +48,9 @@ class Fit(Labelled):
     misfit : float
         The least −2 ln likelihood up to a constant: χ² plus the logarithms of enlarged variances.
     data : int
-        Data and priors compared.
+        Number of data and priors.
     freedom : int
-        Data and priors less parameters.
+        Degrees of freedom: number of data and priors minus number of parameters.
     probability : float or None
         Probability of a χ² at least as large if the model were true; None where the data's errors are not known.
     verdict : str
@@ -58,7 +58,7 @@ class Fit(Labelled):
     sentence : str
         The verdict with its evidence.
     evaluation : Evaluation
-        Residuals and model values at the best place.
+        Residuals and model values at the best values.
     landscape : tuple of numpy.ndarray
         Values (n, p) and misfits (n,) of everything that was evaluated.
     target : CurveTarget, SeriesTarget or FeatureTarget
@@ -237,7 +237,10 @@ def _counted(problem: Problem, data: int, freedom: int) -> int:
 
 
 def _probability(problem: Problem, place: np.ndarray, data: int, freedom: int) -> float | None:
-    """Probability of a χ² as large as this if the model is true; None where no errors are known, or nothing is free."""
+    """Probability of a χ² as large as this if the model were true.
+
+    None where no errors are known, or nothing is left free.
+    """
     counted = _counted(problem, data, freedom)
     return float(chi2.sf(problem.chi_squared(place), counted)) if problem.target.sigma_known and counted > 0 else None
 

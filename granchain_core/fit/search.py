@@ -29,7 +29,7 @@ Target = CurveTarget | SeriesTarget | FeatureTarget
 STEP = 2e-3
 #: Places from which the search goes down, evaluations of each, and of the simplex for every parameter.
 _STARTS, _DESCENT, _SIMPLEX = 3, 20, 40
-#: How far apart they are, in parts of the bounds, and how often the design is doubled.
+#: Least distance of these places, as a fraction of the range between the bounds, and how often the design is doubled.
 _APART, _ROUNDS = 0.1, 3
 
 

@@ -166,7 +166,7 @@ class SeriesTarget:
 
     @property
     def frequencies(self) -> np.ndarray:
-        """Empty (0,): a series has no frequencies of its own, it is compared at the scene's."""
+        """Empty (0,): a series is compared at the scene's own drive frequency."""
         return np.zeros(0)
 
     @property

@@ -44,7 +44,7 @@ class Picture:
 class Case:
     """One hard case.
 
-    `measure(quick)` takes the measurements, with smaller counts where it is quick; `picture()` the lines drawn next to
+    `measure(quick)` takes the measurements, with smaller counts if `quick`; `picture()` returns the lines drawn next to
     them. `hard` and `naive` are one line each for a student: what is hard, and what a naive solver does there.
     """
 

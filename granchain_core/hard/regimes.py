@@ -28,9 +28,10 @@ def normal_form(rng: np.random.Generator, kind: str, closeness: float,
                 count: int) -> tuple[np.ndarray, np.ndarray, int]:
     """Strobes (count + 1, 2, N) of a map near a bifurcation, its orbit (q, 2, N) and the orbit's period q.
 
-    In the coordinates of the normal form one direction has the multiplier 1 − ε (fold), −(1 − ε) (period doubling) or a
-    pair (1 − ε)e^{±iθ} (Neimark–Sacker) with a quadratic or cubic term; the others decay fast. A random linear change
-    of coordinates hides it, and rounding of 1e-15 is added. Beyond a period doubling ("doubled") the period is 2.
+    In the coordinates of the normal form one direction has the multiplier 1 − ε (fold) or −(1 − ε) (period doubling),
+    or two have the pair (1 − ε)e^{±iθ} (Neimark–Sacker), with a quadratic or cubic term; the others decay
+    fast. A random linear change of coordinates hides it, and rounding of 1e-15 is added. Beyond a period doubling
+    ("doubled") the orbit has period 2.
     """
     size = 2 * _BEADS
     basis = np.linalg.qr(rng.standard_normal((size, size)))[0] + 0.2 * rng.standard_normal((size, size))
@@ -103,7 +104,7 @@ def near_bifurcation(quick: bool) -> list[Measurement]:
 
 
 def chain_claims(count: int) -> tuple[int, int]:
-    """Settled chains near a period doubling of `sec2`, and those further from Newton's orbit than they state."""
+    """Settled chains near section 2's period doubling, and those further from Newton's orbit than they state."""
     checked, outside = 0, 0
     for frequency in np.linspace(560.0, 640.0, count):
         chosen = scene("sec2").evolve(f=float(frequency))
@@ -120,7 +121,7 @@ def chain_claims(count: int) -> tuple[int, int]:
 
 
 def near_bifurcation_picture() -> Picture:
-    """Distance from the orbit of a slow approach, the change per period, and our bound where claimed."""
+    """Distance from the orbit of a slow approach, the change per period, and our bound where stated."""
     strobes, orbit, _ = normal_form(np.random.default_rng(8), "period_doubling", 0.02, 1_000)
     scale, marks = np.abs(strobes).max(axis=(0, 2)), np.arange(20, 1_000, 20)
     true = [distance(strobes[i], orbit, scale) for i in marks]
@@ -230,7 +231,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
 
 
 def _two_runs(tolerance: float, count: int) -> np.ndarray:
-    """Distance (count,) of an observer from its chain, period by period, as two runs of SciPy from one state."""
+    """Distances (count,) of chain and observer, two runs of SciPy from the same state on the chain's orbit."""
     orbit = periodic_orbit(scene("fig11-free"))
     scales = Engine(orbit.scene, adaptive_setting()).scaled.scales
     start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])

@@ -13,7 +13,7 @@ from math import asin, pi
 import numpy as np
 
 from ..kernels.dop853.run import located_step
-from ..kernels.dop853.step import ALL_STAGES, STAGES, Cycle, Dop853, Work, evaluate
+from ..kernels.dop853.step import ALL_STAGES, STAGES, Cycle, Dop853, Dop853Workspace, evaluate
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.foundation import Foundation
@@ -93,11 +93,12 @@ def run(cases: np.ndarray, driven: bool) -> np.ndarray:
     return found
 
 
-def workspace(row: int) -> Work:
+def workspace(row: int) -> Dop853Workspace:
     """Arrays of the adaptive method for a chain of `row` bodies."""
-    return Work(k=np.zeros((ALL_STAGES, 2 * row)), stage=np.zeros(2 * row), end=np.zeros(2 * row),
-                probe=np.zeros(2 * row), slope=np.zeros(2 * row), dense=np.zeros((7, 2 * row)), scale=np.zeros(2),
-                next_step=np.zeros(1), forces=Forces(np.zeros(row - 1), None))
+    return Dop853Workspace(
+        k=np.zeros((ALL_STAGES, 2 * row)), stage=np.zeros(2 * row), end=np.zeros(2 * row), probe=np.zeros(2 * row),
+        slope=np.zeros(2 * row), dense=np.zeros((7, 2 * row)), scale=np.zeros(2), next_step=np.zeros(1),
+        forces=Forces(np.zeros(row - 1), None))
 
 
 def missed(cases: np.ndarray, found: np.ndarray) -> np.ndarray:

@@ -133,7 +133,7 @@ class File:
 
 @contextlib.contextmanager
 def opened(path: str | Path, fault: str) -> Iterator[File]:
-    """The file at `path`; every error becomes a `BadInput` that says which file, `fault`, and why.
+    """Open the file at `path`; every error becomes a `BadInput`: the file's name, then `fault`, then the reason.
 
     A file whose seal fits is what granchain wrote, and is read here. One of an earlier version has no seal: HDF5
     parses it in a child, because a single damaged bit can keep HDF5 busy for ever or end its process.

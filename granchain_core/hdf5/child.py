@@ -101,4 +101,4 @@ class Child:
         self._process.kill()
         if self._late:
             return Refused(f"reading it took more than {self._seconds} s, as only a damaged file does")
-        return Refused(f"HDF5 could not bear it (the process that read it ended with status {self._process.wait()})")
+        return Refused(f"HDF5 crashed on it (the process that read it ended with status {self._process.wait()})")

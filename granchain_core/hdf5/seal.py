@@ -5,7 +5,7 @@ any other. h5py removes the line when it opens a file for writing. Files with a 
 2, those of earlier versions of granchain version 0 and no seal: a sealed file cannot lose its seal and pass for an old
 one.
 
-The seal finds damage and careless changes. It is no signature: who forges a file can seal it, too.
+The seal finds damage and careless changes. It is not a signature: anyone who forges a file can also seal it.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ..kernels.dop853.run import Stretch, run_dop853
-from ..kernels.dop853.step import ALL_STAGES, Cycle, Dop853, Work
+from ..kernels.dop853.step import ALL_STAGES, Cycle, Dop853, Dop853Workspace
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import Output, Samples, first_not_finite
@@ -33,9 +33,10 @@ class Adaptive:
         self.scaled = scaled
         self.grid = samples
         self.pause: Callable[[], None] = Stop().pause
-        self.work = Work(k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
-                         slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
-                         next_step=np.array([min(_FIRST_STEP, largest)]), forces=scaled.forces())
+        self.work = Dop853Workspace(
+            k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
+            slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
+            next_step=np.array([min(_FIRST_STEP, largest)]), forces=scaled.forces())
 
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""

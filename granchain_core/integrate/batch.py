@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..kernels.batch import run as kernels
-from ..kernels.batch.period_end import COARSE_ERROR_LEFT, DISTANCE, FINE_COLUMNS, FORCES, STROBES_KEPT
+from ..kernels.batch.period_end import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, STROBES_KEPT
 from ..kernels.batch.unequal import Unequal
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
@@ -25,8 +25,6 @@ from ..stop import Stop
 NEVER = int(np.iinfo(np.int64).max)
 #: Drive periods until the next extrapolation after a failed one, at the start.
 _PAUSE = 16
-#: Whole numbers that a batch keeps of each member (`BatchState`).
-_COUNTERS = ("steps", "left", "periods", "return_at", "earliest", "extrapolate_from", "pause", "kept", "testing", "due")
 #: Fewest orbits in one round of a finer run.
 _FEWEST = 2
 
@@ -48,7 +46,7 @@ def _rows(rows: int) -> np.ndarray:
 
 
 class Batch:
-    """Places for as many scenes of one structure and one N as a vector holds, run by one thread."""
+    """BATCH_SIZE lanes for scenes of one structure and one N, run by one thread."""
 
     def __init__(self, example: Scene, stop: Stop) -> None:
         self.example = scaled = scale_chain(example)
@@ -63,22 +61,24 @@ class Batch:
             turn=_rows(2), beta=_rows(1), h=_rows(1),
         )
         rows = 2 * (n + 2)
-        counters = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in _COUNTERS}
+        counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
+            "steps", "left", "periods", "return_at", "earliest", "extrapolate_from", "pause", "due", "shadow",
+            "strobe_count", "testing")}
+        numbers = {name: np.zeros(BATCH_SIZE) for name in ("slowest", "change_before_extrapolation", "distance")}
         self.state = kernels.BatchState(
-            y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2), peaks=_rows(PEAKS),
-            slowest=np.zeros(BATCH_SIZE), change_before_extrapolation=np.zeros(BATCH_SIZE),
-            before=np.zeros((BATCH_SIZE, 2, n + 2)),
+            **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2),
+            peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)), before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
-            last_check=np.zeros((BATCH_SIZE, DISTANCE + 1)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
+            last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
             limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
-            stages=(_rows(rows), _rows(rows), _rows(rows)), **counters,
+            stages=(_rows(rows), _rows(rows), _rows(rows)),
         )
         for member in range(BATCH_SIZE):
             self.empty(member)
 
     def empty(self, member: int) -> None:
-        """Leave a place empty: it holds the example at rest, which is never checked."""
+        """Leave a lane empty: it holds the example at rest, which is never checked."""
         self.put(member, self.example, np.zeros(len(self.state.y)), 1, NEVER, NEVER)
 
     def put(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, return_at: int,
@@ -105,11 +105,12 @@ class Batch:
         state.steps[member] = state.left[member] = steps
         state.y[:, member], state.overlaps[:, member] = y, 0.0
         state.ends[:, member] = 1.0  # counts as closed, so that no closing is recorded here
-        state.strobes[member, 0], state.kept[member] = y.reshape(2, -1), 1
+        state.strobes[member, 0], state.strobe_count[member] = y.reshape(2, -1), 1
         state.periods[member], state.return_at[member], state.earliest[member] = 0, return_at, earliest
         state.extrapolate_from[member], state.pause[member] = 0, _PAUSE
         state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
         state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0
+        state.shadow[member] = kernels.NO_SHADOW
 
     def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, rate: float,
                  maxima: np.ndarray) -> None:
@@ -121,6 +122,22 @@ class Batch:
         self.put(member, scaled, y, refine, NEVER, orbits * period)
         self.state.fine_record[member] = period, rate, *maxima, orbits, 0.0
 
+    def put_pair(self, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, offset: np.ndarray,
+                 distance: float, periods: int) -> None:
+        """Make a scene a member, with a shadow in another lane: a trajectory that begins at y + offset.
+
+        After each period the shadow is brought back to `distance`, the length of `offset`. The member is due after
+        `periods` periods, at most STROBES_KEPT of them.
+        """
+        self.put(member, scaled, y, 1, periods, NEVER)
+        self.put(shadow, scaled, y + offset, 1, NEVER, NEVER)
+        state = self.state
+        state.shadow[member], state.shadow[shadow], state.distance[member] = shadow, kernels.IS_SHADOW, distance
+
+    def growth(self, member: int) -> np.ndarray:
+        """Logarithm of the growth of the distance to the member's shadow in each period (periods,); NaN if lost."""
+        return self.state.growth[member, : int(self.state.periods[member])]
+
     def run(self) -> tuple[int, bool]:
         """Run until a member is due for a check; its number, and whether it is finite."""
         status, member = kernels.run_batch(self.members, self.state, self.stop.flag)
@@ -128,25 +145,15 @@ class Batch:
             raise Cancelled
         return int(member), status == DONE
 
-    def run_pairs(self, start: float, periods: int) -> np.ndarray:
-        """Run members (0, 1), (2, 3), … as chains and shadows; the growth of their distances, (pairs, periods).
-
-        It is NaN for a pair that did not stay finite.
-        """
-        growth = np.zeros((BATCH_SIZE // 2, periods))
-        if kernels.run_pairs(self.members, self.state, start, growth, self.stop.flag) == CANCELLED:
-            raise Cancelled
-        return growth
-
     def strobes(self, member: int, most: int = STROBES_KEPT) -> np.ndarray:
         """The last `most` remembered strobes of a member in order, (P, 2, N), displacement and w in scaled units."""
-        kept = int(self.state.kept[member])
+        kept = int(self.state.strobe_count[member])
         return self.state.strobes[member, max(0, kept - most) : kept, :, 1:-1]
 
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse member has settled on: from before it was disturbed, if it was."""
         disturbed = self.state.slowest[member] > 0.0
-        return (self.state.fine_record[member, FORCES : FORCES + 3].copy() if disturbed
+        return (self.state.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy() if disturbed
                 else self.maxima(member, period)[0])
 
     def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray]:

@@ -12,8 +12,8 @@ from ..kernels.contact_cubic import ENDS
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
 from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
-from ..kernels.rk4.observed import SampledForce, run_observed
-from ..kernels.rk4.step import DriveTable, Rk4Split, Stages
+from ..kernels.rk4.piecewise import DrivePieces, run_pieces
+from ..kernels.rk4.step import DriveTable, Rk4Split, Rk4Workspace
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import CANCELLED, NOT_FINITE
 from ..scaling import ScaledChain
@@ -31,8 +31,8 @@ MOST_HALVINGS = 7
 class ChainInPieces:
     """A scaled chain whose driver has one polynomial (T − 1, k) between two times [s]; `counts` adds up over its runs.
 
-    `pieces` are scaled, constant term first. `overlap` is about how large overlaps are, in scaled units: the live
-    method's step is for 1, and more makes contacts stiffer.
+    `pieces` are scaled, constant term first. `overlap` is the expected size of overlaps in scaled units: the default
+    step of the fixed-step method is for 1, and larger overlaps make contacts stiffer.
     """
 
     def __init__(self, scaled: ScaledChain, time: np.ndarray, pieces: np.ndarray, overlap: float, stop: Stop,
@@ -76,16 +76,16 @@ class ChainInPieces:
         displacement, velocity = scaled.rows(y)
         displacement[:] = start.displacement / scaled.scales.length
         velocity[:] = start.velocity / scaled.scales.velocity
-        stages = Stages(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
-                        np.zeros((ENDS, row - 1)), scaled.forces(), None)
+        workspace = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
+                                 np.zeros((ENDS, row - 1)), scaled.forces(), None)
         scaled.slots.driver.piece[:] = self._pieces[0]
-        place(scaled.slots, 0.0, y, stages.k[0], stages.forces, True)
+        place(scaled.slots, 0.0, y, workspace.k[0], workspace.forces, True)
         reset_peaks(self._log.peaks)
         samples = empty_samples(scaled, len(self._spans) + 1)
         nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)
-        status, done = run_observed(Rk4Split(0), Trajectory(scaled.slots, nothing, y, stages),
-                                    SampledForce(self._spans, self._pieces, self._substeps * 2**halvings), samples,
-                                    Output(self._log, self.counts.array, self._stop.flag))
+        status, done = run_pieces(Rk4Split(0), Trajectory(scaled.slots, nothing, y, workspace),
+                                  DrivePieces(self._spans, self._pieces, self._substeps * 2**halvings), samples,
+                                  Output(self._log, self.counts.array, self._stop.flag))
         if status == CANCELLED:
             raise Cancelled
         if status == NOT_FINITE:

@@ -22,9 +22,9 @@ from ..kernels.forces.largest import new_log
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.naive import naive_motion
 from ..kernels.rk4.long_chain import LongChain
-from ..kernels.rk4.run import Kept, run_steps
-from ..kernels.rk4.short_chain import KEPT, STEPS_IN_BLOCK, WIDTHS, ShortChain
-from ..kernels.rk4.step import DriveTable, Stages
+from ..kernels.rk4.run import RunRecord, run_steps
+from ..kernels.rk4.short_chain import STATE_ROWS, STEPS_IN_BLOCK, WIDTHS, ShortChain
+from ..kernels.rk4.step import DriveTable, Rk4Workspace
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
@@ -51,14 +51,14 @@ class FixedStep:
         self._simd = simd
         self._no_samples = empty_samples(scaled, 0)
         self._no_periods = np.zeros((0, 2, 0)), np.zeros((0, 3))
-        self.drive = self._driver_table()
-        self.work: Any = Stages(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
-                                np.zeros((ENDS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
+        self.drive = self._driver_table(scaled)
+        self.work: Any = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
+                                      np.zeros((ENDS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
 
-    def _driver_table(self) -> np.ndarray:
+    def _driver_table(self, scaled: ScaledChain) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
         sine, cosine = _half_steps(self.grid)
-        driver = self.scaled.slots.driver
+        driver = scaled.slots.driver
         if driver is None:
             return np.zeros((sine.size, 2))
         return np.stack([driver.amplitude * sine, driver.amplitude * driver.beta * cosine], 1)
@@ -75,8 +75,16 @@ class FixedStep:
         """Go on with other values in the same slots, or with other effects."""
         self.scaled = scaled
         self._no_samples = empty_samples(scaled, 0)
-        self.drive = self._driver_table()
+        self.drive = self._driver_table(scaled)
         self.work = self.work._replace(forces=scaled.forces(), simd=self.new_simd_workspace())
+
+    def move(self, scaled: ScaledChain) -> None:
+        """Become the stepper of another scene with the same effects and as many steps a period."""
+        if scaled.slots.chain is self.scaled.slots.chain:  # it differs only by its frequency: `scale_like`
+            self.scaled, self.drive = scaled, self._driver_table(scaled)
+        else:
+            self.use(scaled)
+        self.h = scaled.period / self.grid
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: nothing is remembered of the last."""
@@ -103,13 +111,14 @@ class FixedStep:
         part = steps_in_part(self.scaled.bodies)
         if self.grid > part:
             return periods_in_parts(self, y, part, strobes, maxima, out)
-        status, done = run_steps(self.method, self.trajectory(y), 0, self.grid, Kept(self._no_samples, strobes, maxima),
-                                 out)
+        record = RunRecord(self._no_samples, strobes, maxima)
+        status, done = run_steps(self.method, self.trajectory(y), 0, self.grid, record, out)
         return status, done
 
     def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: Output) -> tuple[int, int]:
         """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
-        status, done = run_steps(self.method, self.trajectory(y), first, stride, Kept(samples, *self._no_periods), out)
+        record = RunRecord(samples, *self._no_periods)
+        status, done = run_steps(self.method, self.trajectory(y), first, stride, record, out)
         return status, done
 
     def step_at(self, grid_index: int) -> int | None:
@@ -145,12 +154,12 @@ class FixedStep:
         # new vectors: those of the failed call are full of what failed
         work = self.work._replace(simd=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
         work.k[0] = slope
-        trajectory = self.trajectory(now)._replace(work=work)
+        trajectory = self.trajectory(now)._replace(workspace=work)
         kept, out = empty_samples(self.scaled, 2), Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
         j = first
         while j < last:
             stride = min(last, (j // n + 1) * n) - j
-            run_steps(self.method, trajectory, j % n, stride, Kept(kept, *self._no_periods), out)
+            run_steps(self.method, trajectory, j % n, stride, RunRecord(kept, *self._no_periods), out)
             j += stride
         return now, work.k
 
@@ -184,7 +193,7 @@ def _short_chain(scaled: ScaledChain, width: int) -> ShortChain:
 
     preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
     return ShortChain(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
-                      aligned(2 * KEPT, width), aligned(ENDS, width), np.zeros((3, STEPS_IN_BLOCK)))
+                      aligned(2 * STATE_ROWS, width), aligned(ENDS, width), np.zeros((3, STEPS_IN_BLOCK)))
 
 
 def _long_chain(scaled: ScaledChain) -> LongChain:

@@ -110,7 +110,7 @@ class Method:
     restrictions, reference : str
         What it cannot do; its source.
     stepper : callable
-        Makes what the engine steps with.
+        Makes the method's `Stepper` from a setting, a scaled chain and the samples per period.
     cost : StepCost
         Time of a step.
     usual_error : float

@@ -1,10 +1,11 @@
 """The folder of compiled kernels, and what happens where it is damaged, full or not ours.
 
 Numba reads its files with `pickle` and runs the machine code in them, whatever a disk or a crash has made of them. So
-every file here begins with the SHA-256 of the rest, which is compared before anything is read: a file that is not
-whole is dropped and its kernel compiled again. A kernel that cannot be written is compiled for this process only.
+every file here begins with the SHA-256 of the rest, which is compared before the rest is used: a file that is not whole
+is deleted and its kernel compiled again. A kernel that cannot be written is compiled for this process only.
 
-Numba names no interface for this: `KernelCache` replaces the classes by which it finds, reads and writes its files.
+Numba has no documented interface for this: `KernelCache` replaces the classes by which it finds, reads and writes its
+files. docs/design.md lists the private names that are used; where one is missing, kernels are not kept on disk.
 """
 
 from __future__ import annotations
@@ -32,7 +33,14 @@ from numba.core.serialize import dumps
 from .compile_lock import CompileLock
 from .sources import FOLDER, constants_hash, hash_of_code, sources_hash, wording_hash
 
-#: Where messages for a person go: on stderr, unless the program keeps a log.
+#: Numba's classes; where one is missing, no kernel is kept on disk.
+_CLASSES = ("FunctionCache", "CompileResultCacheImpl", "UserProvidedCacheLocator")
+_FunctionCache: Any = getattr(caching, "FunctionCache", object)
+_Impl: Any = getattr(caching, "CompileResultCacheImpl", object)
+_UserProvidedLocator: Any = getattr(caching, "UserProvidedCacheLocator", object)
+#: Private methods of `FunctionCache` that `KernelCache` calls.
+_NEEDED = ("_load_overload", "_index_key", "_guard_against_spurious_io_errors")
+#: Where messages for the user go: to stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
 #: Bytes of a checksum.
 _DIGEST = 32
@@ -142,7 +150,7 @@ def _note_use(base: Path, used: Path) -> None:
 
 @functools.cache
 def say_once(sentence: str) -> None:
-    """Tell a person something once in the life of this process."""
+    """Tell the user something once in the life of this process."""
     _LOG.warning(sentence)
 
 
@@ -153,10 +161,10 @@ CACHE_FOLDER = cache_folder()
 
 
 class _Files:
-    """The compiled versions of one function, each in a file of its own that is named by a hash of its key.
+    """The compiled versions of one function, each in its own file, named by a hash of the version's key.
 
-    Numba keeps an index next to them. Two processes that compile at once overwrite each other's index, and versions are
-    lost. A file that gets its name when it is complete needs no index; it says itself which version it holds.
+    Numba keeps an index of them. Two processes that compile at once overwrite each other's index and lose versions.
+    Here a file says itself which version it holds, and gets its name when it is complete, so no index is needed.
     """
 
     def __init__(self, folder: str, name: str, stamp: Any) -> None:
@@ -172,7 +180,7 @@ class _Files:
         path = self.path(key)
         unfinished = path.with_suffix(f".{uuid.uuid4().hex[:16]}.tmp")
         try:
-            # with the rights of any other file: an image is warmed by one user and used by another
+            # with the usual permissions: an image's kernels are compiled by one user and used by another
             unfinished.write_bytes(hashlib.sha256(content).digest() + content)
             unfinished.replace(path)
         finally:
@@ -194,7 +202,7 @@ class _Files:
 
 
 def whole(path: Path) -> bytes:
-    """The content of a file; one whose checksum does not fit is dropped, and `FileNotFoundError` raised."""
+    """The content of a file. One with a wrong checksum is deleted, and `FileNotFoundError` raised."""
     stored = path.read_bytes()
     digest, content = stored[:_DIGEST], stored[_DIGEST:]
     if hashlib.sha256(content).digest() == digest:
@@ -205,12 +213,12 @@ def whole(path: Path) -> bytes:
     raise FileNotFoundError(path)
 
 
-class _Locator(caching.UserProvidedCacheLocator):
-    """Places in the folder of kernels, whether or not it can be written: Numba would look for another one.
+class _Locator(_UserProvidedLocator):
+    """Where a function's files are: always in the folder of kernels, even if that cannot be written.
 
-    Numba names a place after the path of the source and the function's line, and marks it with the file's time. Here
-    the module and the function's constants name it, and what the file's code is marks it: the same sources in another
-    environment, installed again or with other comments, find what is compiled already.
+    Numba names a file after the source's path and the function's line, and stamps it with the source's time. Here the
+    name comes from the module and the function's constants, the stamp from the source's code. So the same sources in
+    another environment, installed again or with other comments, find what is compiled already.
     """
 
     def __init__(self, py_func: Any, py_file: str) -> None:
@@ -230,32 +238,35 @@ class _Locator(caching.UserProvidedCacheLocator):
 
     @classmethod
     def from_function(cls, py_func: Any, py_file: str) -> _Locator:
-        """The place of a function's files."""
+        """Where a function's files are."""
         return cls(py_func, py_file)
 
 
-class _Placed(caching.CompileResultCacheImpl):
+class _Placed(_Impl):
     _locator_classes = [_Locator]  # noqa: RUF012 – the attribute that Numba reads
 
 
-class KernelCache(caching.FunctionCache):
-    """The compiled versions of one function on disk."""
+class KernelCache(_FunctionCache):
+    """The compiled versions of one function on disk; AttributeError where Numba lacks what it needs."""
 
     _impl_class = _Placed
 
     def __init__(self, function: Any) -> None:
+        for name in _NEEDED:
+            getattr(self, name)
+        _ = _Impl._locator_classes
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = str(CACHE_FOLDER)
         try:
             super().__init__(function)
         finally:
             numba.config.CACHE_DIR = before
-        files = _Files(self._cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
+        files = _Files(self.cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
         self._cache_file: Any = files
         self._locks: dict[Path, CompileLock] = {}
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """A compiled version from disk, None where it has to be compiled, which no other process does then."""
+        """A compiled version from disk; None where it has to be compiled, and then no other process compiles it."""
         found = self._load(sig, target_context)
         if found is None:
             path = self._path(sig, target_context.codegen())
@@ -281,8 +292,8 @@ class KernelCache(caching.FunctionCache):
     def _load(self, sig: Any, target_context: Any) -> Any:
         """A compiled version from disk, or None.
 
-        Numba would first read the types and functions that its compiler knows, SciPy's linear algebra among them: half
-        a second in every process, for code that is compiled already. The runtime is all that such code needs.
+        Numba would first load the types and functions that its compiler knows, SciPy's linear algebra among them, which
+        takes half a second in every process. Code that is compiled already needs the runtime alone.
         """
         try:
             rtsys.initialize(target_context)
@@ -297,3 +308,20 @@ class KernelCache(caching.FunctionCache):
         """Where a version is, or would be."""
         found: Path = self._cache_file.path(self._index_key(sig, codegen))
         return found
+
+
+def keep_on_disk(compiled: Any) -> None:
+    """Let a compiled function find its versions on disk and keep them there: `cache=True` with `KernelCache`.
+
+    Where this version of Numba lacks something that `KernelCache` needs, say so once and do without.
+    """
+    if CACHE_FOLDER is None:
+        return
+    try:
+        for name in _CLASSES:
+            getattr(caching, name)
+        _ = compiled._cache
+        compiled._cache = KernelCache(compiled.py_func)
+    except AttributeError as missing:
+        say_once(f"Compiled kernels cannot be kept with Numba {numba.__version__} ({missing}); they are compiled for "
+                 "this process only.")

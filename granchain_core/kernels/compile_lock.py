@@ -1,8 +1,8 @@
-"""One process compiles a kernel, the others that want the same one wait for it and load it.
+"""A lock by which one process compiles a kernel while others that need it wait and then load it.
 
 Without it the workers of a map or of the tests, and the processes of a server, would each compile the same kernel, at
 ten seconds of processor time apiece. The lock is on a file beside the kernel's own; the system releases it when its
-process ends, however it ends. Where locks cannot be had (another system, a disk that knows none) everyone compiles.
+process ends, however it ends. Where there are no locks (another system, some network disks) every process compiles.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ try:
 except ImportError:  # not a POSIX system
     fcntl = None  # type: ignore[assignment]
 
-#: Longest wait for another process [s]: a kernel takes ten seconds, five times that where the machine is busy. One that
-#: failed to compile, or is held up, must not hold up others.
+#: Longest wait for another process [s]: a kernel takes ten seconds to compile, fifty on a busy machine. A process that
+#: is stuck must not hold up the others for longer.
 PATIENCE = 120.0
 #: Seconds between two attempts.
 _INTERVAL = 0.05
 
 
 class CompileLock:
-    """The right to compile one kernel, whose compiled code is or will be at `path`."""
+    """The right to compile one kernel, whose compiled code is stored at `path`."""
 
     def __init__(self, path: Path) -> None:
         self._path = path.with_suffix(".lock")
         self._file: int | None = None
 
     def acquire(self, patience: float = PATIENCE) -> bool:
-        """Wait for the lock; returns whether another process had it meanwhile, so that its kernel may be there now."""
+        """Wait for the lock; returns whether another process held it, so that the kernel may be there now."""
         if fcntl is None:
             return False
         ends, waited = time.monotonic() + patience, False
@@ -57,9 +57,9 @@ class CompileLock:
         return waited
 
     def release(self) -> None:
-        """Let the next process look; the kernel is written before."""
+        """Release the lock; call it after the kernel is written."""
         if self._file is not None:
-            # those who wait hold the same file without its name; they look for the kernel next
+            # processes that wait have the same file open, so they need no name to go on and look for the kernel
             with contextlib.suppress(OSError):
                 self._path.unlink(missing_ok=True)
             os.close(self._file)

@@ -48,7 +48,10 @@ def hermite_turn(d0, s0, d1, s1):
 
 @inline_numba
 def contact_root(d0, s0, d1, s1):
-    """Fraction of a step at which one contact opens or closes; 2 if it does not."""
+    """Fraction of a step at which one contact opens or closes; 2 if it does not.
+
+    It begins with the test of `may_change` (rk4/step.py) for one contact.
+    """
     if d0 == 0.0:  # touching beads: the contact closes here if they are pushed together, and does not if they part
         if s0 > 0.0 and d1 > 0.0:
             return 0.0

@@ -1,8 +1,8 @@
 """Numba types of the functions that kernels call: how a call finds the one compiled version it shares with others.
 
-By itself Numba compiles a function once more for each number that is written out in a call, and a function made by
-`overload` once more for each set of options of its callers. Here a call asks for a version by the types of its
-arguments alone: a sixth of the versions and of the compiler's time is saved.
+By itself Numba compiles a function again for each number that is written out in a call, and a function made by
+`overload` again for each set of options of its callers. Here a call asks for a version by the types of its arguments
+alone, which saves a sixth of the versions and of the compiler's time.
 """
 
 from __future__ import annotations

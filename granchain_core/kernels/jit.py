@@ -17,25 +17,23 @@ import numba
 from numba import types
 from numba.core import event
 
-from .cache import CACHE_FOLDER, KernelCache
+from .cache import keep_on_disk
 from .function_types import ChoiceType, FunctionType
 from .link_only import compiler_options
 
 #: What the compiler may do with floating-point numbers: not assume that none is NaN or infinite.
 FAST_MATH = ("nsz", "arcp", "contract", "reassoc")
-#: Kernels allocate nothing, so arrays in them are not counted, and they are never passed as function pointers, so they
-#: need no C entry: that is less code to compile and to run.
+#: Kernels allocate nothing, so reference counting is off; they are never passed as function pointers, so they need no C
+#: entry. Both leave less code to compile and to run.
 _OPTIONS: Any = {"fastmath": set(FAST_MATH), "error_model": "numpy", "_nrt": False,
                  "no_cfunc_wrapper": True}
-
-
-#: A function that only kernels call needs no entry for Python either, and no machine code of its own.
+#: A function that only kernels call needs no entry for Python either, nor machine code of its own.
 _INTERNAL = _OPTIONS | compiler_options()
 
 
 class _CollectorPause(event.Listener):
-    """No garbage collection while Numba compiles: millions of objects live until it is done, and searching them
-    again and again takes a sixth of the time. Compilations are nested, and one thread compiles at a time.
+    """Pauses garbage collection while Numba compiles: it makes millions of objects that live until it is done, and
+    searching them again and again takes a sixth of the time. Compilations are nested; one thread compiles at a time.
     """
 
     def __init__(self) -> None:
@@ -62,8 +60,8 @@ event.register("numba:compile", _CollectorPause())
 class Internal:
     """A compiled function that only kernels call; called from Python it runs uncompiled.
 
-    Numba finds the compiled code by the attribute `_numba_type_`, by which it knows its own dispatchers too. One
-    without an entry must not be called from Python: this object stands between the two.
+    Numba finds the compiled code by the attribute `_numba_type_`, as it does for its own dispatchers. A dispatcher
+    without an entry for Python must not be called from there, so this object takes the call instead.
     """
 
     def __init__(self, dispatcher: Any) -> None:
@@ -80,8 +78,7 @@ class Internal:
 def kernel(function):
     """Decorator for compiled, cached kernels on floats and arrays that Python calls."""
     compiled = numba.njit(nogil=True, **_OPTIONS)(function)
-    if CACHE_FOLDER is not None:
-        compiled._cache = KernelCache(function)  # as `cache=True` does, with another class
+    keep_on_disk(compiled)
     return compiled
 
 
@@ -98,8 +95,8 @@ def inline_llvm(function):
 def inline_numba(function):
     """Decorator for a function with one caller, or one in each kind of step; its code is copied there before compiling.
 
-    A function compiled by itself is linked and optimised again in every caller, up to the kernel that Python calls. For
-    a step of the adaptive method this copying saves a fifth of the compiler's time.
+    A function compiled by itself is linked and optimised again in every caller, up to the kernel that Python calls.
+    Copying saves a fifth of the compiler's time for a step of the adaptive method.
     """
     return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
 
@@ -115,9 +112,9 @@ def by_slot(absent, forceinline=False):
 
     The decorated function is the code for an absent effect (slot None). `function.of(Slot, …)` registers the code
     for slots of these NamedTuple classes. The code for None returns an argument as it is, or a zero that callers only
-    add, which leaves no instruction. Tested in short chains, batches and the flow with tangents
-    (tests/kernels/test_machine_code.py). A slot without code is a TypeError that
-    names slot and function, in Python and while a kernel is typed.
+    add, which leaves no instruction; tests/kernels/test_machine_code.py checks this for short chains, batches and the
+    flow with tangents. A slot without code is a TypeError that names slot and function, in Python and while a kernel is
+    typed.
     """
     implementations = {type(None): absent}
 
@@ -197,7 +194,7 @@ def require_terms(slot_class, *terms):
 def check_effects(package):
     """Check the effects in the modules of a package: a slot has code for every term of the module it stands in.
 
-    Called when the effects have been imported. TypeError names the first slot with what it lacks.
+    Call it when all effects have been imported. The TypeError names the first slot that lacks a term, and the term.
     """
     for module in sorted({term.__module__ for term in _TERMS if term.__module__.startswith(package)}):
         terms = [term for term in _TERMS if term.__module__ == module]

@@ -2,7 +2,8 @@
 
 Equation   m_i v̇_i = F_{i-1} − F_i − k u_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
 Purpose    the usual first attempt, against which the gain of w-variables and located events is measured
-The second row of the state holds v here, not w; for the rest of the program nothing else differs.
+The second row of the state holds v here, not w; for the rest of the program nothing else differs. Importing this module
+registers the two methods' code for `step` of rk4/step.py (integrate/fixed.py does).
 """
 
 from __future__ import annotations
@@ -37,25 +38,25 @@ class VerletNaive(NamedTuple):
 def naive_motion(slots, u0, v0, y, dy, forces):
     """dy/dτ in (u, v); leaves the elastic forces (with those that a cut adds) in forces.e, as `motion` does."""
     inverse_mass = slots.chain.inverse_mass
-    m = inverse_mass.size
+    bodies = inverse_mass.size
     y[0], dy[0] = u0, v0
-    for i in range(1, m - 1):
-        dy[i] = y[m + i]
+    for i in range(1, bodies - 1):
+        dy[i] = y[bodies + i]
     left = 0.0
-    for c in range(m - 1):
+    for c in range(bodies - 1):
         delta = overlap(slots.preload, y, c)
         damped = dashpot_force(slots.dissipation, delta, dy[c] - dy[c + 1])
         force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], positive_part(delta)) + damped)
         forces.e[c] = force - damped
         if c > 0:
-            dy[m + c] = inverse_mass[c] * force_on_bead(slots, left - force, y[c], dy[c])
+            dy[bodies + c] = inverse_mass[c] * force_on_bead(slots, left - force, y[c], dy[c])
         left = force
 
 
 @step.of(Rk4Naive)
 def _(method, trajectory, j, out):
-    slots, drive, y, stages = trajectory
-    k, stage, forces, h = stages.k, stages.stage, stages.forces, drive.h
+    slots, drive, y, workspace = trajectory
+    k, stage, forces, h = workspace.k, workspace.stage, workspace.forces, drive.h
     now = Instant(y, k[0])
     before = end_overlaps(slots.dissipation, slots, now)
     ua, va = tabulated_displacement(slots, drive, 2 * j + 1), tabulated_velocity(slots, drive, 2 * j + 1)
@@ -80,18 +81,18 @@ def _(method, trajectory, j, out):
 
 @step.of(VerletNaive)
 def _(method, trajectory, j, out):
-    slots, drive, y, stages = trajectory
-    m, k, h = slots.chain.inverse_mass.size, stages.k, drive.h
+    slots, drive, y, workspace = trajectory
+    bodies, k, h = slots.chain.inverse_mass.size, workspace.k, drive.h
     now = Instant(y, k[0])
     before = end_overlaps(slots.dissipation, slots, now)
-    for i in range(1, m - 1):
-        y[m + i] += 0.5 * h * k[0, m + i]
-        y[i] += h * y[m + i]
+    for i in range(1, bodies - 1):
+        y[bodies + i] += 0.5 * h * k[0, bodies + i]
+        y[i] += h * y[bodies + i]
     ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)
-    naive_motion(slots, ub, vb, y, k[0], stages.forces)
-    for i in range(1, m - 1):
-        y[m + i] += 0.5 * h * k[0, m + i]
-        k[0, i] = y[m + i]
+    naive_motion(slots, ub, vb, y, k[0], workspace.forces)
+    for i in range(1, bodies - 1):
+        y[bodies + i] += 0.5 * h * k[0, bodies + i]
+        k[0, i] = y[bodies + i]
     watch_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
     out.counts[STEPS] += 1
     out.counts[EVALUATIONS] += 1

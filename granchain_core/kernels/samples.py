@@ -1,4 +1,4 @@
-"""What is kept of a motion: samples, states a period apart, forces, costs, and the first number not finite."""
+"""What a run records: samples, strobes, forces and the counts of its costs; the first bead that is not finite."""
 
 from __future__ import annotations
 
@@ -58,10 +58,10 @@ def _(balance, slots, row, y, dy, samples):
 
 
 @kernel
-def first_not_finite(y, m):
+def first_not_finite(y, bodies):
     """Number of the first bead whose displacement or w is not finite, or 0."""
-    for i in range(1, m - 1):
-        if not (np.isfinite(y[i]) and np.isfinite(y[m + i])):
+    for i in range(1, bodies - 1):
+        if not (np.isfinite(y[i]) and np.isfinite(y[bodies + i])):
             return i
     return 0
 

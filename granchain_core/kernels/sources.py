@@ -1,7 +1,7 @@
 """Hashes of the kernels' sources, by which compiled code is found again (cache.py).
 
-Comments, docstrings and the layout of lines change no instruction, so code is named by a hash of the parsed sources.
-Parsing takes a fifth of a second, so each wording of the sources has a hash of its own too, which takes none.
+Comments, docstrings and line breaks change no instruction, so compiled code is named by a hash of the parsed sources.
+Parsing takes a fifth of a second, so the sources are hashed as they are worded as well, which takes hardly any time.
 """
 
 from __future__ import annotations
@@ -18,28 +18,29 @@ import numba
 
 from .width import BATCH_SIZE, processor
 
-#: Sources that decide where compiled code is kept, not what it is.
+#: Sources that decide where compiled code is stored but do not change it.
 _KEEPERS = ("cache.py", "compile_lock.py", "sources.py")
 #: The folder that all kernels of this package are in.
 FOLDER = Path(__file__).parent
 
 
 def sources_hash(folder: Path = FOLDER) -> str:
-    """Hash of what the kernels' machine code follows from.
+    """Hash of everything that determines the kernels' machine code.
 
-    That is their parsed sources but for `_KEEPERS`, the versions of Numba and llvmlite, the processor, and the batch's
-    size.
+    That is their parsed sources except `_KEEPERS`, the versions of Numba and llvmlite, the optimisation level, the
+    processor and the batch's size.
     """
     return _hash_of_all(folder, hash_of_code)
 
 
 def wording_hash(folder: Path = FOLDER) -> str:
-    """Hash of the same from the bytes of the sources, which takes no parsing."""
+    """Hash of the same, with the bytes of the sources in place of what they parse to."""
     return _hash_of_all(folder, _hash_of_bytes)
 
 
 def _hash_of_all(folder: Path, hash_of: Callable[[Path], str]) -> str:
-    digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__} {processor()} {BATCH_SIZE}".encode())
+    compiler = f"{numba.__version__} {llvmlite.__version__} {numba.config.OPT!r}"
+    digest = hashlib.sha256(f"{compiler} {processor()} {BATCH_SIZE}".encode())
     for path in sorted(folder.rglob("*.py")):
         name = path.relative_to(folder).as_posix()
         if name not in _KEEPERS:
@@ -52,7 +53,7 @@ def _hash_of_bytes(path: Path) -> str:
 
 
 def hash_of_code(path: Path) -> str:
-    """Hash of a source file but for its comments, docstrings and lines; of its bytes if it cannot be parsed."""
+    """Hash of a source file without its comments, docstrings and layout; of its bytes if it cannot be parsed."""
     content = path.read_bytes()
     with contextlib.suppress(SyntaxError, ValueError, RecursionError):
         tree = ast.parse(content)

@@ -1,8 +1,9 @@
-"""How a kernel's work ended, and where its costs are counted."""
+"""How a kernel ended, the limits it keeps to, and where its costs are counted."""
 
 from __future__ import annotations
 
-#: The work is done.
+# What a kernel returns. 2 to 5 are failures; 6 asks for larger arrays; −1 never leaves the kernels.
+#: It went to its end.
 DONE = 0
 #: The stop flag was set.
 CANCELLED = 1
@@ -12,15 +13,15 @@ NOT_FINITE = 2
 STEP_TOO_SMALL = 3
 #: A contact opens and closes more often than time can resolve.
 CHATTER = 4
-#: No contact opens and closes more often than this in one period unless it chatters.
-EVENTS_PER_CONTACT = 2000
 #: A period took more steps than are worth waiting for.
 TOO_MANY_STEPS = 5
-#: The arrays in which a run is kept are full.
+#: The array that records the run is too small for it.
 FULL = 6
-#: A step was aimed at a release, but the contact does not open there; the step is taken in another way.
+#: A step of the flow was aimed at a release, but the contact does not open there: the step is tried again.
 LOST = -1
 
+#: More events in a period than this, times the number of contacts, are CHATTER.
+EVENTS_PER_CONTACT = 2000
 #: Most fixed steps between two readings of the stop flag; with error control it is read before every step.
 STEPS_BETWEEN_STOP_CHECKS = 4096
 

@@ -1,9 +1,10 @@
 """How many scenes one vector of a batch holds: what is fastest on the machine that the kernels are compiled for.
 
-Where a register holds eight doubles (AVX-512), a batch has eight scenes. Zen 4 carries out each instruction on such
-registers in two halves and is still faster with eight scenes than with four, because half as many instructions wait for
-one another. Where a register holds four doubles, eight scenes would take two registers each, and much of the work would
-be moving them to the stack and back. Vectors along a chain and of tangents are better left at eight everywhere.
+Where a register holds eight doubles (AVX-512), a batch has eight scenes. Zen 4 executes an instruction on such
+registers in two halves, and is still faster with eight scenes than with four, because only half as many instructions
+have to wait for one another. Where a register holds four doubles, vectors of eight scenes would take two registers
+each, and much of the time would be spent on moving them to the stack and back. Vectors along a chain and of tangents
+are better left at eight doubles everywhere.
 """
 
 from __future__ import annotations

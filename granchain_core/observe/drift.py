@@ -1,9 +1,9 @@
 """Drift of an observer: without a foundation it may move away as a whole.
 
 The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
-wall alone, and only while they touch it. A multiplier outside the unit circle that is real and whose mode is nearly one
-shift of all beads is not an instability of the shape but a drift: to one side if it is positive, alternating between
-the sides if it is negative (at 200 Hz).
+wall alone, and only while they touch it. If a multiplier outside the unit circle is real and its mode is nearly a
+common shift of all beads, the instability is called a drift: the observer keeps its shape and moves to one side if the
+multiplier is positive, or alternates between the sides if it is negative (at 200 Hz).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ def share_of_translation(difference: np.ndarray) -> float:
 
 
 def is_drift(scene: Scene, share: float) -> bool:
-    """Whether a growing difference with this share of a translation is a drift: nothing else holds the beads."""
+    """Whether a growing difference with this share of a translation is a drift, which only a foundation prevents."""
     return scene.k == 0.0 and share >= TRANSLATION
 
 
@@ -42,6 +42,6 @@ def observer_drift(orbit: Orbit) -> str | None:
     value, vector = eigenpair(stroboscopic_map, x, 0, observer=True)
     if value.imag != 0.0 or not is_drift(orbit.scene, share_of_translation(vector[: orbit.scene.N].real)):
         return None
-    way = "the same way" if value.real > 0.0 else "the same way, alternating between the sides"
-    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves the beads "
-            f"{way}, because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")
+    way = "" if value.real > 0.0 else ", alternating between the sides"
+    return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads together{way}, "
+            f"because nothing holds them in place (k = {orbit.scene.k:g} N/m); give it a foundation.")

@@ -52,9 +52,9 @@ class Observation(Motion):
     scene : Scene
         The chain.
     record : ForceRecord
-        The input.
+        The measured force that pushes bead 1.
     displacement, velocity : numpy.ndarray, shape (T, N)
-        [m] and [m/s].
+        Of every bead: displacement from its rest position [m], and velocity [m/s].
     force : numpy.ndarray, shape (T, N + 1)
         Forces of the contacts [N]; column 0 is the input.
     max_output_force, max_output_force_elastic : float
@@ -65,7 +65,7 @@ class Observation(Motion):
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost
-        What the computation took.
+        Computing time, steps and evaluations.
     residual, residual_elastic : Residual or None
         Difference from the measured output force, of the total and of the elastic force: `rms`, `largest` [N],
         `relative`.

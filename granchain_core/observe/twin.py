@@ -110,7 +110,7 @@ class Twin:
             side = ", to the other side each time"
         if self.verdict == "drifts":
             return f"The observer drifts: an offset of all its beads, which nothing pulls back, grows{side}; {factor}."
-        return f"The observer breaks down{side}: {factor}."
+        return f"The observer leaves its chain{side}: {factor}."
 
 
 def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,

@@ -49,7 +49,7 @@ class Orbit(Labelled):
     scene : Scene
         The chain.
     period : int
-        In drive periods.
+        Period in drive periods.
     state : State
         Where the orbit is at drive phase 0.
     residual : float
@@ -59,10 +59,10 @@ class Orbit(Labelled):
     multipliers : numpy.ndarray of complex, shape (2N,)
         Sorted by modulus, largest first; of more than 100 beads the leading ones only.
     liouville : float or None
-        Difference between the logarithm of their product and ∫ trace, relative to the latter where that is above 1;
-        None where not all are known or the smallest are rounding.
+        Difference between the logarithm of the multipliers' product and ∫ trace, relative to the latter where that is
+        above 1; None where not all multipliers are known or the smallest are rounding.
     changes : numpy.ndarray, shape (events, 2)
-        Contact events along the orbit: contact + 1, negative where it opens, and the time in drive periods.
+        Contact events along the orbit: contact + 1, negative where it opens, and the time over the drive period.
     observer_multipliers : numpy.ndarray of complex or None
         Those of the observer of model (4), where they were requested.
     monodromy, observer_monodromy : numpy.ndarray or None, shape (2N, 2N)
@@ -99,7 +99,10 @@ class Orbit(Labelled):
 
     @functools.cached_property
     def observer_multiplier_errors(self) -> np.ndarray | None:
-        """How far each of the observer's multipliers may be off, absolute (2N,); None where they were not requested."""
+        """How far each of the observer's multipliers may be from the exact map's, absolute (2N,).
+
+        None where they were not requested.
+        """
         return self._errors(observer=True)
 
     def find_errors(self, stop: Stop) -> None:
@@ -126,7 +129,7 @@ class Orbit(Labelled):
 
     @property
     def observer_stability_certain(self) -> bool | None:
-        """Whether `observer_stable` holds in spite of the errors; None where the multipliers were not requested."""
+        """Whether `observer_stable` holds in spite of the errors; None where the observer was not requested."""
         if self.observer_multipliers is None:
             return None
         return _is_certain(self.observer_multipliers, self.observer_multiplier_errors)
@@ -181,9 +184,9 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     scene : Scene
         The chain; its tension must not be cut.
     period : int, optional
-        In drive periods; the steady state's if not given.
+        Period in drive periods; by default that of the steady state.
     start : State, optional
-        Newton's method begins here; in the steady state reached from rest if not given.
+        Where Newton's method begins; by default the steady state reached from rest.
     observer : bool
         Whether to compute the multipliers of the observer, model (4) of Zhang et al. 2016.
     stop : Stop, optional

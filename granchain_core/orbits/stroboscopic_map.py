@@ -17,7 +17,7 @@ from ..kernels.flow.run import run_flow
 from ..kernels.flow.saltation import VelocityTangent, new_velocity_tangent
 from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
 from ..kernels.status import EVENTS_PER_CONTACT
-from ..scaling import ScaledChain, scale_chain
+from ..scaling import ScaledChain, scale_like
 from ..scene import Scene
 from ..scene.driven import refuse_undriven
 from ..stop import Stop
@@ -66,7 +66,7 @@ class StroboscopicMap:
 
     def move(self, scene: Scene, tolerance: float) -> None:
         """Become the map of another scene with as many beads, to the same bits as a new one at a third of the cost."""
-        engine, scaled = self.engine, scale_chain(scene)
+        engine, scaled = self.engine, scale_like(self.engine.scaled, scene)
         engine.stepper = Adaptive(tolerance, scaled, 1)
         engine.stepper.pause = engine.stop.pause
         self._prepare(tolerance)
@@ -125,7 +125,7 @@ class StroboscopicMap:
         engine = self.engine
         engine.start_scaled(x)
         self._work.next_step[0] = min(0.1, engine.scaled.period / STAGES)
-        trajectory = engine.stepper.trajectory(engine.y)._replace(work=self._work)
+        trajectory = engine.stepper.trajectory(engine.y)._replace(workspace=self._work)
         status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._contacts, tangent), self.periods,
                                        engine.counts.array, engine.stop.flag)
         engine.raise_for(status, done)

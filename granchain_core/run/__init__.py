@@ -1,1 +1,1 @@
-"""One motion at a stated accuracy: `run`, its budget, its error estimate, and the live chain."""
+"""One motion at a stated accuracy: `run`, its budget, its stated error, and the live chain."""

@@ -3,7 +3,7 @@
 The number of steps of a fixed-step method is known; that of a method with error control, and the time of a step, are
 measured on `sec2` and `rig` (`StepCost` in integrate/methods.py) and scaled to this machine by the speed of its square
 roots. A run is computed at least twice, the second time finer, and in about half of all cases a third time: the
-estimate is the geometric mean of both.
+estimate is the geometric mean of the times of two and of three computations.
 """
 
 from __future__ import annotations

@@ -36,7 +36,7 @@ class Runs(list[Any], Labelled):
     scenes : list of Scene
         The chains.
     failures : list of str
-        For each a sentence where the computation failed, else "".
+        For each scene a sentence if its computation failed, else "".
 
     Examples
     --------
@@ -80,7 +80,7 @@ class Runs(list[Any], Labelled):
                 **error_columns(errors.reshape(-1, 3), along), **regime_columns(regimes, "run")}
 
     def attributes(self) -> dict[str, Attribute]:
-        """With what they were made; each result has its own attributes."""
+        """Versions, machine and time; each result has its own attributes."""
         return made()
 
     def heading(self) -> str:
@@ -138,7 +138,7 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     Raises
     ------
     BadInput
-        No scene, too many, or an option that cannot be.
+        No scene, too many scenes, or an invalid option.
     Cancelled
         `stop` was set.
 

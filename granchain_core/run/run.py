@@ -77,11 +77,12 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional
-        Called with the fraction of the present computation, 0 to 1.
+        Called with the fraction done of the computation under way, 0 to 1; each finer computation starts at 0 again.
     budget : float
         Seconds the run may take; compiling does not count.
     kept : RunCheckpoints, optional
-        Checkpoints of a run from phase 0 on disk, to go on from and to add to (run/run_checkpoints.py).
+        Checkpoints on disk of a run that starts at phase 0: the run continues from them and adds to them
+        (run/run_checkpoints.py).
 
     Returns
     -------

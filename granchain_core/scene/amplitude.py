@@ -72,7 +72,7 @@ class Amplitude:
         return float(np.interp(f, self.frequencies, self.values))
 
     def held(self, f: float) -> float:
-        """A0 [m] as `at` gives it, and beyond a table that of its end: for steps past the end of a range."""
+        """Like `at`, but beyond a table's ends A0 [m] keeps its value there: for steps past the end of a range."""
         return self.at(min(max(f, self.frequencies[0]), self.frequencies[-1]) if self.frequencies else f)
 
     def check_knobs(self, *knobs: str) -> None:

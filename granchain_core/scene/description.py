@@ -20,9 +20,9 @@ class Bead:
     Attributes
     ----------
     mass : float
-        [kg]
+        Mass [kg].
     radius : float
-        [m]
+        Radius [m].
     young : float
         Young's modulus [Pa].
     poisson : float

@@ -23,7 +23,7 @@ class Scene(Description):
     Attributes
     ----------
     name, title, look_at, paper : str
-        Its name and title, a hint what to observe, and the section of the paper.
+        Name and title of the scene, what to observe in it, and the section of the paper.
     pattern : tuple of Bead
         Repeated to N beads: two entries make a dimer.
     N : int
@@ -45,9 +45,9 @@ class Scene(Description):
     tension : str
         "allowed", or "cut" where a contact must not pull.
     accuracy : float
-        Relative error of the displacements that is asked for.
+        Requested relative error of the displacements.
     reference_overlap : float
-        Overlap at which D of a law that depends on it is stated [m].
+        Overlap at which D is stated for the laws of Tsuji and of Kuwabara and Kono [m].
     impurities : tuple of (int, Bead)
         Beads in place of the pattern's, by number from 1.
     start_velocity : tuple of (int, float)
@@ -59,18 +59,18 @@ class Scene(Description):
     dimer : float
         Mass of beads 2, 4, … over that of the others; beads made heavier or lighter are of the same material.
     taper : float
-        Radius of the last bead over that of the first; each is the same part of the one before it.
+        Radius of the last bead over that of the first; the radii form a geometric sequence.
     striker : float
-        Factor of the mass of bead 1.
+        Factor on the mass of bead 1.
     site, impurity : int, float
-        Number of a bead, and the factor of its mass.
+        Number of the impurity bead, and the factor on its mass.
     drive : str
-        "harmonic", or "rest" for a driver that stands still; 1/f is then only a length of time.
+        "harmonic", or "rest" for a driver that stands still; 1/f is then only the time that is shown.
     strike : float
         Velocity of bead 1 at time 0 [m/s].
     end : str
-        The end that the driver touches: "first", or "last" for a chain of unequal beads that is turned round. Places
-        of beads in results count from the driver.
+        The end that the driver touches: "first", or "last" to drive a chain of unequal beads from its other end. In
+        results, beads are always numbered from the driver.
 
     Examples
     --------

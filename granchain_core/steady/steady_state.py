@@ -19,10 +19,9 @@ IRREGULAR_PERIODS = 100
 class SteadyState:
     """A steady state with its largest forces `maxima` (3,) [N] in the order input, output, elastic output.
 
-    `errors` (3,) are their relative errors, None where none is claimed; `state` is at drive phase 0. If the computation
+    `errors` (3,) are their relative errors, None where none is stated; `state` is at drive phase 0. If the computation
     failed, `failure` is a sentence, `status` the name of the failure, and the forces are NaN. `number` is that of the
-    start it was found from.
-    `doubtful`: the batch could not decide; `settle` continues from `state`.
+    start it was found from. If `doubtful`, the batch could not decide, and `settle` has to continue from `state`.
     """
 
     scene: Scene
@@ -42,5 +41,5 @@ class SteadyState:
 
     @property
     def error_estimate(self) -> float | None:
-        """Relative error of the output force, infinite where that force is zero; None where none is claimed."""
+        """Relative error of the output force, infinite where that force is zero; None where none is stated."""
         return None if self.errors is None else float(self.errors[1])

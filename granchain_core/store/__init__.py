@@ -1,6 +1,6 @@
 """Results as HDF5 that other programs open with labelled axes.
 
-Each kind of result has a module of its own, imported at first use: who saves a run need not load orbits and observers.
+Each kind of result has its own module, imported at first use: saving a run does not load orbits and observers.
 """
 
 from __future__ import annotations

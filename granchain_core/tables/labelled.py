@@ -83,5 +83,5 @@ class Labelled:
         return as_html(self.heading(), self.summary(), self.tables())
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
-        """What a notebook and a terminal show in place of whole arrays: HTML, and the summary as text."""
+        """Heading and summary for a notebook and for a terminal, which would otherwise print whole arrays."""
         return {"text/html": self._repr_html_(), "text/plain": as_text(self.heading(), self.summary())}

@@ -35,7 +35,7 @@ def amplitude_attribute(amplitude: Amplitude | None) -> dict[str, Attribute]:
 
 
 def made() -> dict[str, Attribute]:
-    """With what, where and when."""
+    """Attributes that say with which versions, on which machine and when a result was made."""
     return {"Conventions": "CF-1.10", "granchain_version": __version__,
             "created": datetime.now(UTC).isoformat(timespec="seconds"),
             "versions": json.dumps({**{name: version(name) for name in ("numpy", "numba", "h5py")},

@@ -25,7 +25,7 @@ def force_columns(forces: np.ndarray, axes: tuple[str, ...], when: str = "in the
 
 
 def error_columns(errors: np.ndarray, axes: tuple[str, ...]) -> dict[str, Column]:
-    """Relative errors (…, 3) in the same order, NaN where none is claimed."""
+    """Relative errors (…, 3) in the same order, NaN where none is stated."""
     return {name: Column(errors[..., i], axes, "1",
                          f"relative error of the largest {_FORCES[i]} force, NaN where none is claimed")
             for i, name in enumerate(ERRORS)}

@@ -25,9 +25,9 @@ from ..stop import Stop
 from ..version import __version__
 from .sensors import Sensors
 
-#: The model's samples for one of the sensors, for one of a filter's time 1/f_c, and in a drive period at least.
+#: Samples of the model: per sample of the sensors, per time 1/f_c of their filter, and least number per drive period.
 _FINER, _PER_BANDWIDTH, _LEAST = 4, 32, 96
-#: Relative error of the state that a record begins with, and steps of the record for one of a live picture.
+#: Relative error of the state that a record begins with, and steps of the record for one default step.
 _ACCURACY, _REFINE = 1e-5, 2
 #: Most samples of a series, records of a curve, and values of the model's motion behind one of them.
 MOST_SAMPLES, MOST_RECORDS, MOST_VALUES = 1_000_000, 10_000, 20_000_000
@@ -41,11 +41,11 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     scene : Scene
         A driven chain.
     periods : int
-        Length of the record in drive periods, 1 to 10,000. It begins at any phase.
+        Length of the record in drive periods, 1 to 10,000. The record begins at a random phase.
     sensors : Sensors
-        What they make of the motion.
+        Noise, bandwidth, tip mass and sampling rate of the sensors.
     seed : int
-        Of noise and phase.
+        Seed of the noise and of the phase.
     stop : Stop, optional
         Ends the computation when another thread sets it.
 
@@ -95,7 +95,7 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     frequencies : sequence of float
         Drive frequencies [Hz].
     sensors : Sensors
-        What they make of the motion.
+        Noise, bandwidth, tip mass and sampling rate of the sensors.
     repeats : int
         Records at each frequency, 1 to 100.
     scatter : float
@@ -103,7 +103,7 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     periods : int
         Length of each record in drive periods.
     seed : int
-        Of noise, phase and scatter.
+        Seed of noise, phase and scatter.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional

@@ -1,4 +1,4 @@
-"""Strobes over a knob: as many as the period, the same regimes as the resonance curve, and failures that are told."""
+"""Strobe diagrams: as many strobes as the period, the same regimes as the resonance curve, and failures reported."""
 
 from __future__ import annotations
 

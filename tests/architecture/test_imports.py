@@ -15,6 +15,7 @@ import app.dashboard.layout  # noqa: F401  (makes every component known)
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
 from app.parts.result_figure import ResultFigure
+from granchain_core.kernels import cache, link_only
 
 
 def module_name(path: Path) -> str:
@@ -153,21 +154,40 @@ PRIVATE = {
     "app.parts.panel_shortcuts": {"_get_properties", "_update_properties", "_process_event", "_process_bokeh_event",
                                   "_models", "_param__private", "_get_children"},
 }
+#: Those of Numba, by the modules of the core.
+PRIVATE_OF_NUMBA = {
+    "granchain_core.kernels.cache": {"_cache", "_locator_classes"},
+    "granchain_core.kernels.jit": {"_numba_type_"},
+}
 
 
-@pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app")])
+@pytest.mark.parametrize("module", MODULES)
 def test_private_attributes_of_others_are_used_where_the_table_says(module: str) -> None:
-    assert set(private_uses(module)) == PRIVATE.get(module, set())
+    assert set(private_uses(module)) == (PRIVATE | PRIVATE_OF_NUMBA).get(module, set())
+
+
+def documented(page: str, folder: str) -> dict[str, set[str]]:
+    """The private names in a page's tables, by the module in the second column."""
+    rows: dict[str, set[str]] = {}
+    for what, where in re.findall(r"^\| ([^|]+) \| ([^|]+) \| [^|]+ \|$",
+                                  (ROOT / "docs" / page).read_text(encoding="utf-8"), re.MULTILINE):
+        names = set(re.findall(r"`(_[a-z]\w*)`", what))
+        if names and (file := re.search(rf"`({folder}/[\w/]+)\.py`", where)):
+            rows.setdefault(file[1].replace("/", "."), set()).update(names)
+    return rows
 
 
 def test_the_documentation_names_these_modules_with_their_attributes() -> None:
-    rows: dict[str, set[str]] = {}
-    for what, where in re.findall(r"^\| ([^|]+) \| ([^|]+) \| [^|]+ \|$",
-                                  (ROOT / "docs" / "dashboard.md").read_text(encoding="utf-8"), re.MULTILINE):
-        names = set(re.findall(r"`(_[a-z]\w*)`", what))
-        if names and (file := re.search(r"`(app/[\w/]+)\.py`", where)):
-            rows.setdefault(file[1].replace("/", "."), set()).update(names)
-    assert rows == PRIVATE
+    assert documented("dashboard.md", "app") == PRIVATE
+
+
+def test_the_documentation_names_what_is_used_of_numba() -> None:
+    """With the names that classes of the core use of the ones of Numba they are derived from."""
+    rows = {f"granchain_core.{module}": names for module, names in documented("design.md", "kernels").items()}
+    for module, names in PRIVATE_OF_NUMBA.items():
+        assert names <= rows[module]
+    for module, needed in (("cache", cache._NEEDED), ("link_only", link_only._NEEDED)):
+        assert {name for name in needed if name.startswith("_")} <= rows[f"granchain_core.kernels.{module}"]
 
 
 def test_parts_override_of_panel_only_what_is_documented() -> None:

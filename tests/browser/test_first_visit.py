@@ -24,7 +24,7 @@ WebSocket.prototype.send = function (frame) {
 
 
 def test_a_page_that_says_late_that_it_is_ready_gets_everything(visit: Visit) -> None:
-    """Its parts ask before; what Panel is told to change before is lost. So the answers wait for it."""
+    """Parts of the page send requests before the page is ready; Panel loses changes made then, so the answers wait."""
     page = visit(script=SAYS_LATE_THAT_IT_IS_READY)
     expect(field(page, "f")).to_have_value("340")
     settled(page)
@@ -47,7 +47,7 @@ OVER = """() => [...document.querySelectorAll("#stage :is(.title, .peak, #key, #
 
 
 def test_before_the_first_picture_every_part_says_what_is_coming(chromium: Browser, prepared: str) -> None:
-    """And nothing is written on anything else: titles have their places with the pictures."""
+    """No text overlaps another: the titles appear together with the pictures."""
     page = chromium.new_page(reduced_motion="reduce")
     page.add_init_script(HOLDS_ITS_MESSAGES)
     page.goto(prepared)

@@ -13,7 +13,7 @@ from granchain_core.hard import CASES, Check, runner
 
 
 def pretend(figure: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Rows at once, the last case's with this figure against a bar of 1."""
+    """Rows at once, the last case's with this value against a limit of 1."""
 
     def rows(quick: bool, workers: int | None = None):  # type: ignore[no-untyped-def]
         for case in CASES:

@@ -124,7 +124,9 @@ def test_another_question_is_refused(name: str, tmp_path: Path, capsys: pytest.C
     (folder_of(out) / f"{name}.json").write_bytes(content)
     out.unlink()
     assert main([*SHORT[name], *OTHER[name], "--out", str(out), "--resume"]) == 2
-    assert f"holds another {name}" in capsys.readouterr().err
+    told = capsys.readouterr().err
+    assert f"holds another {name}" in told
+    assert f"add --resume to the command line of that {name}, give another --out, or delete the folder" in told
 
 
 @pytest.mark.parametrize("name", ["run", "curve", "branch"])

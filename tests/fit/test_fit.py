@@ -73,7 +73,7 @@ def test_a_series_gives_back_what_made_it() -> None:
 
 
 def test_the_model_cannot_what_no_parameters_can() -> None:
-    """Forces that alternate from one frequency to the next: no resonance curve does."""
+    """No resonance curve has forces that alternate from one frequency to the next, so the verdict is cannot."""
     given = measured(error=0.03)
     wrong = replace(given, force=given.force * np.where(np.arange(9) % 2, 1.5, 0.7))
     found = fit(CHAIN, CurveTarget(wrong), FREE[:2], intervals=False)

@@ -120,8 +120,8 @@ def steps_after_the_flag(slow: Engine, stop: Stop, computation: Callable[[], obj
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
 @pytest.mark.parametrize("recording", [False, True])
 def test_stop_flag_ends_a_long_run_soon(method, recording):
-    """A flag raised from another thread, once the kernel counts steps, ends it in the middle of a long period: it is asked
-    every 4096 steps at least, two of which may be left when it is raised."""
+    """A stop flag set by another thread ends a long period in its middle: the kernel reads the flag every 4096 steps at
+    most, so up to two such blocks of steps may follow."""
     stop = Stop()
     quick = Engine(scene("sec2").evolve(f=1e5, N=300), Setting(method, tolerance=1e-3), 1)
     quick.record(1) if recording else quick.periods(1)  # compiling asks no flag

@@ -100,7 +100,7 @@ def flow_types(knobs: dict) -> tuple:
     """Types of the arguments of the flow with tangents for section 2's chain with these knobs."""
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=3, **knobs), 1)
     e = stroboscopic_map.engine
-    course = Course(e.stepper.trajectory(e.y)._replace(work=stroboscopic_map._work), stroboscopic_map._contacts,
+    course = Course(e.stepper.trajectory(e.y)._replace(workspace=stroboscopic_map._work), stroboscopic_map._contacts,
                     new_tangent(np.eye(6), e.scaled.bodies, 0))
     return tuple(map(numba.typeof, (e.stepper.method, course, 1, e.counts.array, e.stop.flag)))
 

@@ -11,7 +11,7 @@ from granchain_core.scaling import scale_chain
 
 @pytest.mark.parametrize("absent", ["dissipation", "tension", "foundation", "preload", "balance"])
 def test_absent_effect_has_an_empty_slot(absent):
-    """What a scene does not call for is None, not zero."""
+    """The slot of an effect that a scene does not have is None, not zero."""
     bare = scene("sec2").evolve(dissipation="none", k=0.0, F0=0.0)
     assert getattr(scale_chain(bare).slots, absent) is None
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -38,6 +40,23 @@ def used(folder: Path, program: str = PROGRAM) -> tuple[dict, list[str]]:
     return json.loads(done.stdout.splitlines()[-1]), done.stderr.splitlines()
 
 
+@pytest.fixture(scope="module")
+def filled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A cache that holds the kernel."""
+    folder = tmp_path_factory.mktemp("filled")
+    answer, messages = used(folder)
+    assert answer["right"] and answer["loaded"] == 0 and messages == []
+    return folder
+
+
+@pytest.mark.parametrize("private", ["UserProvidedCacheLocator", "CacheImpl._locator_classes", "Cache._index_key"])
+def test_with_another_numba_kernels_are_compiled_for_the_process_and_one_line_says_so(private: str, tmp_path: Path) -> None:
+    lacking = f"import numba\nfrom numba.core import caching\ndel caching.{private}\n"
+    answer, messages = used(tmp_path, lacking + PROGRAM)
+    assert answer["right"] and answer["loaded"] == 0 and not list(tmp_path.rglob("*.nbc"))
+    assert len(messages) == 1 and private.split(".")[-1].lstrip("_") in messages[0] and "this process only" in messages[0]
+
+
 def halved(content: bytes) -> bytes:
     return content[: len(content) // 2]
 
@@ -49,23 +68,25 @@ def flipped(content: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("damage", [lambda _: b"", halved, flipped, lambda _: b"x"], ids=["empty", "halved", "flipped", "short"])
-def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, tmp_path: Path) -> None:
-    answer, messages = used(tmp_path)
-    assert answer["right"] and answer["loaded"] == 0 and messages == []
-    files = list(tmp_path.rglob("*.nbc"))
-    assert len(files) == 1
-    files[0].write_bytes(damage(files[0].read_bytes()))
-    answer, messages = used(tmp_path)
+def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, filled: Path, tmp_path: Path) -> None:
+    cache_folder = shutil.copytree(filled, tmp_path / "cache")
+    (file,) = cache_folder.rglob("*.nbc")
+    whole = file.read_bytes()
+    file.write_bytes(damage(whole))
+    answer, messages = used(cache_folder)
     assert answer["right"] and answer["loaded"] == 0
     assert len(messages) == 1 and "Damaged kernels" in messages[0] and "compiled again" in messages[0]
-    answer, messages = used(tmp_path)
+    assert cache.whole(file) == file.read_bytes()[32:] and len(file.read_bytes()) > len(whole) // 2
+
+
+def test_a_whole_kernel_is_loaded(filled: Path) -> None:
+    answer, messages = used(filled)
     assert answer["right"] and answer["loaded"] == 1 and messages == []
 
 
-def test_every_flipped_bit_is_seen(tmp_path: Path) -> None:
+def test_every_flipped_bit_is_seen(filled: Path, tmp_path: Path) -> None:
     """The checksum is compared before anything is unpickled."""
-    used(tmp_path)
-    for path in tmp_path.rglob("*.nbc"):
+    for path in shutil.copytree(filled, tmp_path / "cache").rglob("*.nbc"):
         content = path.read_bytes()
         assert cache.whole(path) == content[32:]
         for bit in range(0, 8 * len(content), max(1, len(content) // 50)):
@@ -128,7 +149,8 @@ def test_where_nothing_can_be_written_the_temporary_folder_is_ours_alone(denied:
 
 
 @pytest.mark.parametrize("planted", ["open to all", "readable by all", "a link", "a file", "open inside"])
-def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denied: Path, tmp_path: Path) -> None:
+def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denied: Path, tmp_path: Path,
+                                                             monkeypatch: pytest.MonkeyPatch) -> None:
     ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
     if planted == "a link":
         (tmp_path / "elsewhere").mkdir(mode=0o700)
@@ -141,9 +163,16 @@ def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denie
         inside.mkdir(mode=0o700)
         {"open to all": ours, "readable by all": ours, "open inside": inside}[planted].chmod(
             0o755 if planted == "readable by all" else 0o777)
-    answer, messages = used(denied)
-    assert answer["right"] and answer["folder"] == "None" and answer["loaded"] == 0
-    assert len(messages) == 1 and "not a folder of ours with mode 700" in messages[0]
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(denied))
+    monkeypatch.setattr(tempfile, "tempdir", None)  # Python remembers where it was
+    said: list[str] = []
+    monkeypatch.setattr(cache, "say_once", said.append)
+    assert cache.cache_folder() is None
+    assert len(said) == 1 and "not a folder of ours with mode 700" in said[0]
+    if planted == "open to all":
+        answer, messages = used(denied)
+        assert answer["right"] and answer["folder"] == "None" and answer["loaded"] == 0
+        assert [said[0] in message for message in messages] == [True]
 
 
 @pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")

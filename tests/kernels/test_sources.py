@@ -61,6 +61,15 @@ def test_another_compiler_has_other_code(tmp_path: Path, monkeypatch: pytest.Mon
             assert sources.sources_hash(tmp_path) != before
 
 
+@pytest.mark.parametrize("level", [0, 1, "max"])
+def test_another_optimisation_level_has_other_code(level: int | str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = hashed(tmp_path, SOURCE), sources.wording_hash(tmp_path)
+    usual = sources.numba.config.OPT
+    assert level != usual
+    monkeypatch.setattr(sources.numba.config, "OPT", type(usual)(level))
+    assert sources.sources_hash(tmp_path) != before[0] and sources.wording_hash(tmp_path) != before[1]
+
+
 def made(body: str):
     """The function `f` of a source."""
     names: dict = {}

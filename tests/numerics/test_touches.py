@@ -1,4 +1,4 @@
-"""The adaptive method misses no touch, however brief, and no moment of one; what is symmetric stays so."""
+"""The adaptive method misses no touch, however brief, and times each exactly; a symmetric motion stays symmetric."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The flow steps over no touch: neither the map nor its derivative leaves one out."""
+"""The flow misses no touch: every touch is in the map and in its derivative."""
 
 from __future__ import annotations
 

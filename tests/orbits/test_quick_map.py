@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import numpy as np
 import pytest
 
-from granchain_core import scene
+from granchain_core import NumbersFailed, scene
 from granchain_core.orbits import Branch, KnobAxis, continue_branch
 from granchain_core.orbits.branch import point as points
 from granchain_core.orbits.branch import quick
 from granchain_core.orbits.branch.equations import BranchEquations
 from granchain_core.orbits.branch.steps import LONGEST, next_step, predicted
 from granchain_core.orbits.stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
+from granchain_core.scaling import scale_chain
 from granchain_core.steady.returns import relative_change
 
 
@@ -45,14 +48,16 @@ def test_equal_calls_of_the_quick_map_give_equal_bits() -> None:
     equations = BranchEquations(KnobAxis.of(scene("sec2").evolve(N=3), "f", 340.0, 700.0), 1)
     x = np.linspace(0.9, -0.4, 6)
     first = equations.quick_end(x, 500.0, 800)
-    equations.quick_end(2.0 * x, 600.0, 1024)
-    np.testing.assert_array_equal(equations.quick_end(x, 500.0, 800), first)
+    for other, value, steps in ((2.0 * x, 600.0, 1024), (-x, 510.0, 800), (np.nan * x, 505.0, 800)):
+        with contextlib.suppress(NumbersFailed):
+            equations.quick_end(other, value, steps)
+        np.testing.assert_array_equal(equations.quick_end(x, 500.0, 800), first)
 
 
 def test_where_fixed_steps_would_be_slow_the_flow_takes_their_place(whole: Branch,
                                                                   monkeypatch: pytest.MonkeyPatch) -> None:
-    assert quick.quick_steps(scene("sec2").evolve(f=0.1)) == 0 < quick.quick_steps(scene("sec2"))
-    monkeypatch.setattr(quick, "_MOST_STEPS", 0)
+    assert quick.quick_steps(scale_chain(scene("sec2").evolve(f=0.1))) == 0 < quick.quick_steps(scale_chain(scene("sec2")))
+    monkeypatch.setattr(quick, "_MOST_QUICK_STEPS", 0)
     monkeypatch.setattr(quick.QuickMap, "end", None)
     slow = followed()
     assert [one.kind for one in slow.special] == [one.kind for one in whole.special] != []

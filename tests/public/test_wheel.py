@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 #: What the hook in hatch_build.py is asked, without a network to fetch hatchling.
 PLACES = """
@@ -27,8 +29,10 @@ for here, there in standard["force_include"].items():
 """
 
 
-def wheel(folder: Path) -> set[str]:
-    """Put what a wheel has where pip would put it; the names at the top."""
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with what a wheel has, where pip would put it."""
+    folder = tmp_path_factory.mktemp("wheel")
     said = subprocess.run([sys.executable, "-c", PLACES], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     places = [(name, name) for name in ("granchain", "granchain_core", "granchain_start")]
     places += [(here, there) for here, there in map(str.split, said.splitlines())]
@@ -39,28 +43,27 @@ def wheel(folder: Path) -> set[str]:
             shutil.copytree(ROOT / here, target, ignore=shutil.ignore_patterns("__pycache__"))
         else:
             shutil.copy(ROOT / here, target)
-    return {path.name for path in folder.iterdir()}
+    return folder
 
 
-def test_the_wheel_has_only_names_that_are_ours_and_runs(tmp_path: Path) -> None:
-    assert wheel(tmp_path) == {"granchain", "granchain_core", "granchain_app", "granchain_start"}
-    assert not (tmp_path / "granchain_app" / "main.py").exists()
+def test_the_wheel_has_only_names_that_are_ours_and_runs(wheel: Path) -> None:
+    assert {path.name for path in wheel.iterdir()} == {"granchain", "granchain_core", "granchain_app", "granchain_start"}
+    assert not (wheel / "granchain_app" / "main.py").exists()
     code = ("import sys; sys.path.insert(0, sys.argv.pop(1)); import granchain_start; status = granchain_start.entry(); "
             "sys.exit(status or int('app' in sys.modules or 'granchain_app' not in sys.modules))")
-    ran = subprocess.run([sys.executable, "-c", code, str(tmp_path), "scenes", "--json"], cwd=tmp_path, text=True,
+    ran = subprocess.run([sys.executable, "-c", code, str(wheel), "scenes", "--json"], cwd=wheel, text=True,
                          capture_output=True, check=False)
     assert ran.returncode == 0 and '"sec2"' in ran.stdout, ran.stderr
     code = ("import sys; sys.path.insert(0, sys.argv[1]); import granchain\n"
             "found = granchain.WorkPrecision(granchain.scene('sec2'), 'dop853', 'another', 1e-9)\n"
             "print(granchain.figure(found).height, 'granchain_app.pictures.any_result' in sys.modules, 'app' in sys.modules)")
-    drawn = subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=tmp_path, text=True, capture_output=True, check=False)
+    drawn = subprocess.run([sys.executable, "-c", code, str(wheel)], cwd=wheel, text=True, capture_output=True, check=False)
     assert drawn.stdout == "420 True False\n", drawn.stderr
 
 
-def test_every_module_of_the_wheel_is_found_under_its_name_there(tmp_path: Path) -> None:
+def test_every_module_of_the_wheel_is_found_under_its_name_there(wheel: Path) -> None:
     """With the files it reads when it is imported; and imports inside functions do not name the tree's package."""
-    wheel(tmp_path)
-    named = [path for path in (tmp_path / "granchain_app").rglob("*.py")
+    named = [path for path in (wheel / "granchain_app").rglob("*.py")
              if re.search(r"^\s*(from|import) app\b", path.read_text(encoding="utf-8"), re.MULTILINE)]
     assert named == []
     code = ("import sys; sys.path.insert(0, sys.argv[1]); import importlib, pkgutil, granchain_app\n"
@@ -69,5 +72,5 @@ def test_every_module_of_the_wheel_is_found_under_its_name_there(tmp_path: Path)
             "from granchain_app.dashboard import measurement, scales; from granchain_app.session import stories\n"
             "assert scales.FILE.is_file() and measurement.SAMPLES.is_dir() and stories.FOLDER.is_dir()\n"
             "print(len(names) > 100, 'app' in sys.modules)")
-    ran = subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=tmp_path, text=True, capture_output=True, check=False)
+    ran = subprocess.run([sys.executable, "-c", code, str(wheel)], cwd=wheel, text=True, capture_output=True, check=False)
     assert ran.stdout == "True False\n", ran.stderr

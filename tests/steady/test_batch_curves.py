@@ -40,8 +40,8 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
 
 def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 1640 Hz from rest: one measurement of a zero exponent is not enough, as for a chain by itself."""
-    real, measured = batch_settle.exponents_in_pairs, []
-    monkeypatch.setattr(batch_settle, "exponents_in_pairs", lambda *words: measured.append(True) or real(*words))
+    real, measured = batch_settle.put_with_shadow, []
+    monkeypatch.setattr(batch_settle, "put_with_shadow", lambda *words: measured.append(True) or real(*words))
     found = results([1640.0])[1640.0]
     assert (found.regime.name, found.doubtful, len(measured)) == ("quasi-periodic", False, 2)
 

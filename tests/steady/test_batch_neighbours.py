@@ -54,13 +54,23 @@ def test_members_that_are_due_together_are_all_returned_before_one_goes_on() -> 
     assert list(batch.state.periods) == [3] * BATCH_SIZE
 
 
-@pytest.mark.parametrize("wrong", [0, 1])
-def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int) -> None:
+@pytest.mark.parametrize("lost", ["chain", "shadow"])
+@pytest.mark.parametrize("wrong", [0, 2])
+def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int, lost: str) -> None:
     chain = scene("sec2").evolve(f=1130.0)
     scaled, batch = scale_chain(chain), Batch(chain, Stop())
-    for pair in (0, 1):
-        y = np.full(2 * scaled.bodies, np.nan) if pair == wrong else np.zeros(2 * scaled.bodies)
-        for member in (2 * pair, 2 * pair + 1):
-            batch.put(member, scaled, y + 1e-9 * (member % 2), 1, return_at=4, earliest=NEVER)
-    growth = batch.run_pairs(1e-8, 4)
-    assert np.isnan(growth[wrong]).all() and np.isfinite(growth[1 - wrong]).all()
+    rest = np.zeros(2 * scaled.bodies)
+    offset = np.where(scaled.embed(np.ones(2 * scaled.beads)) > 0.0, 1e-9, 0.0)
+    for member in (0, 2):
+        broken = np.full_like(rest, np.nan) if member == wrong else rest
+        batch.put_pair(member, member + 1, scaled, broken if lost == "chain" else rest,
+                       offset if lost == "chain" else offset + broken, float(np.linalg.norm(offset)), 4)
+    finite, growth = {}, {}
+    for _ in range(2):
+        member, finite[member] = batch.run()
+        growth[member] = batch.growth(member).copy()
+        batch.empty(member)
+        batch.empty(member + 1)
+    assert finite == {wrong: lost == "shadow", 2 - wrong: True}
+    assert np.isfinite(growth[2 - wrong]).all() and len(growth[2 - wrong]) == 4
+    assert np.isnan(growth[wrong]).all()

@@ -65,7 +65,7 @@ FAILING = (
            "the step after the one that failed is named", ("tests/hard/test_outcomes.py", "-k", "middle_of_a_long_call")),
     Mutant("failed-time-since-call", "integrate/engine.py", "Failure(status, self.elapsed + done, bead,", "Failure(status, done, bead,",
            "the time of a failure is counted from the present call", k.FAILURES_T),
-    Mutant("nan-of-velocity-unseen", "kernels/samples.py", "if not (np.isfinite(y[i]) and np.isfinite(y[m + i])):",
+    Mutant("nan-of-velocity-unseen", "kernels/samples.py", "if not (np.isfinite(y[i]) and np.isfinite(y[bodies + i])):",
            "if not np.isfinite(y[i]):", "a NaN velocity is seen when it has reached a displacement, in another bead",
            k.FAILURES_W),
     Mutant("checkpoint-without-scale", "integrate/checkpoint.py", "engine.stepper.work.next_step[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]",

@@ -11,8 +11,8 @@ _BRACKET, _CUBIC = "kernels/dop853/bracket.py", "kernels/contact_cubic.py"
 _SAMPLING, _ENGINE = "kernels/rk4/run.py", "integrate/engine.py"
 
 MOTION = (
-    Mutant("motion-without-last-contact", _MOTION, "for c in range(m - 1):\n        d = pressed(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
-           "for c in range(m - 2):\n        d = pressed(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
+    Mutant("motion-without-last-contact", _MOTION, "for c in range(bodies - 1):\n        d = pressed(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
+           "for c in range(bodies - 2):\n        d = pressed(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
            "the wall's contact is not summed", k.MOTION),
     Mutant("contact-force-elastic-only", _MOTION, "e[c] + damped)",
            "e[c])", "forces are reported without their damping", k.MOTION),
@@ -22,7 +22,7 @@ MOTION = (
            "the foundation's pull on a heavy bead is not divided by its mass", k.UNLIKE),
     Mutant("kinetic-energy-of-equal-beads", _MOTION, "0.5 * dy[i] * dy[i] / inverse_mass[i]",
            "0.5 * dy[i] * dy[i] * inverse_mass[i]", "the kinetic energy of a heavy bead is too small", k.UNLIKE),
-    Mutant("start-velocity-taken-for-w", _MOTION, "    if from_velocity:\n", "    if from_velocity and m < 0:\n",
+    Mutant("start-velocity-taken-for-w", _MOTION, "    if from_velocity:\n", "    if from_velocity and bodies < 0:\n",
            "a state in velocities is taken for one in w", k.MOTION),
 )
 
@@ -34,7 +34,7 @@ FIXED = (
     Mutant("scalar-split-steps-over-touch", _FIXED,
            "changed += (before != after) or (rising != before and risen == before)", "changed += before != after",
            "a contact that closes and opens again inside a step is not seen", k.STEP_EVENTS),
-    Mutant("scalar-give-back-sign", _FIXED, "y[m + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR", "y[m + i] -= inverse_mass[i] * (ends[MOMENTUM_ERROR",
+    Mutant("scalar-give-back-sign", _FIXED, "y[bodies + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR", "y[bodies + i] -= inverse_mass[i] * (ends[MOMENTUM_ERROR",
            "what Simpson's rule gives too much is given once more", k.SIMD_PLAIN),
     Mutant("scalar-split-phase", _FIXED, "theta + dtheta * (done + 0.5 * part), theta", "theta + dtheta * (done + part), theta",
            "the driver is ahead in the middle of a split step", k.SIMD_PLAIN),
@@ -72,12 +72,12 @@ ADAPTIVE = (
     Mutant("touch-only-from-open", _BRACKET, "if not (sign * s0 > 0.0 and sign * s1 < 0.0):",
            "if not (sign * s0 > 0.0 and sign * s1 < 0.0 and sign > 0.0):",
            "a contact that lets go and closes again inside a step is not seen", k.STEP_EVENTS),
-    Mutant("lands-in-front", _DOP853_RUN, "target = -behind if before else behind", "target = behind if before else -behind",
+    Mutant("lands-in-front", _DOP853_RUN, "target = -past if before else past", "target = past if before else -past",
            "steps end in front of the event they were aimed at", k.TOUCHES),
     Mutant("event-not-landed-on", _DOP853_RUN,
            "h = locate_event(method, step, limit, aimed, counts)", "pass",
            "the moment of a contact is as inexact as the dense output", k.TOUCHES),
-    Mutant("event_tolerance-loose", _DOP853_RUN, "_BEHIND = 1e-15", "_BEHIND = 1e-12",
+    Mutant("event_tolerance-loose", _DOP853_RUN, "_PAST = 1e-15", "_PAST = 1e-12",
            "steps end a thousand times as far behind their events", k.TOUCHES),
     Mutant("driver-from-dense-output", _DOP853, "(step.t + x * step.h)", "(step.t + step.h)",
            "the driver stands still while its contact is looked for", k.TOUCHES),
@@ -94,7 +94,7 @@ ADAPTIVE = (
            "errors of the velocities are not controlled", k.ADAPTIVE_ORDER),
     Mutant("step-too-small-unseen", _DOP853_RUN, "        if t + 0.1 * h == t:", "        if t + 0.1 * h < t:",
            "a step that shrinks to nothing goes on for ever", ("tests/hard/test_outcomes.py::test_step_too_small",)),
-    Mutant("chatter-unseen", _DOP853_RUN, "if events > EVENTS_PER_CONTACT * (m - 1):", "if events < 0:",
+    Mutant("chatter-unseen", _DOP853_RUN, "if events > EVENTS_PER_CONTACT * (bodies - 1):", "if events < 0:",
            "contacts that open and close without end are followed without a word",
            ("tests/hard/test_outcomes.py::test_chatter",)),
     Mutant("events-of-all-periods", _DOP853_RUN, "t, g, events = 0.0, 0, 0", "t, g = 0.0, 0",

@@ -44,8 +44,8 @@ FLOW = (
            "the flow's events are located to 1e-7", k.MONODROMY),
     Mutant("onset-of-last-period-kept", _FLOW, "onset -= period", "onset -= 0.0",
            "time behind an onset is counted from the wrong period", k.TWO_PERIODS),
-    Mutant("events-logged-in-their-period", _FLOW, "change(slots, contacts, tangent, contact, p * period + t)",
-           "change(slots, contacts, tangent, contact, t)", "the log's times begin anew each period", k.SAME_EVENTS),
+    Mutant("events-logged-in-their-period", _FLOW, "toggle_contact(slots, contacts, tangent, contact, p * period + t)",
+           "toggle_contact(slots, contacts, tangent, contact, t)", "the log's times begin anew each period", k.SAME_EVENTS),
     Mutant("onset-not-remembered", _FLOW, "                    onset = t\n", "                    onset = -np.inf\n",
            "a step behind an onset is taken in plain time, where nothing is smooth", k.MONODROMY),
 )

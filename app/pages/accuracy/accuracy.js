@@ -33,7 +33,8 @@ function methodTable(ways, failures) {
 }
 
 const SYMBOLS =
-  "u, v: displacement and velocity of each bead; w: how far neighbours are pressed together, of which fewer digits are lost. Order n: half the step, 2ⁿ times less error.";
+  "u, v: displacement and velocity of each bead; w: the velocity without the impulse of the bead's dashpots, so that " +
+  "its rate of change does not jump when a contact closes. Order n: half the step, 2ⁿ times less error.";
 
 class AccuracyPage {
   constructor(model) {

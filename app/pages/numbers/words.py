@@ -65,7 +65,7 @@ def _value(values: np.ndarray, row: int, unit: str) -> str:
 
 
 def beads(run: Run) -> list[list[str]]:
-    """Of each bead the largest displacement, speed and kinetic energy, as sampled, and when it has that energy."""
+    """For every bead its number, largest sampled displacement, speed and kinetic energy, and the time of the last."""
     energy = run.kinetic_energy
     return [[str(bead + 1), in_words(float(np.abs(run.displacement[:, bead]).max()), "m", 3),
              in_words(float(np.abs(run.velocity[:, bead]).max()), "m/s", 3),

@@ -110,7 +110,10 @@ class ObserverRun:
 
     @property
     def measured(self) -> float | None:
-        """The same factor measured since the last start; None until enough periods were linear."""
+        """Factor by which the distance changed in a drive period since the last start.
+
+        None until enough periods were linear.
+        """
         linear = self._linear
         if len(self.strobes) < 8 * self._every or len(linear) < self._orbits_needed:
             return None

@@ -29,7 +29,7 @@ class ProbePage(Page):
         self._draw(picture)
 
     def visibility_changed(self, visible: bool) -> None:
-        """Draw the present motion for who begins to look."""
+        """Draw the present motion when somebody begins to look."""
         self._visible = visible
         self._draw(self._host.session.picture)
 

@@ -99,7 +99,7 @@ class StabilityPage(Page):
             self._quiet.start(self._begin)
 
     def visibility_changed(self, visible: bool) -> None:
-        """Analyse the picture for who begins to look; cancel the analysis when nobody does any more."""
+        """Analyse the picture when somebody begins to look; cancel the analysis when nobody looks any more."""
         self._visible = visible
         if not visible:
             self._give_up()

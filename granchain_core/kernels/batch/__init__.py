@@ -1,1 +1,1 @@
-"""Several scenes at a time, one in each SIMD lane."""
+"""Batches: several scenes at once, each a member in one SIMD lane."""

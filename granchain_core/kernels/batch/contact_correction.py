@@ -67,7 +67,7 @@ def correct_state(values, y, c, row, error):
 @inline_llvm
 def correct_contacts(values, y, overlaps, h, u0):
     """Correct the last step at contacts that changed in it; `overlaps` are the overlaps before it."""
-    m = values.last + 2
+    bodies = values.last + 2
     left = u0
     for c in range(values.last + 1):
         right = load_batch(y, c + 1)
@@ -83,7 +83,7 @@ def correct_contacts(values, y, overlaps, h, u0):
             impulse = h * three_halves(speed * h) * impulse_error(r, three_halves(r), three_halves(r_mid))
             impulse = times_stiffness(values.unequal, values.wall, c, c == values.last, impulse)
             shift = displacement_error(values.law, r, r_mid, speed, h)
-            correct_state(values, y, c, m, gate(changed, impulse))
+            correct_state(values, y, c, bodies, gate(changed, impulse))
             correct_displacement(values.law, values, y, c, changed, shift)
             right = load_batch(y, c + 1)
         left = right

@@ -28,7 +28,7 @@ from ..strobes.periodicity import (
     window_of,
 )
 
-#: Strobes of each member that are always kept once there are as many.
+#: At least this many of a member's last strobes are kept, once there are as many.
 STROBES_KEPT = 432
 #: Most strobes on which a member's regime is decided.
 CHECKED = 4 * LONGEST_PERIOD + 1
@@ -38,7 +38,7 @@ _FEWEST_ORBITS_LEFT = 4.0
 _PERIODS_BETWEEN = 8
 #: How far an extrapolation may go, in units of change/(1 − rate), the distance that the decay predicts.
 FARTHEST_EXTRAPOLATION = 3.0
-#: Part of the coarse orbit's error that may be left in the finer run.
+#: Largest part of the coarse orbit's error that may remain in the fine run.
 COARSE_ERROR_LEFT = 0.02
 #: Most extrapolations of a fine member.
 _MOST_EXTRAPOLATIONS = 6
@@ -52,54 +52,54 @@ _PART_LEFT = 0.97
 _PAUSE_AFTER_FAILED_TEST = 400
 #: Slowest decay reported for a disturbance that shrank: multipliers are then computed.
 _NEARLY_ONE = 0.9999
-#: Slowest decay that an extrapolation is taken to remove: slower ones are not measured well enough.
+#: Decay rates above this are too uncertain to extrapolate.
 _SLOWEST_REMOVED = 0.98
-#: Columns of the last check: period in drive periods, decay per drive period, distance left to the orbit.
-PERIOD, RATE, DISTANCE = 0, 1, 2
-#: Further columns of a fine member's record, which begins with period and decay: the coarse run's three largest forces,
-#: orbits between two extrapolations, extrapolations so far; and the number of all columns.
-FORCES, ORBITS_BETWEEN, EXTRAPOLATIONS, FINE_COLUMNS = 2, 5, 6, 7
+#: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
+CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
+#: Columns of `fine_record`: the orbit's period and decay, the coarse run's three largest forces (from FINE_FORCES on),
+#: orbits between two extrapolations, extrapolations so far; and their number.
+FINE_PERIOD, FINE_DECAY, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_COLUMNS = 0, 1, 2, 5, 6, 7
 
 
 @internal
 def keep_member_strobe(state, member):
     """Append the state to the strobes, dropping their older half if they are full; returns whether it is finite."""
-    strobes, y, m = state.strobes, state.y, state.y.shape[0] // 2
-    if state.kept[member] == strobes.shape[1]:
+    strobes, y, bodies = state.strobes, state.y, state.y.shape[0] // 2
+    if state.strobe_count[member] == strobes.shape[1]:
         half = strobes.shape[1] // 2
         for p in range(half):
             copy(strobes[member, half + p, 0], strobes[member, p, 0])
             copy(strobes[member, half + p, 1], strobes[member, p, 1])
-        state.kept[member] = half
-    finite, place = True, state.kept[member]
-    for i in range(m):
-        strobes[member, place, 0, i], strobes[member, place, 1, i] = y[i, member], y[m + i, member]
-        finite = finite and np.isfinite(y[i, member]) and np.isfinite(y[m + i, member])
-    state.kept[member] += 1
+        state.strobe_count[member] = half
+    finite, row = True, state.strobe_count[member]
+    for i in range(bodies):
+        strobes[member, row, 0, i], strobes[member, row, 1, i] = y[i, member], y[bodies + i, member]
+        finite = finite and np.isfinite(y[i, member]) and np.isfinite(y[bodies + i, member])
+    state.strobe_count[member] += 1
     return finite
 
 
 @internal
-def place_member(state, member, where):
-    """Put a member into the state `where` (2, m); its record begins there."""
-    m = where.shape[1]
-    for i in range(1, m - 1):
-        state.y[i, member], state.y[m + i, member] = where[0, i], where[1, i]
-    for c in range(m - 1):
+def move_member(state, member, there):
+    """Move a member to the state `there` (2, bodies), where its strobes begin anew."""
+    bodies = there.shape[1]
+    for i in range(1, bodies - 1):
+        state.y[i, member], state.y[bodies + i, member] = there[0, i], there[1, i]
+    for c in range(bodies - 1):
         state.overlaps[c, member] = 0.0
     for row in range(4):
         state.ends[row, member] = 1.0  # counts as closed, so that no closing is recorded here
-    state.kept[member] = 0
+    state.strobe_count[member] = 0
     keep_member_strobe(state, member)
 
 
 @internal
 def extrapolate_member(state, member, n, rate, change):
-    """Put a member into the limit of its last strobes, n periods apart; returns whether that was within reach."""
-    kept = state.kept[member]
-    if kept < ORBITS * n + 1 or not 0.0 < rate < 1.0:
+    """Move a member to the limit of its last strobes, n periods apart; returns whether that was within reach."""
+    count = state.strobe_count[member]
+    if count < ORBITS * n + 1 or not 0.0 < rate < 1.0:
         return False
-    limit, record = state.limit, state.strobes[member, kept - 1 - ORBITS * n : kept]
+    limit, record = state.limit, state.strobes[member, count - 1 - ORBITS * n : count]
     reduced_rank(record[::n], state.basis, state.triangle, limit)
     largest_of(record, state.scale)
     reach = FARTHEST_EXTRAPOLATION * change / (1.0 - rate)
@@ -107,19 +107,19 @@ def extrapolate_member(state, member, n, rate, change):
         for i in range(limit.shape[1]):
             if not abs(limit[q, i] - record[ORBITS * n, q, i]) <= reach * state.scale[q]:
                 return False
-    place_member(state, member, limit)
+    move_member(state, member, limit)
     return True
 
 
 @internal
 def check_coarse(state, member):
     """Whether a member's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
-    kept, periods = state.kept[member], state.periods[member]
+    count, periods = state.strobe_count[member], state.periods[member]
     period, rate, distance, n, approach_rate, change = detect_period(
-        state.strobes[member, max(0, kept - CHECKED) : kept], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
+        state.strobes[member, max(0, count - CHECKED) : count], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
         state.slowest[member], state.scale, state.change)
     last_check = state.last_check[member]
-    last_check[PERIOD], last_check[RATE], last_check[DISTANCE] = period, rate, distance
+    last_check[CHECK_PERIOD], last_check[CHECK_DECAY], last_check[CHECK_DISTANCE] = period, rate, distance
     if period > 0 and state.slowest[member] > 0.0:
         disturb(state, member, period)
         return False
@@ -129,7 +129,7 @@ def check_coarse(state, member):
         proved = n > 0 and change < state.change_before_extrapolation[member]
         state.change_before_extrapolation[member] = 0.0
         if not proved:
-            place_member(state, member, state.before[member])
+            move_member(state, member, state.before[member])
             state.pause[member] *= 2
             state.extrapolate_from[member] = periods + state.pause[member]
             return False
@@ -138,44 +138,44 @@ def check_coarse(state, member):
         return False
     if log(SETTLED_DISTANCE / left) > _FEWEST_ORBITS_LEFT * log(approach_rate):
         return False  # it settles sooner without extrapolation
-    copy(state.strobes[member, kept - 1, 0], state.before[member, 0])
-    copy(state.strobes[member, kept - 1, 1], state.before[member, 1])
+    copy(state.strobes[member, count - 1, 0], state.before[member, 0])
+    copy(state.strobes[member, count - 1, 1], state.before[member, 1])
     if extrapolate_member(state, member, n, approach_rate, change):
         state.change_before_extrapolation[member] = change
         state.slowest[member] = min(_SLOWEST_REMOVED, max(state.slowest[member], approach_rate ** (1.0 / n)))
         state.earliest[member] = periods + window_of(n) + n + 1
         state.extrapolate_from[member] = periods + ORBITS * n
     else:
-        state.extrapolate_from[member] = periods + max(_PERIODS_BETWEEN, kept // 4)
+        state.extrapolate_from[member] = periods + max(_PERIODS_BETWEEN, count // 4)
     return False
 
 
 @inline_numba
 def disturb(state, member, period):
     """Disturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
-    kept, m = state.kept[member], state.limit.shape[1]
+    count, bodies = state.strobe_count[member], state.limit.shape[1]
     for q in range(2):
-        copy(state.strobes[member, kept - 1, q], state.before[member, q])
-        for i in range(m):
+        copy(state.strobes[member, count - 1, q], state.before[member, q])
+        for i in range(bodies):
             state.limit[q, i] = state.before[member, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
     for q in range(3):
-        state.fine_record[member, FORCES + q] = largest_top(state, member, period, q)
-    place_member(state, member, state.limit)
+        state.fine_record[member, FINE_FORCES + q] = largest_top(state, member, period, q)
+    move_member(state, member, state.limit)
     state.testing[member] = period
     state.earliest[member] = state.periods[member] + _TEST_ORBITS * period
 
 
 @inline_numba
 def decayed(state, member):
-    """Whether a member's disturbance has decayed; it is then put back on its orbit, and the decay is kept."""
-    n, m = state.testing[member], state.limit.shape[1]
+    """Whether a member's disturbance has decayed; it is then moved back to its orbit, and the decay is recorded."""
+    n, bodies = state.testing[member], state.limit.shape[1]
     state.testing[member] = 0
     largest_of(state.strobes[member, : _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
         there, whole = 0.0, 0.0
         for q in range(2):
-            for i in range(m):
+            for i in range(bodies):
                 offset = (state.strobes[member, k * n, q, i] - state.before[member, q, i]) / state.scale[q]
                 there, whole = max(there, abs(offset)), whole + offset**2
         quarter = 4 * k // (_TEST_ORBITS + 1)
@@ -184,12 +184,12 @@ def decayed(state, member):
         late += whole if quarter == 3 else 0.0
         last = there
     if last <= _PART_LEFT * first:
-        place_member(state, member, state.before[member])
+        move_member(state, member, state.before[member])
         rate = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
-        state.last_check[member, RATE] = max(state.last_check[member, RATE], min(rate, _NEARLY_ONE))
+        state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], min(rate, _NEARLY_ONE))
         return True
     state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
-    state.last_check[member, PERIOD] = 0.0  # this member does not stay on the orbit that was found
+    state.last_check[member, CHECK_PERIOD] = 0.0  # this member does not stay on the orbit that was found
     state.extrapolate_from[member] = state.periods[member] + _PAUSE_AFTER_FAILED_TEST
     return False
 
@@ -209,38 +209,39 @@ def check_fine(state, member):
 
     If changes are not smaller after an extrapolation, it is undone, and the member is not extrapolated again.
     """
-    fine, kept, last_check = state.fine_record[member], state.kept[member], state.last_check[member]
-    n, rate = int(fine[PERIOD]), fine[RATE]
-    record = state.strobes[member, kept - 1 - n : kept]
+    fine, count, last_check = state.fine_record[member], state.strobe_count[member], state.last_check[member]
+    n, rate = int(fine[FINE_PERIOD]), fine[FINE_DECAY]
+    record = state.strobes[member, count - 1 - n : count]
     largest_of(record, state.scale)
     change = change_between(record, state.scale, n, 0)
-    last_check[PERIOD], last_check[RATE], last_check[DISTANCE] = n, rate, change * rate / (1.0 - rate)
+    last_check[CHECK_PERIOD], last_check[CHECK_DECAY] = n, rate
+    last_check[CHECK_DISTANCE] = change * rate / (1.0 - rate)
     proved = change < state.change_before_extrapolation[member] or state.change_before_extrapolation[member] == 0.0
     state.change_before_extrapolation[member] = 0.0
     if not proved:
-        place_member(state, member, state.before[member])
-        state.earliest[member] = state.periods[member] + n * int(fine[ORBITS_BETWEEN])
-        fine[EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
+        move_member(state, member, state.before[member])
+        state.earliest[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
+        fine[FINE_EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
         return False
     moved = 0.0
     for q in range(1, 3):
         largest = largest_top(state, member, n, q)
-        moved = max(moved, abs(largest - fine[FORCES + q]) / largest if largest > 0.0 else 0.0)
-    close = last_check[DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)
-    if close or fine[EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:
+        moved = max(moved, abs(largest - fine[FINE_FORCES + q]) / largest if largest > 0.0 else 0.0)
+    close = last_check[CHECK_DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)
+    if close or fine[FINE_EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:
         return True
-    fine[EXTRAPOLATIONS] += 1.0
-    copy(state.strobes[member, kept - 1, 0], state.before[member, 0])
-    copy(state.strobes[member, kept - 1, 1], state.before[member, 1])
+    fine[FINE_EXTRAPOLATIONS] += 1.0
+    copy(state.strobes[member, count - 1, 0], state.before[member, 0])
+    copy(state.strobes[member, count - 1, 1], state.before[member, 1])
     if extrapolate_member(state, member, n, rate, change):
         state.change_before_extrapolation[member] = change
-    state.earliest[member] = state.periods[member] + n * int(fine[ORBITS_BETWEEN])
+    state.earliest[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
     return False
 
 
 @internal
 def end_period(state, member):
-    """Keep a member's strobe and largest forces, restart its phase exactly; returns whether it is due for a check."""
+    """Record a member's strobe and largest forces, set its phase to 0 exactly; returns whether a check is due."""
     state.periods[member] += 1
     periods = state.periods[member]
     finite = keep_member_strobe(state, member)
@@ -257,10 +258,10 @@ def end_period(state, member):
     if not finite:
         return True
     if periods >= state.earliest[member]:
-        state.earliest[member] = periods + max(3, state.kept[member] // 6)
+        state.earliest[member] = periods + max(3, state.strobe_count[member] // 6)
         if state.testing[member] > 0:
             if decayed(state, member):
                 return True
-        elif check_fine(state, member) if state.fine_record[member, PERIOD] > 0.0 else check_coarse(state, member):
+        elif check_fine(state, member) if state.fine_record[member, FINE_PERIOD] > 0.0 else check_coarse(state, member):
             return True
     return periods >= state.return_at[member] and state.testing[member] == 0

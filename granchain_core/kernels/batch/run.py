@@ -2,7 +2,7 @@
 
 All members have the same effects and the same N; every value may differ, as may the step and the number of steps in a
 period. Each member is checked at the ends of its own periods. When one may have settled, or has run as long as it may,
-the kernel returns, so that the next scene can take its place.
+the kernel returns, and the next scene can have its lane. Arrays have an axis of L lanes; index `member` is the lane.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_batch_ends
 
-#: `return_at` of a pair that is not in use, or no longer.
-NOT_IN_USE = -1
+#: `shadow` of a member that has none, and of one that is a shadow itself.
+NO_SHADOW, IS_SHADOW = -1, -2
 
 
 class Members(NamedTuple):
@@ -46,7 +46,7 @@ class Members(NamedTuple):
 
 
 class BatchState(NamedTuple):
-    """State of the members: L members (BATCH_SIZE) of N beads, of which R strobes (STROBES_KEPT) are always kept.
+    """State of L members (BATCH_SIZE) with N beads each, one in each lane; R is STROBES_KEPT.
 
     State of a chain: displacements of driver, beads and wall, then w of the same, N + 2 rows each; an axis of length 2
     holds the two.
@@ -62,7 +62,10 @@ class BatchState(NamedTuple):
     extrapolate_from (L,)    period from which a transient may be extrapolated
     pause (L,)               periods without extrapolation after the next one that is undone
     due (L,)                 1 where a check is due, else 0
-    kept (L,)                number of strobes
+    shadow (L,)              lane of the member's shadow, a neighbouring trajectory; NO_SHADOW, or IS_SHADOW
+    distance (L,)            distance to which the shadow is brought back after each period
+    growth (L, R)            logarithm of the factor by which that distance has grown in each period; NaN if lost
+    strobe_count (L,)        strobes kept
     slowest (L,)             slowest decay known
     change_before_extrapolation (L,)  change per orbit before an extrapolation that is not confirmed yet, else 0
     testing (L,)             period of an orbit that is being disturbed, else 0
@@ -71,8 +74,7 @@ class BatchState(NamedTuple):
     strobes (L, 2R, 2, N+2)  states at the ends of periods
     maxima (L, R, 5)         of the last R periods, a ring: three largest forces (input, output, elastic output) and two
                              largest jumps (input, output)
-    last_check (L, 3)        result of the last check: PERIOD, RATE, DISTANCE (period_end.py)
-
+    last_check (L, CHECK_COLUMNS)  result of the last check (period_end.py)
     stages                   three states, (2(N+2), L) each, of the stages of a step (step.py)
 
     The others are workspaces of period_end.py.
@@ -91,7 +93,10 @@ class BatchState(NamedTuple):
     extrapolate_from: np.ndarray
     pause: np.ndarray
     due: np.ndarray
-    kept: np.ndarray
+    shadow: np.ndarray
+    distance: np.ndarray
+    growth: np.ndarray
+    strobe_count: np.ndarray
     slowest: np.ndarray
     change_before_extrapolation: np.ndarray
     testing: np.ndarray
@@ -132,9 +137,29 @@ def batch_steps(members, state, count):
     restore_subnormals(before)
 
 
+@inline_numba
+def bring_back(state, member):
+    """Record how far a member and its shadow have parted in a period, and bring the shadow back."""
+    y, shadow, rows = state.y, state.shadow[member], state.y.shape[0]
+    if not (np.isfinite(y[1, member]) and np.isfinite(y[1, shadow])):
+        state.growth[member, :] = np.nan
+        state.due[member] = 1
+        return
+    total = 0.0
+    for i in range(rows):
+        total += (y[i, shadow] - y[i, member]) ** 2
+    start, now = state.distance[member], max(sqrt(total), 1e-300)
+    state.growth[member, state.periods[member] - 1] = log(now / start)
+    for i in range(rows):
+        y[i, shadow] = y[i, member] + (y[i, shadow] - y[i, member]) * (start / now)
+
+
 @kernel
 def run_batch(members, state, stop):
-    """Run until a member is due for a check; returns (status, member). All that are due come before any goes on."""
+    """Run until a member is due for a check; returns (status, member).
+
+    Every member that is due is returned before any of them continues.
+    """
     while True:
         for member in range(BATCH_SIZE):
             if state.due[member] != 0:
@@ -148,49 +173,8 @@ def run_batch(members, state, stop):
         batch_steps(members, state, count)
         for member in range(BATCH_SIZE):
             state.left[member] -= count
-            if state.left[member] == 0 and end_period(state, member):
+            if state.left[member] == 0 and end_period(state, member) and state.shadow[member] != IS_SHADOW:
                 state.due[member] = 1
-
-
-@inline_numba
-def renormalise(state, m, start, growth, member):
-    """Record how much a pair of members has parted in a period, and reset the second to the distance `start`."""
-    y, total = state.y, 0.0
-    for i in range(2 * m):
-        total += (y[i, member + 1] - y[i, member]) ** 2
-    now = max(sqrt(total), 1e-300)
-    growth[member // 2, state.periods[member] - 1] = log(now / start)
-    for i in range(2 * m):
-        y[i, member + 1] = y[i, member] + (y[i, member + 1] - y[i, member]) * (start / now)
-
-
-@kernel
-def run_pairs(members, state, start, growth, stop):
-    """Run members in pairs, a chain and its shadow at the distance `start`, through as many periods as `growth` has.
-
-    growth (pairs, P) holds the logarithm of each period's growth, NaN for a pair that did not stay finite; only pairs
-    whose `return_at` is P count, the others are not in use.
-    """
-    m, periods, busy = state.y.shape[0] // 2, growth.shape[1], True
-    while busy:
-        count = STEPS_BETWEEN_STOP_CHECKS
         for member in range(BATCH_SIZE):
-            count = min(count, state.left[member])
-        batch_steps(members, state, count)
-        busy = False
-        for member in range(0, BATCH_SIZE, 2):
-            counted = state.periods[member] < periods and state.return_at[member] == periods
-            for one in range(member, member + 2):
-                state.left[one] -= count
-                if state.left[one] == 0:
-                    end_period(state, one)
-            if counted and state.left[member] == state.steps[member]:
-                if np.isfinite(state.y[1, member]) and np.isfinite(state.y[1, member + 1]):
-                    renormalise(state, m, start, growth, member)
-                else:
-                    growth[member // 2] = np.nan
-                    state.return_at[member], counted = NOT_IN_USE, False
-            busy = busy or (counted and state.periods[member] < periods)
-        if stop[0] != 0:
-            return CANCELLED
-    return DONE
+            if state.shadow[member] >= 0 and state.left[member] == state.steps[member]:
+                bring_back(state, member)

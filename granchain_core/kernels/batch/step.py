@@ -1,7 +1,7 @@
 """One Runge–Kutta step of several chains, one in each SIMD lane: four stages, each a sweep along the chains.
 
-In a sweep no contact waits for another one, so that the processor computes several at once. One in three takes its root
-by the square-root instruction and two by multiplications, which keeps both units busy.
+In a sweep no contact waits for another one, so that the processor computes several at once. One root in three is taken
+by the square-root instruction and the others by multiplications, which keeps both units busy.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .unequal import over_mass, times_stiffness
 
 
 class Values(NamedTuple):
-    """Values of the members' scenes; those that are one number for each scene are in registers."""
+    """Values of the members' scenes. What is one number per scene is a vector in a register."""
 
     wall: Any
     law: Any
@@ -31,11 +31,13 @@ class Values(NamedTuple):
 
 
 class Left(NamedTuple):
-    """What a bead takes over in all members: its displacement, elastic force and shape of the contact on its left."""
+    """What a sweep knows of a bead when it arrives there, in all members: its displacement, and elastic force and shape
+    G/λ of the contact on its left.
+    """
 
     u: Any
     e: Any
-    G: Any
+    shape: Any
 
 
 @inline_llvm
@@ -52,7 +54,7 @@ def by_multipliers(d):
 
 @inline_llvm
 def contact(values, root_of, left, right, c, is_wall):
-    """Elastic force and shape of G of contact c; `root_of` computes the root."""
+    """Elastic force and shape G/λ of contact c; `root_of` computes the root."""
     d = above_zero(batch_overlap(values.preload, left, right, c))
     r = root_of(d)
     return times_stiffness(values.unequal, values.wall, c, is_wall, d * r), shape(values.law, d, r)
@@ -60,7 +62,7 @@ def contact(values, root_of, left, right, c, is_wall):
 
 @by_slot
 def batch_velocity(law, unequal, i, w, difference):
-    """v = w + (G_{i-1} − G_i)/m of bead i in all members, from the difference of shapes."""
+    """v = w + (G_{i-1} − G_i)/m of bead i in all members, from the difference of the shapes G/λ."""
     return w
 
 
@@ -78,9 +80,9 @@ class Inner(NamedTuple):
 
 
 class Final(NamedTuple):
-    """The fourth stage, which makes the step; the others' targets are y1, y2, y3, `sixth` is a sixth of the step.
+    """The fourth stage, which completes the step; y1, y2, y3 are the targets of the first three, `sixth` is h/6.
 
-    They are enough for the result: y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
+    No slopes need be stored, since y + h (k1 + 2k2 + 2k3 + k4)/6 = (y1 + 2y2 + y3 − y)/3 + h k4/6.
     """
 
     y: Any
@@ -92,7 +94,7 @@ class Final(NamedTuple):
 
 @by_type_inlined
 def use_slope(stage, row, slope):
-    """Put the slope of one row of the state to the stage's use."""
+    """Use the slope of one row of the state as the stage requires."""
 
 
 @use_slope.of(Inner)
@@ -108,15 +110,15 @@ def _(stage, row, slope):
 
 @inline_llvm
 def bead(values, root_of, stage, source, i, left, is_last):
-    """Bead i of a stage whose state is `source`; returns its velocity and what the next bead takes over."""
-    m = values.last + 2
+    """Bead i of a stage whose state is `source`; returns its velocity and the next bead's `Left`."""
+    bodies = values.last + 2
     right = load_batch(source, i + 1)
-    e, G = contact(values, root_of, left.u, right, i, is_last)
-    velocity = batch_velocity(values.law, values.unequal, i, load_batch(source, m + i), left.G - G)
+    e, shape_right = contact(values, root_of, left.u, right, i, is_last)
+    velocity = batch_velocity(values.law, values.unequal, i, load_batch(source, bodies + i), left.shape - shape_right)
     use_slope(stage, i, velocity)
     force = add_foundation_force(values.foundation, left.e - e, left.u)
-    use_slope(stage, m + i, over_mass(values.unequal, i, force))
-    return velocity, Left(right, e, G)
+    use_slope(stage, bodies + i, over_mass(values.unequal, i, force))
+    return velocity, Left(right, e, shape_right)
 
 
 class Ends(NamedTuple):
@@ -132,8 +134,8 @@ class Ends(NamedTuple):
 def run_stage(values, stage, source, driver):
     """One stage at the state `source` with the driver at `driver`; returns its `Ends`."""
     last, u = values.last, load_batch(source, 1)
-    pushed, G = contact(values, by_multipliers, driver, u, 0, False)
-    left, v_first = Left(u, pushed, G), u
+    pushed, shape_first = contact(values, by_multipliers, driver, u, 0, False)
+    left, v_first = Left(u, pushed, shape_first), u
     if last > 1:
         v_first, left = bead(values, by_multipliers, stage, source, 1, left, False)
     for i in range(2, last - 2, 3):

@@ -82,8 +82,8 @@ def top_inside(quantity, step, sections):
 def may_turn(d0, s0, d1, s1, sign):
     """Whether an overlap with the same sign at both ends of a step may cross zero in between.
 
-    It must move towards zero first and away last; then the smaller of the two straight continuations bounds how
-    near it can come, up to the curvature in a step that the error control accepted.
+    It must move towards zero first and away last, as in `may_change` (rk4/step.py). Then the straight lines along its
+    slopes at both ends bound how near it can come, but for curvature, which is small in an accepted step.
     """
     if not (sign * s0 > 0.0 and sign * s1 < 0.0):
         return False

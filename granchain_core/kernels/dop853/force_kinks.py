@@ -50,13 +50,13 @@ def _(law, stiffness, d, rate):
 
 @value_at.of(ScaledForce)
 def _(quantity, step, x):
-    slots, drive, y, work = step.trajectory
+    slots, drive, y, workspace = step.trajectory
     c = quantity.contact
-    interpolate(y, work, x)
-    evaluate(slots, drive.beta, step.t + x * step.h, work.probe, work.slope, work.forces)
+    interpolate(y, workspace, x)
+    evaluate(slots, drive.beta, step.t + x * step.h, workspace.probe, workspace.slope, workspace.forces)
     quantity.counts[EVALUATIONS] += 1
-    d = positive_part(overlap(slots.preload, work.probe, c))
-    return scaled_force(slots.dissipation, slots.chain.stiffness[c], d, work.slope[c] - work.slope[c + 1])
+    d = positive_part(overlap(slots.preload, workspace.probe, c))
+    return scaled_force(slots.dissipation, slots.chain.stiffness[c], d, workspace.slope[c] - workspace.slope[c + 1])
 
 
 @by_slot
@@ -66,15 +66,16 @@ def enter_force_free(tension, trajectory, t):
 
 @enter_force_free.of(TensionCut)
 def _(tension, trajectory, t):
-    slots, drive, y, work = trajectory
+    slots, drive, y, workspace = trajectory
     found = False
     for c in range(tension.force_free.size):
-        d, rate = overlap(slots.preload, y, c), work.k[0, c] - work.k[0, c + 1]
-        if d > 0.0 and scaled_force(slots.dissipation, slots.chain.stiffness[c], d, rate) < -_STILL * work.scale[1]:
+        d, rate = overlap(slots.preload, y, c), workspace.k[0, c] - workspace.k[0, c + 1]
+        stiffness, still = slots.chain.stiffness[c], _STILL * workspace.scale[1]
+        if d > 0.0 and scaled_force(slots.dissipation, stiffness, d, rate) < -still:
             hold_force_free(tension, slots, y, c)
             found = True
     if found:
-        evaluate(slots, drive.beta, t, y, work.k[0], work.forces)
+        evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
 
 
 @by_slot
@@ -88,17 +89,17 @@ def leave_force_free(tension, trajectory):
 
 @leave_force_free.of(TensionCut)
 def _(tension, trajectory):
-    slots, _, y, work = trajectory
-    dy, found = work.k[0], False
+    slots, _, y, workspace = trajectory
+    dy, found = workspace.k[0], False
     for c in range(tension.force_free.size):
         found = found or tension.force_free[c] != 0
     if found:
-        work_done, lost = ends_of(slots.balance, slots, y, dy)
+        energy_in, lost = ends_of(slots.balance, slots, y, dy)
         for c in range(tension.force_free.size):
             tension.force_free[c] = 0
-        write_w(slots, y, dy, work.forces)
-        own_work, own_lost = ends_of(slots.balance, slots, y, dy)
-        add_to_account(slots.balance, y, work_done - own_work, lost - own_lost)
+        write_w(slots, y, dy, workspace.forces)
+        own_energy_in, own_lost = ends_of(slots.balance, slots, y, dy)
+        add_to_account(slots.balance, y, energy_in - own_energy_in, lost - own_lost)
     return found
 
 
@@ -118,14 +119,14 @@ def first_kink(tension, step, until, counts, again):
 
 @first_kink.of(TensionCut)
 def _(tension, step, until, counts, again):
-    slots, drive, y, work = step.trajectory
-    first, ready, turned, k, still = 2.0, False, False, work.k, _STILL * work.scale[1]
+    slots, drive, y, workspace = step.trajectory
+    first, ready, turned, k, still = 2.0, False, False, workspace.k, _STILL * workspace.scale[1]
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)
         if not d0 > 0.0:
             continue
         free, stiffness = tension.force_free[c] != 0, slots.chain.stiffness[c]
-        d1 = positive_part(overlap(slots.preload, work.end, c))
+        d1 = positive_part(overlap(slots.preload, workspace.end, c))
         f0 = scaled_force(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
         f1 = scaled_force(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
         if max(abs(f0), abs(f1)) < still or (until == 1.0 and free != (f1 > 0.0)):
@@ -152,6 +153,6 @@ def _(tension, step, until, counts, again):
                 hold_force_free(tension, slots, y, c)
             turned = True
     if turned:
-        evaluate(slots, drive.beta, step.t, y, k[0], work.forces)
+        evaluate(slots, drive.beta, step.t, y, k[0], workspace.forces)
         return 0.0
     return first

@@ -29,7 +29,8 @@ from .tableau import DENSE_EVALUATIONS, STAGES
 _SECTIONS = 24
 #: A step whose ends are below this part of the largest force so far is not searched.
 _SEARCHED = 0.3
-#: A maximum is not searched if the cubic through values and slopes at both ends puts it below this part of that force.
+#: A maximum is not searched if the cubic through the values and slopes at both ends puts it below this part of the
+#: largest force so far.
 _WORTH = 0.98
 
 
@@ -55,10 +56,10 @@ def forces_of(slots, y, dy):
 @internal
 def forces_in_step(step, x):
     """The three forces at fraction x of the step, whose dense output is prepared."""
-    slots, drive, y, work = step.trajectory
-    interpolate(y, work, x)
-    evaluate(slots, drive.beta, step.t + x * step.h, work.probe, work.slope, work.forces)
-    return forces_of(slots, work.probe, work.slope)
+    slots, drive, y, workspace = step.trajectory
+    interpolate(y, workspace, x)
+    evaluate(slots, drive.beta, step.t + x * step.h, workspace.probe, workspace.slope, workspace.forces)
+    return forces_of(slots, workspace.probe, workspace.slope)
 
 
 @value_at.of(Force)
@@ -80,11 +81,11 @@ def keep_end_forces(slots, y, dy, e):
 
 
 @internal
-def slopes_of(slots, y, dy, work):
+def slopes_of(slots, y, dy, workspace):
     """Slopes Ḟ of the three forces at state y."""
     last = slots.chain.stiffness.size - 1
-    keep_end_forces(slots, y, dy, work.forces.e)
-    e, d = work.forces.e, positive_part(overlap(slots.preload, y, last))
+    keep_end_forces(slots, y, dy, workspace.forces.e)
+    e, d = workspace.forces.e, positive_part(overlap(slots.preload, y, last))
     elastic = elastic_slope(slots.chain.stiffness[last], d) * (dy[last] - dy[last + 1])
     return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
 
@@ -103,17 +104,19 @@ def is_monotone(f0, s0, f1, s1, h):
 def follow_step(step, ready, peaks, counts):
     """Raise the largest forces to those in the accepted step; returns whether its dense output is prepared now.
 
-    work.k[0] and work.k[12] are its slopes at both ends. A force that rises or falls throughout is largest at an end.
+    Its slopes at both ends are workspace.k[0] and workspace.k[12]. A force that only rises or only falls is largest at
+    an end.
     """
-    slots, _, y, work = step.trajectory
-    start, end = forces_of(slots, y, work.k[0]), forces_of(slots, work.end, work.k[STAGES])
-    bright = False
+    slots, _, y, workspace = step.trajectory
+    start, end = forces_of(slots, y, workspace.k[0]), forces_of(slots, workspace.end, workspace.k[STAGES])
+    large = False
     for q in range(3):
         peaks[row_of(q)] = max(peaks[row_of(q)], start[q], end[q])
-        bright = bright or max(start[q], end[q]) > _SEARCHED * peaks[row_of(q)]
-    if not bright:
+        large = large or max(start[q], end[q]) > _SEARCHED * peaks[row_of(q)]
+    if not large:
         return ready
-    rises, falls = slopes_of(slots, y, work.k[0], work), slopes_of(slots, work.end, work.k[STAGES], work)
+    rises = slopes_of(slots, y, workspace.k[0], workspace)
+    falls = slopes_of(slots, workspace.end, workspace.k[STAGES], workspace)
     turns = False
     for q in range(3):
         turns = turns or not is_monotone(start[q], rises[q], end[q], falls[q], step.h)

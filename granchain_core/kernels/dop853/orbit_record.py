@@ -1,8 +1,8 @@
 """A run along an orbit that keeps the turning points of all overlaps and the largest forces.
 
 Each accepted step of the adaptive method is searched on its dense output. A contact's overlap has a turning point
-where its bodies move equally fast; the smallest of these are the touches and separations about to appear or vanish. The
-largest forces are searched inside the steps (dop853/force_search.py).
+where its two bodies move equally fast; one at which the overlap is small is a touch or a separation about to appear or
+to vanish. The largest forces are searched inside the steps (dop853/force_search.py).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ..status import CANCELLED, DONE, FULL, NOT_FINITE
 from .bracket import value_at
 from .force_search import follow_step
 from .run import located_step
-from .step import Overlap, Step, evaluate, new_scale, prepare_dense, turning_point
+from .step import PERIOD_END, Overlap, Step, evaluate, new_scale, prepare_dense, turning_point
 from .tableau import STAGES
 
 
@@ -38,10 +38,10 @@ class OrbitRecord(NamedTuple):
 def follow_turns(step, since, record, row):
     """Keep the turning points of all overlaps inside the step; returns the next free row.
 
-    The step has work.k[0] and work.k[12] as slopes at its ends; `since` is the time from the orbit's start to its own.
+    Its slopes at both ends are workspace.k[0] and workspace.k[12]; it begins `since` after the orbit's start.
     """
-    slots, _, _, work = step.trajectory
-    k = work.k
+    slots, _, _, workspace = step.trajectory
+    k = workspace.k
     for c in range(slots.chain.stiffness.size):
         s0, s1 = k[0, c] - k[0, c + 1], k[STAGES, c] - k[STAGES, c + 1]
         if (s0 > 0.0) != (s1 > 0.0):
@@ -58,9 +58,9 @@ def follow_turns(step, since, record, row):
 @kernel
 def record_orbit(method, trajectory, periods, record, counts, stop):
     """Run whole periods from phase 0 and fill `record`. Returns (status, periods done, number of turning points)."""
-    slots, drive, y, work = trajectory
-    m, period, row = slots.chain.inverse_mass.size, drive.period, 0
-    evaluate(slots, drive.beta, 0.0, y, work.k[0], work.forces)
+    slots, drive, y, workspace = trajectory
+    bodies, period, row = slots.chain.inverse_mass.size, drive.period, 0
+    evaluate(slots, drive.beta, 0.0, y, workspace.k[0], workspace.forces)
     for p in range(periods):
         t = 0.0
         while t < period:
@@ -73,11 +73,11 @@ def record_orbit(method, trajectory, periods, record, counts, stop):
             prepare_dense(step)
             row = follow_turns(step, p * period + t, record, row)
             follow_step(step, True, record.peaks, counts)
-            copy(work.end, y)
-            new_scale(y, work, m)
-            copy(work.k[STAGES], work.k[0])
-            t = period if period - (t + h) < 1e-13 * period else t + h
-        evaluate(slots, drive.beta, 0.0, y, work.k[0], work.forces)
-        if first_not_finite(y, m) != 0:
+            copy(workspace.end, y)
+            new_scale(y, workspace, bodies)
+            copy(workspace.k[STAGES], workspace.k[0])
+            t = period if period - (t + h) < PERIOD_END * period else t + h
+        evaluate(slots, drive.beta, 0.0, y, workspace.k[0], workspace.forces)
+        if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, p, row
     return (DONE if row <= record.turns.shape[0] else FULL), periods, row

@@ -2,7 +2,7 @@
 
 The slope is continuous across an event but its derivative is not, and after an onset the solution has a term
 (t − t_e)^{5/2}: no method for smooth equations keeps its order across. So every contact event inside a step is located
-on the dense output, the step is repeated to end just past it, and the next one starts small.
+on the dense output, the step is repeated so that it ends just past it, and the next one starts small.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ from .bracket import may_turn, value_at
 from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
 from .step import (
+    PERIOD_END,
     Overlap,
     Step,
     attempt,
@@ -48,12 +49,12 @@ from .step import (
 )
 from .tableau import DENSE_EVALUATIONS, STAGES
 
-#: Target overlap just past an event, in units of the largest displacement: a few roundings.
-_BEHIND = 1e-15
-#: Factor by which it may be missed: the time of the event is then as exact as the approach speed allows.
+#: Overlap aimed at just past an event, in units of the largest displacement: a few roundings.
+_PAST = 1e-15
+#: The overlap reached may be this many times larger. The event's time is then as exact as the approach speed allows.
 _NEAR = 4.0
-#: The same two where tension is cut: a contact without force may linger at δ = 0 without chattering.
-_BEHIND_CUT = 1e-14
+#: The same two where tension is cut: a force-free contact may linger at δ = 0 and would chatter with smaller ones.
+_PAST_CUT = 1e-14
 _NEAR_CUT = 100.0
 #: A step that is to end at an event may become longer by this factor.
 _LONGER = 1.01
@@ -77,14 +78,14 @@ class Stretch(NamedTuple):
 def first_crossing(step, counts):
     """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
-    Events closer to t than the resolution of a period's time are ignored. That of t itself would be too fine at the
-    start of a period: steps too small to change the state would follow each other without end.
+    Events closer to t than the resolution of the time within a period are ignored. The resolution at t itself would be
+    too fine at the start of a period: steps too small to change the state would follow one another without end.
     """
-    slots, drive, y, work = step.trajectory
-    t, h, k = step.t, step.h, work.k
+    slots, drive, y, workspace = step.trajectory
+    t, h, k = step.t, step.h, workspace.k
     contact, first, dense_ready = -1, 2.0, False
     for c in range(slots.chain.stiffness.size):
-        d0, d1 = overlap(slots.preload, y, c), overlap(slots.preload, work.end, c)
+        d0, d1 = overlap(slots.preload, y, c), overlap(slots.preload, workspace.end, c)
         crossed = (d0 > 0.0) != (d1 > 0.0)
         sign = -1.0 if d0 > 0.0 else 1.0
         turns = (not crossed) and may_turn(d0, h * (k[0, c] - k[0, c + 1]), d1,
@@ -95,12 +96,12 @@ def first_crossing(step, counts):
             prepare_dense(step)
             counts[EVALUATIONS] += DENSE_EVALUATIONS
             dense_ready = True
-        pressed, high = Overlap(c, sign), 1.0
+        signed_overlap, high = Overlap(c, sign), 1.0
         if turns:
-            high = turning_point(pressed, step)
-            if value_at(pressed, step, high) <= 0.0:
+            high = turning_point(signed_overlap, step)
+            if value_at(signed_overlap, step, high) <= 0.0:
                 continue
-        root = crossing(pressed, step, 0.0, high)
+        root = crossing(signed_overlap, step, 0.0, high)
         if root < first and 0.1 * root * h > _RESOLUTION * (t + 1.0 / drive.beta):
             contact, first = c, root
     return contact, first
@@ -109,36 +110,36 @@ def first_crossing(step, counts):
 @by_slot
 def event_tolerance(tension):
     """Target overlap past an event and the accepted factor. Absent: the smallest that rounding allows."""
-    return _BEHIND, _NEAR
+    return _PAST, _NEAR
 
 
 @event_tolerance.of(TensionCut)
 def _(tension):
-    return _BEHIND_CUT, _NEAR_CUT
+    return _PAST_CUT, _NEAR_CUT
 
 
 @inline_numba
 def locate_event(method, step, limit, c, counts):
     """Shorten or lengthen a step so that it ends just past the event of contact c; returns its size.
 
-    An event that turns out to lie beyond `limit` is left to the next step, and so is one that is approached so slowly
-    that the step would grow over other events on the way to it.
+    An event that turns out to lie beyond `limit` is left to the next step. So is one that is approached so slowly that
+    the step would become long enough to pass other events.
     """
-    slots, _, y, work = step.trajectory
+    slots, _, y, workspace = step.trajectory
     h, longest = step.h, min(limit - step.t, _LONGER * step.h)
     before = overlap(slots.preload, y, c) > 0.0
-    behind, near = event_tolerance(slots.tension)
-    behind *= max(1.0, work.scale[0])
-    target = -behind if before else behind
+    past, near = event_tolerance(slots.tension)
+    past *= max(1.0, workspace.scale[0])
+    target = -past if before else past
     for _ in range(6):
-        d = overlap(slots.preload, work.end, c)
+        d = overlap(slots.preload, workspace.end, c)
         if (d > 0.0) != before and abs(d) < near * abs(target):
             break
-        approach = work.k[STAGES, c] - work.k[STAGES, c + 1]
-        change = (target - d) / approach if approach != 0.0 else 0.0
-        if change == 0.0 or abs(change) > 0.5 * h or h + change > longest:
+        approach = workspace.k[STAGES, c] - workspace.k[STAGES, c + 1]
+        correction = (target - d) / approach if approach != 0.0 else 0.0
+        if correction == 0.0 or abs(correction) > 0.5 * h or h + correction > longest:
             break
-        h += change
+        h += correction
         attempt(method, Step(step.trajectory, step.t, h))
         counts[EVALUATIONS] += STAGES
         target *= 2.0
@@ -163,11 +164,11 @@ def accepted_step(method, trajectory, t, h, counts):
 
 @inline_numba
 def located_step(method, trajectory, t, limit, counts):
-    """One accepted step from y at local time t, at most to `limit`; the result is work.end.
+    """One accepted step from y at local time t, at most to `limit`; the result is workspace.end.
 
-    Returns (status, step taken, contact that changed at its end or −1); work.next_step[0] is the next step to try.
+    Returns (status, step taken, contact that changed at its end or −1); workspace.next_step[0] is the next step to try.
     """
-    tension, next_step = trajectory.slots.tension, trajectory.work.next_step
+    tension, next_step = trajectory.slots.tension, trajectory.workspace.next_step
     h = min(next_step[0], method.largest_step, limit - t)
     enter_force_free(tension, trajectory, t)
     aimed, kinked, again = -1, False, False
@@ -210,7 +211,7 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
 
     Returns the next free row of `samples`.
     """
-    slots, drive, y, work = step.trajectory
+    slots, drive, y, workspace = step.trajectory
     t, h = step.t, step.h
     ready = follow_step(step, False, out.log.peaks, out.counts)
     for point in range(g + 1, g + 1 + passed):
@@ -220,13 +221,14 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
                 out.counts[EVALUATIONS] += DENSE_EVALUATIONS
                 ready = True
             at = point * spacing
-            interpolate(y, work, min(1.0, (at - t) / h))
-            add_to_account(slots.balance, work.probe, 0.0, force_free_loss(slots.balance, slots, y, work.probe))
-            evaluate(slots, drive.beta, at, work.probe, work.slope, work.forces)
-            keep(slots, row, work.probe, work.slope, work.forces.e, samples)
+            interpolate(y, workspace, min(1.0, (at - t) / h))
+            lost = force_free_loss(slots.balance, slots, y, workspace.probe)
+            add_to_account(slots.balance, workspace.probe, 0.0, lost)
+            evaluate(slots, drive.beta, at, workspace.probe, workspace.slope, workspace.forces)
+            keep(slots, row, workspace.probe, workspace.slope, workspace.forces.e, samples)
             row += 1
     out.log.counts[SAMPLE] = row - 1
-    note_closings(slots.dissipation, slots, Instant(y, work.k[0]), Instant(work.end, work.k[STAGES]),
+    note_closings(slots.dissipation, slots, Instant(y, workspace.k[0]), Instant(workspace.end, workspace.k[STAGES]),
                   Span(h, drive.beta * t, drive.beta * h), out.log)
     return row
 
@@ -234,13 +236,13 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
 @inline_numba
 def accept(trajectory):
     """Make the step's end the state; returns whether its slope must be evaluated anew."""
-    slots, _, y, work = trajectory
-    lost = force_free_loss(slots.balance, slots, y, work.end)
-    copy(work.end, y)
-    copy(work.k[STAGES], work.k[0])
+    slots, _, y, workspace = trajectory
+    lost = force_free_loss(slots.balance, slots, y, workspace.end)
+    copy(workspace.end, y)
+    copy(workspace.k[STAGES], workspace.k[0])
     add_to_account(slots.balance, y, 0.0, lost)
     changed = leave_force_free(slots.tension, trajectory)
-    new_scale(y, work, slots.chain.inverse_mass.size)
+    new_scale(y, workspace, slots.chain.inverse_mass.size)
     return changed
 
 
@@ -250,14 +252,14 @@ def run_dop853(method, trajectory, stretch, samples, out):
 
     Row 0 of `samples` is the start. Returns (status, rows or points done).
     """
-    slots, drive, y, work = trajectory
+    slots, drive, y, workspace = trajectory
     first, points, grid, every = stretch
-    m, period, spacing = slots.chain.inverse_mass.size, drive.period, drive.period / grid
+    bodies, period, spacing = slots.chain.inverse_mass.size, drive.period, drive.period / grid
     g, done, row, events = first, 0, 1, 0
     t = g * spacing
-    evaluate(slots, drive.beta, t, y, work.k[0], work.forces)
+    evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
     if every > 0:
-        keep(slots, 0, y, work.k[0], work.forces.e, samples)
+        keep(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     while done < points:
         if out.stop[0] != 0:
             return CANCELLED, row if every > 0 else done
@@ -266,12 +268,12 @@ def run_dop853(method, trajectory, stretch, samples, out):
         status, h, contact = located_step(method, trajectory, t, limit, out.counts)
         if status != DONE:
             return status, row if every > 0 else done
-        end = limit if limit - (t + h) < 1e-13 * period else t + h
+        end = limit if limit - (t + h) < PERIOD_END * period else t + h
         events += contact >= 0
-        if events > EVENTS_PER_CONTACT * (m - 1):
+        if events > EVENTS_PER_CONTACT * (bodies - 1):
             return CHATTER, row if every > 0 else done
         passed = 0
-        while done + passed < points and (g + passed + 1) * spacing <= end + 1e-13 * period:
+        while done + passed < points and (g + passed + 1) * spacing <= end + PERIOD_END * period:
             passed += 1
         if every > 0:
             row = record_step(Step(trajectory, t, h), g, passed, spacing, row, every, samples, out)
@@ -281,7 +283,7 @@ def run_dop853(method, trajectory, stretch, samples, out):
         if end == period:
             t, g, events = 0.0, 0, 0
         if changed or end == period:
-            evaluate(slots, drive.beta, t, y, work.k[0], work.forces)
-        if first_not_finite(y, m) != 0:
+            evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
+        if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, row if every > 0 else done
     return DONE, row if every > 0 else done

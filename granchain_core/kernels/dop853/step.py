@@ -16,9 +16,9 @@ from .tableau import ALL_STAGES, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 
 #: Golden sections around a turning point of an overlap.
 _SECTIONS = 40
-#: Change of the fraction of a step below which an overlap's root is found.
+#: An overlap's root is found when its fraction of the step changes by less than this.
 _FOUND = 1e-15
-#: Growth and shrinkage of the step from one to the next.
+#: Bounds on the factor between two steps, and the safety factor.
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 
 
@@ -29,7 +29,7 @@ class Dop853(NamedTuple):
     largest_step: float
 
 
-class Work(NamedTuple):
+class Dop853Workspace(NamedTuple):
     """Workspace: slopes k (16, M), stage, step end, probe and its slope (M,), dense output (7, M), forces.
 
     `scale` (2,) is the largest displacement and the largest w so far, to which the tolerance is relative;
@@ -45,6 +45,11 @@ class Work(NamedTuple):
     scale: np.ndarray
     next_step: np.ndarray
     forces: Any
+
+
+#: A step that ends closer to a goal (the period's end, a sample) than this, in periods, ends there: the difference is
+#: the rounding of a sum of steps.
+PERIOD_END = 1e-13
 
 
 class Cycle(NamedTuple):
@@ -89,15 +94,15 @@ def combine(y, h, k, row, out):
 
 @internal
 def attempt(method, step):
-    """Try a step from y, whose slope is work.k[0]; the result is work.end, its slope work.k[12].
+    """Try a step from y, whose slope is workspace.k[0]; the result is workspace.end, its slope workspace.k[12].
 
     Returns the error over the tolerance: at most 1 for a step to accept, NaN if the numbers failed.
     """
-    slots, drive, y, work = step.trajectory
+    slots, drive, y, workspace = step.trajectory
     for s in range(1, STAGES + 1):  # row 12 is the step itself, its slope the next step's first
-        combine(y, step.h, work.k, s, work.end)
-        evaluate(slots, drive.beta, step.t + C[s] * step.h, work.end, work.k[s], work.forces)
-    return error_norm(method.tolerance, step.h, y, work, slots.chain.inverse_mass.size)
+        combine(y, step.h, workspace.k, s, workspace.end)
+        evaluate(slots, drive.beta, step.t + C[s] * step.h, workspace.end, workspace.k[s], workspace.forces)
+    return error_norm(method.tolerance, step.h, y, workspace, slots.chain.inverse_mass.size)
 
 
 @internal
@@ -113,16 +118,16 @@ def growth(error):
 
 
 @inline_numba
-def error_norm(tolerance, h, y, work, m):
+def error_norm(tolerance, h, y, workspace, bodies):
     """The method's combined error of orders 5 and 3 in units of the tolerance, root mean square over the beads."""
-    k = work.k
+    k = workspace.k
     fifth, third = 0.0, 0.0
     for row in range(2):
-        largest = work.scale[row]
-        for i in range(row * m + 1, row * m + m - 1):
-            largest = max(largest, abs(work.end[i]))
+        largest = workspace.scale[row]
+        for i in range(row * bodies + 1, row * bodies + bodies - 1):
+            largest = max(largest, abs(workspace.end[i]))
         unit = 1.0 / (tolerance * largest)
-        for i in range(row * m + 1, row * m + m - 1):
+        for i in range(row * bodies + 1, row * bodies + bodies - 1):
             e5, e3 = 0.0, 0.0
             for s in range(STAGES + 1):
                 e5 += E5[s] * k[s, i]
@@ -131,28 +136,28 @@ def error_norm(tolerance, h, y, work, m):
             third += (e3 * unit) ** 2
     if fifth == 0.0 and third == 0.0:
         return 0.0
-    return abs(h) * fifth / sqrt((fifth + 0.01 * third) * (2 * (m - 2)))
+    return abs(h) * fifth / sqrt((fifth + 0.01 * third) * (2 * (bodies - 2)))
 
 
 @internal
 def prepare_dense(step):
-    """Fill work.dense for the step from y to work.end: three more slopes and seven coefficients."""
-    slots, drive, y, work = step.trajectory
+    """Fill workspace.dense for the step from y to workspace.end: three more slopes and seven coefficients."""
+    slots, drive, y, workspace = step.trajectory
     for s in range(STAGES + 1, ALL_STAGES):
-        combine(y, step.h, work.k, s, work.stage)
-        evaluate(slots, drive.beta, step.t + C[s] * step.h, work.stage, work.k[s], work.forces)
-    dense_coefficients(step.h, y, work)
+        combine(y, step.h, workspace.k, s, workspace.stage)
+        evaluate(slots, drive.beta, step.t + C[s] * step.h, workspace.stage, workspace.k[s], workspace.forces)
+    dense_coefficients(step.h, y, workspace)
 
 
 @inline_numba
-def dense_coefficients(h, y, work):
-    """Fill work.dense from the step's end and all its slopes."""
-    k, dense = work.k, work.dense
+def dense_coefficients(h, y, workspace):
+    """Fill workspace.dense from the step's end and all its slopes."""
+    k, dense = workspace.k, workspace.dense
     for i in range(y.size):
-        change = work.end[i] - y[i]
-        dense[0, i] = change
-        dense[1, i] = h * k[0, i] - change
-        dense[2, i] = 2.0 * change - h * (k[STAGES, i] + k[0, i])
+        difference = workspace.end[i] - y[i]
+        dense[0, i] = difference
+        dense[1, i] = h * k[0, i] - difference
+        dense[2, i] = 2.0 * difference - h * (k[STAGES, i] + k[0, i])
     for row in range(4):
         for i in range(y.size):
             dense[3 + row, i] = 0.0
@@ -176,10 +181,10 @@ def dense_value(dense, y0, x, i):
 
 
 @internal
-def interpolate(y, work, x):
-    """Write the state at fraction x of the step from y into work.probe."""
+def interpolate(y, workspace, x):
+    """Write the state at fraction x of the step from y into workspace.probe."""
     for i in range(y.size):
-        work.probe[i] = dense_value(work.dense, y[i], x, i)
+        workspace.probe[i] = dense_value(workspace.dense, y[i], x, i)
 
 
 @by_type
@@ -194,32 +199,32 @@ def _(step, x):
 
 @value_at.of(Overlap)
 def _(quantity, step, x):
-    slots, _, y, work = step.trajectory
-    probe, c = work.probe, quantity.contact
+    slots, _, y, workspace = step.trajectory
+    probe, c = workspace.probe, quantity.contact
     for i in range(c, c + 2):
-        probe[i] = dense_value(work.dense, y[i], x, i)
+        probe[i] = dense_value(workspace.dense, y[i], x, i)
     if c == 0:  # the driver's own motion is known exactly
         probe[0] = driver_displacement(slots.driver, drive_phase(step, x))
     return quantity.sign * overlap(slots.preload, probe, c)
 
 
 @internal
-def turning_point(pressed, step):
+def turning_point(signed_overlap, step):
     """Fraction at which an overlap is largest inside the step."""
-    x, _ = top_inside(pressed, step, _SECTIONS)
+    x, _ = top_inside(signed_overlap, step, _SECTIONS)
     return x
 
 
 @internal
-def crossing(pressed, step, low, high):
+def crossing(signed_overlap, step, low, high):
     """Fraction between `low` and `high` at which an overlap changes sign."""
-    f_low, f_high = value_at(pressed, step, low), value_at(pressed, step, high)
-    return root_inside(pressed, step, Bracket(low, high, f_low, f_high, 0), _FOUND)
+    f_low, f_high = value_at(signed_overlap, step, low), value_at(signed_overlap, step, high)
+    return root_inside(signed_overlap, step, Bracket(low, high, f_low, f_high, 0), _FOUND)
 
 
 @internal
-def new_scale(y, work, m):
-    """Let the scale of the tolerance grow with the motion."""
+def new_scale(y, workspace, bodies):
+    """Raise the scale of the tolerance to the largest values of y."""
     for row in range(2):
-        for i in range(row * m + 1, row * m + m - 1):
-            work.scale[row] = max(work.scale[row], abs(y[i]))
+        for i in range(row * bodies + 1, row * bodies + bodies - 1):
+            workspace.scale[row] = max(workspace.scale[row], abs(y[i]))

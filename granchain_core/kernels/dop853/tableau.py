@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-#: Stages of one step, and stages in all with those that only the dense output needs.
+#: Stages of one step, and their number with those that only the dense output needs.
 STAGES = 12
 ALL_STAGES = 16
 #: Evaluations that only the dense output needs: the step's end has its slope already.

@@ -35,19 +35,19 @@ def account(balance, slots, y, dy, e):
 
 @account.of(Balance)
 def _(balance, slots, y, dy, e):
-    m = slots.chain.inverse_mass.size
+    bodies = slots.chain.inverse_mass.size
     acceleration = driver_acceleration(slots.driver, y[0])
-    dy[m] = acceleration
+    dy[bodies] = acceleration
     lost, work = 0.0, 0.0
     for c in range(e.size):
         d = positive_part(overlap(slots.preload, y, c))
         G = contact_primitive(slots.tension, slots, y, c, d)
         # the elastic energy that a force-free contact loses is known at the step's end: `lost_in`
         cut = e[c] - unless_force_free(slots.tension, c, elastic_force(slots.chain.stiffness[c], d))
-        lost += cut * (dy[c] - dy[c + 1]) - times_primitive(slots.dissipation, G, dy[m + c] - dy[m + c + 1])
+        lost += cut * (dy[c] - dy[c + 1]) - times_primitive(slots.dissipation, G, dy[bodies + c] - dy[bodies + c + 1])
         if c == 0:
             work = e[0] * dy[0] - times_primitive(slots.dissipation, G, acceleration)
-    dy[m] = 0.0
+    dy[bodies] = 0.0
     dy[dy.size - 2] = work
     dy[dy.size - 1] = lost
 
@@ -77,13 +77,13 @@ def _(balance, y, work, lost):
 @internal
 def account_ends(slots, y, dy):
     """Boundary terms of the integration by parts at a state, to be added to the integrals of W and of Q."""
-    m = slots.chain.inverse_mass.size
+    bodies = slots.chain.inverse_mass.size
     lost, work = 0.0, 0.0
-    for c in range(m - 1):
+    for c in range(bodies - 1):
         G = contact_primitive(slots.tension, slots, y, c, positive_part(overlap(slots.preload, y, c)))
-        left = dy[0] if c == 0 else y[m + c]
+        left = dy[0] if c == 0 else y[bodies + c]
         approach = dy[c] - dy[c + 1]
-        gamma = approach - (left - y[m + c + 1])
+        gamma = approach - (left - y[bodies + c + 1])
         lost += times_primitive(slots.dissipation, G, approach - 0.5 * gamma)
         if c == 0:
             work = times_primitive(slots.dissipation, G, dy[0])

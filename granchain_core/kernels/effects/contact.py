@@ -37,7 +37,7 @@ def positive_part(overlap):
 
 @by_slot
 def pressed(held, c, overlap):
-    """[δ]_+ of contact c. Absent: the overlap's sign says whether the contact is closed."""
+    """[δ]_+ of contact c, 0 where `held` keeps it open. Absent: the overlap's sign says whether it is closed."""
     return positive_part(overlap)
 
 

@@ -158,14 +158,14 @@ def _(law, d):
 
 
 @by_slot
-def dashpot_slope(law, d, rate, change):
+def dashpot_slope(law, d, rate, acceleration):
     """Ḟ_d = g'(d) δ̇² + g(d) δ̈ from d = [δ]_+, δ̇ and δ̈."""
     return 0.0
 
 
 @dashpot_slope.of(*LAWS)
-def _(law, d, rate, change):
-    return damping_slope(law, d) * rate * rate + damping(law, d) * change
+def _(law, d, rate, acceleration):
+    return damping_slope(law, d) * rate * rate + damping(law, d) * acceleration
 
 
 @inline_llvm

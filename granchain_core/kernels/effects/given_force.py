@@ -3,7 +3,7 @@
 Equation   m_1 ü_1 = F_in − F_1 − k u_1;  observer of a chain: F_in is the total force of the chain's own contact 0
 Source     Zhang et al. 2016, eqs. (3) and (4)
 Values     Sampled: piece (4,), the cubic of the force between two samples in the time since the first of them, constant
-           term first; observe/pushed_chain.py fills it for each sample, and the phase θ is that time.
+           term first; rk4/piecewise.py fills it before each piece, and the phase θ is that time.
            ObserverCoupling: the harmonic driver of the first chain, and the contact before the observer's first bead
 Terms      prescribe_primitive and prescribe_force put the force into contact 0 (Sampled) or into the contact named by
            the coupling. Elastic force e_0 and G_0 are copied separately, so that in w-variables nothing jumps in the
@@ -55,7 +55,7 @@ def _(driver, theta):
 
 @driver_velocity.of(Sampled)
 def _(driver, theta):
-    # carries the sampled force in the velocity's place, as there is no body 0; prescribe_force moves it to contact 0
+    # A force, not a velocity: there is no body 0, so `motion` carries it in dy[0] to `prescribe_force`.
     p = driver.piece
     return p[0] + theta * (p[1] + theta * (p[2] + theta * p[3]))
 

@@ -1,4 +1,4 @@
-"""The equations of motion in w-variables, assembled from the effects that are present: the definition.
+"""The equations of motion in w-variables, assembled from the effects that are present: the reference form.
 
 rk4/short_chain.py, rk4/long_chain.py and batch/step.py repeat them in vectors, naive.py states them in (u, v), and
 flow/tangent.py and flow/saltation.py linearise them. tests/kernels/equations/test_motion.py compares this file with the
@@ -56,15 +56,17 @@ class Forces(NamedTuple):
 class Trajectory(NamedTuple):
     """What is integrated: the chain's slots, the drive, state y (M,) and the method's workspace.
 
-    `drive` is a `Cycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py).
+    `drive` is a `Cycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py). M is twice
+    the number of bodies N + 2, and two more with a balance.
     """
 
     slots: Slots
     drive: Any
     y: np.ndarray
-    work: Any
+    workspace: Any
 
 
+# Every effect has a term that the equations call, so the imports above have loaded all modules of effects.
 check_effects("granchain_core.kernels.effects")
 
 
@@ -73,21 +75,21 @@ def motion(slots, u0, v0, y, dy, forces):
     """dy/dτ at state y with the driver at (u0, v0); leaves the contact forces in `forces`."""
     inverse_mass, stiffness = slots.chain.inverse_mass, slots.chain.stiffness
     e, G = forces.e, forces.G
-    m = inverse_mass.size
+    bodies = inverse_mass.size
     y[0] = u0
     dy[0] = v0
-    for c in range(m - 1):
+    for c in range(bodies - 1):
         d = pressed(forces.held, c, overlap(slots.preload, y, c))
         e[c] = elastic_force(stiffness[c], d)
         keep_primitive(slots.dissipation, G, c, d)
     keep_force_free_primitive(slots.tension, slots, y, G)
     prescribe_primitive(slots.driver, slots, y, G)
-    for i in range(1, m - 1):
-        dy[i] = velocity(slots.dissipation, inverse_mass, y[m + i], G, i)
+    for i in range(1, bodies - 1):
+        dy[i] = velocity(slots.dissipation, inverse_mass, y[bodies + i], G, i)
     cut_tension(slots.tension, slots, y, dy, e)
     prescribe_force(slots.driver, dy, e)
-    for i in range(1, m - 1):
-        dy[m + i] = inverse_mass[i] * force_on_bead(slots, e[i - 1] - e[i], y[i], dy[i])
+    for i in range(1, bodies - 1):
+        dy[bodies + i] = inverse_mass[i] * force_on_bead(slots, e[i - 1] - e[i], y[i], dy[i])
     account(slots.balance, slots, y, dy, e)
     account_for_bodies(slots.balance, slots, dy)
 
@@ -101,7 +103,7 @@ def contact_force(slots, y, dy, e, c):
 
 @internal
 def copy(source, target):
-    """Copy one array; a slice assignment would bring Numba's shape errors and seconds of compiling with it."""
+    """Copy one array. A slice assignment takes seconds longer to compile, because Numba adds its shape errors."""
     for i in range(source.size):
         target[i] = source[i]
 
@@ -109,23 +111,23 @@ def copy(source, target):
 @internal
 def write_w(slots, y, dy, forces):
     """The variables w of state y from the velocities in dy."""
-    m = slots.chain.inverse_mass.size
-    for c in range(m - 1):
+    bodies = slots.chain.inverse_mass.size
+    for c in range(bodies - 1):
         keep_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
     prescribe_primitive(slots.driver, slots, y, forces.G)
-    for i in range(1, m - 1):
-        y[m + i] = shifted(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
+    for i in range(1, bodies - 1):
+        y[bodies + i] = shifted(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
 
 
 @kernel
 def place(slots, theta, y, dy, forces, from_velocity):
-    """Set the driver and the slope at drive phase θ; with from_velocity the second row of y holds v and becomes w."""
-    m = slots.chain.inverse_mass.size
+    """Set the driver and the slope at drive phase θ. With `from_velocity` the second row of y holds v and becomes w."""
+    bodies = slots.chain.inverse_mass.size
     u0 = driver_displacement(slots.driver, theta)
     y[0] = u0
     if from_velocity:
-        for i in range(1, m - 1):
-            dy[i] = y[m + i]
+        for i in range(1, bodies - 1):
+            dy[i] = y[bodies + i]
         write_w(slots, y, dy, forces)
     motion(slots, u0, driver_velocity(slots.driver, theta), y, dy, forces)
 
@@ -134,10 +136,10 @@ def place(slots, theta, y, dy, forces, from_velocity):
 def stored_energy(slots, y, dy):
     """Kinetic, contact and foundation energy; the velocities are read from dy."""
     inverse_mass = slots.chain.inverse_mass
-    m = inverse_mass.size
+    bodies = inverse_mass.size
     energy = 0.0
-    for c in range(m - 1):
+    for c in range(bodies - 1):
         energy += elastic_energy(slots.chain.stiffness[c], positive_part(overlap(slots.preload, y, c)))
-    for i in range(1, m - 1):
+    for i in range(1, bodies - 1):
         energy += 0.5 * dy[i] * dy[i] / inverse_mass[i] + stored_on_bead(slots, y[i])
     return energy

@@ -1,4 +1,4 @@
-"""One attempt of the flow's step: Dormand–Prince 8 in the time in which the motion is smooth, and what changes in it.
+"""One attempt at a step of the flow: Dormand–Prince 8 in the time in which the motion is smooth, and its first event.
 
 Which contacts are closed is part of the state (`Held` in the workspace's forces) and does not change within a step, so
 that neither the motion's nor the tangents' slopes jump there. An onset is located from before it, where nothing is
@@ -73,21 +73,21 @@ def keep_stage(tangent, state, slope, stage):
 
 @internal
 def attempt_in_time(method, course, time, h):
-    """Try a step of size h in x from y; the result is in work.end, its slope in t in work.slope.
+    """Try a step of size h in x from y; the result is in workspace.end, its slope in t in workspace.slope.
 
     Returns the error over the tolerance.
     """
     trajectory, contacts, tangent = course
-    slots, drive, y, work = trajectory
+    slots, drive, y, workspace = trajectory
     rate = rate_at(time, 0.0)
     for i in range(y.size):
-        work.k[0, i] = rate * contacts.first[i]
+        workspace.k[0, i] = rate * contacts.first[i]
     keep_stage(tangent, y, contacts.first, 0)
     for s in range(1, STAGES + 1):
-        combine(y, h, work.k, s, work.end)
-        slope_in_x(slots, drive.beta, time, C[s] * h, work.end, s, work)
-        keep_stage(tangent, work.end, work.slope, s)
-    return error_norm(method.tolerance, h, y, work, slots.chain.inverse_mass.size)
+        combine(y, h, workspace.k, s, workspace.end)
+        slope_in_x(slots, drive.beta, time, C[s] * h, workspace.end, s, workspace)
+        keep_stage(tangent, workspace.end, workspace.slope, s)
+    return error_norm(method.tolerance, h, y, workspace, slots.chain.inverse_mass.size)
 
 
 @inline_numba
@@ -108,21 +108,21 @@ def accepted_in_time(method, course, time, h, counts):
 
 @inline_numba
 def prepare_dense_in_time(step):
-    """Fill work.dense for the step in x from y to work.end; work.slope is again that of the end."""
-    slots, drive, y, work = step.trajectory
+    """Fill workspace.dense for the step in x from y to workspace.end; workspace.slope is again that of the end."""
+    slots, drive, y, workspace = step.trajectory
     time, h = step.time, step.h
     for s in range(STAGES + 1, ALL_STAGES):
-        combine(y, h, work.k, s, work.stage)
-        slope_in_x(slots, drive.beta, time, C[s] * h, work.stage, s, work)
-    dense_coefficients(h, y, work)
-    evaluate(slots, drive.beta, time_at(time, h), work.end, work.slope, work.forces)
+        combine(y, h, workspace.k, s, workspace.stage)
+        slope_in_x(slots, drive.beta, time, C[s] * h, workspace.stage, s, workspace)
+    dense_coefficients(h, y, workspace)
+    evaluate(slots, drive.beta, time_at(time, h), workspace.end, workspace.slope, workspace.forces)
 
 
 @inline_numba
 def first_change(course, time, h, but, counts):
     """(contact, fraction) of the first change inside the step of any contact but one; (−1, 2) if there is none."""
     trajectory, contacts, _ = course
-    slots, _, y, work = trajectory
+    slots, _, y, workspace = trajectory
     step, contact, first, ready = FlowStep(trajectory, time, h), -1, 2.0, False
     dt = time_at(time, h) - time.start
     for c in range(contacts.closed.size):
@@ -130,8 +130,8 @@ def first_change(course, time, h, but, counts):
             continue
         was = contacts.closed[c] != 0
         sign = -1.0 if was else 1.0  # the change looked for makes sign·δ positive
-        d0, d1 = overlap(slots.preload, y, c), overlap(slots.preload, work.end, c)
-        s0, s1 = dt * (contacts.first[c] - contacts.first[c + 1]), dt * (work.slope[c] - work.slope[c + 1])
+        d0, d1 = overlap(slots.preload, y, c), overlap(slots.preload, workspace.end, c)
+        s0, s1 = dt * (contacts.first[c] - contacts.first[c + 1]), dt * (workspace.slope[c] - workspace.slope[c + 1])
         crossed = was != (d1 > 0.0)
         if not (crossed or may_turn(d0, s0, d1, s1, sign)):
             continue
@@ -139,16 +139,16 @@ def first_change(course, time, h, but, counts):
             prepare_dense_in_time(step)
             counts[EVALUATIONS] += DENSE_EVALUATIONS + 1
             ready = True
-        pressed, low, high = Overlap(c, sign), 0.0, 1.0
+        signed_overlap, low, high = Overlap(c, sign), 0.0, 1.0
         if not crossed:
-            high = turning_point(pressed, step)
-            if value_at(pressed, step, high) <= 0.0:
+            high = turning_point(signed_overlap, step)
+            if value_at(signed_overlap, step, high) <= 0.0:
                 continue
         elif sign * d0 > 0.0 or d0 == 0.0:  # a contact that has just changed: rounding has the wrong sign
             low = turning_point(Overlap(c, -sign), step) if sign * s0 < 0.0 else 1.0
-            if low == 1.0 or value_at(pressed, step, low) >= 0.0:
+            if low == 1.0 or value_at(signed_overlap, step, low) >= 0.0:
                 return c, 0.0
-        x = crossing(pressed, step, low, high)
+        x = crossing(signed_overlap, step, low, high)
         if x < first:
             contact, first = c, x
     return contact, first

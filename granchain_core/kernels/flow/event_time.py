@@ -6,8 +6,8 @@ no Taylor series in t there. It has one in s, where
     t = t_e + s^p  after an onset,    t = t_e − s^p  before a release,    p = 2
 
 and p = 4 for damping ∝ δ^{1/4}, δ^{3/4} or δ^{5/4}, whose G grows as a power with quarters. A step of Dormand and
-Prince that begins at an event is then as long as anywhere else, for motion and tangents alike; in t, error control
-would have to begin with tiny steps.
+Prince that begins at an event is then as long as anywhere else, for motion and tangents alike. In t, error control
+would need tiny steps there.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Time(NamedTuple):
 
 @by_slot
 def smooth_power(dissipation):
-    """The power p in which motion and tangents next to an event are smooth."""
+    """The power p for which motion and tangents next to an event are smooth in s."""
     return 2
 
 
@@ -55,7 +55,7 @@ def distance_root(distance, power):
 
 @internal
 def time_from(kind, event, start, power):
-    """Time of a step from `start`, next to `event`."""
+    """The time map of a step from `start`, next to `event`."""
     return Time(kind, event, start, distance_root(kind * (start - event), power), power)
 
 
@@ -82,7 +82,7 @@ def rate_at(time, x):
 
 @internal
 def size_of(time, dt):
-    """The x at which t has gone on by dt."""
+    """The x at which dt has passed since the step's start."""
     if time.kind == PLAIN:
         return dt
     distance = time.kind * (time.start + dt - time.event)
@@ -90,9 +90,9 @@ def size_of(time, dt):
 
 
 @internal
-def slope_in_x(slots, beta, time, x, state, row, work):
-    """Slope `row` in x, at `state`; the slope in t is left in work.slope."""
-    evaluate(slots, beta, time_at(time, x), state, work.slope, work.forces)
+def slope_in_x(slots, beta, time, x, state, row, workspace):
+    """Slope `row` in x, at `state`; the slope in t is left in workspace.slope."""
+    evaluate(slots, beta, time_at(time, x), state, workspace.slope, workspace.forces)
     rate = rate_at(time, x)
     for i in range(state.size):
-        work.k[row, i] = rate * work.slope[i]
+        workspace.k[row, i] = rate * workspace.slope[i]

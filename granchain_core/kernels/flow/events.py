@@ -1,6 +1,6 @@
 """Event location for the flow: steps that end at a release, at an onset, or at neither.
 
-A step returns (status, time, size, contact that changed at its end or −1); the state is in work.end.
+A step returns (status, time, size, contact that changed at its end or −1); the state is in workspace.end.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, ti
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.
 _LANDED = 1e-14
-#: A step aims at the next release if that is at most this many step lengths away.
+#: A step aims at the next release if that is at most this many step sizes away.
 _AIM = 1.5
 #: Attempts to locate one event, and to take one step.
 _TRIALS, _ATTEMPTS = 8, 60
-#: Shortest next step to try, in t: two events that rounding brings together do not shrink it further.
+#: Shortest next step to try, in t. Two events that rounding puts at nearly the same time do not make it smaller.
 _LEAST = 1e-9
 #: A first step after an onset covers at most this part of the time to the next release.
 _PART = 0.5
@@ -42,14 +42,14 @@ def next_release(slots, y, contacts):
 
 @inline_numba
 def locate_change(method, course, time, h, c, counts):
-    """Repeat a step with another size until it ends on the change of contact c, first with h; returns the size."""
-    slots, _, _, work = course.trajectory
+    """Repeat a step, first with size h, until it ends where contact c opens or closes; returns the size."""
+    slots, _, _, workspace = course.trajectory
     attempt_in_time(method, course, time, h)
     counts[EVALUATIONS] += STAGES
     for _ in range(_TRIALS):
-        d = overlap(slots.preload, work.end, c)
-        speed = (work.slope[c] - work.slope[c + 1]) * rate_at(time, h)
-        if abs(d) <= _LANDED * max(1.0, work.scale[0]) or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
+        d = overlap(slots.preload, workspace.end, c)
+        speed = (workspace.slope[c] - workspace.slope[c + 1]) * rate_at(time, h)
+        if abs(d) <= _LANDED * max(1.0, workspace.scale[0]) or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
             break
         if h - d / speed == h:
             break
@@ -65,7 +65,7 @@ def step_to_release(method, course, t, goal, c, counts):
 
     Returns (status, time, size, c or −1, goal), with a status of LOST where the contact does not open there.
     """
-    slots, drive, _, work = course.trajectory
+    slots, drive, _, workspace = course.trajectory
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
     time = time_from(BEFORE, goal, t, power)
     error, landed = np.inf, False
@@ -74,10 +74,10 @@ def step_to_release(method, course, t, goal, c, counts):
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, time, 0.0, -1, goal
-        d, speed = overlap(slots.preload, work.end, c), work.slope[c] - work.slope[c + 1]
+        d, speed = overlap(slots.preload, workspace.end, c), workspace.slope[c] - workspace.slope[c + 1]
         if not speed < 0.0:
             return LOST, time, 0.0, -1, goal
-        landed = abs(d) <= _LANDED * max(1.0, work.scale[0]) or goal - d / speed == goal
+        landed = abs(d) <= _LANDED * max(1.0, workspace.scale[0]) or goal - d / speed == goal
         if landed:
             break
         goal -= d / speed
@@ -106,12 +106,12 @@ def step_to_release(method, course, t, goal, c, counts):
 def flow_step(method, course, t, onset, counts):
     """One accepted step from y at local time t, at most to the period's end, with the last onset at `onset` (−∞: none).
 
-    Returns (status, time, size, contact); a size of 0 with a contact is a change at t itself.
-    work.next_step[0] is the next step to try, in t.
+    Returns (status, time, size, contact); a size of 0 with a contact: it changes at t itself.
+    workspace.next_step[0] is the next step to try, in t.
     """
     trajectory, contacts, _ = course
-    slots, drive, y, work = trajectory
-    next_step, limit = work.next_step, drive.period
+    slots, drive, y, workspace = trajectory
+    next_step, limit = workspace.next_step, drive.period
     dt = min(next_step[0], method.largest_step, limit - t)
     target, wait = next_release(slots, y, contacts)
     goal = t + wait

@@ -1,7 +1,7 @@
 """The flow over whole drive periods, contact event by contact event, with or without tangents.
 
-With `tangent` None there is no code for tangents. The events are written into a log: the sequence in which contacts
-open and close is what changes where an orbit grazes.
+Where `tangent` is None, no code for tangents is compiled. The events are logged, because the sequence in which contacts
+open and close changes where an orbit grazes.
 """
 
 from __future__ import annotations
@@ -20,6 +20,10 @@ from .tangent import Tangent, propagate
 
 #: Most steps in one drive period.
 _MOST_STEPS = 5_000_000
+#: A step that ends closer to the period's end than this, in periods, ends there. It covers the rounding of a time and
+#: of its map to x. The adaptive method's `PERIOD_END` is larger, because it also meets the times of samples, products
+#: that are rounded themselves; here it would only add to the error of the map.
+_PERIOD_END = 1e-14
 
 
 @by_slot
@@ -32,14 +36,14 @@ apply_saltation.absent_for(Tangent)
 
 @internal
 def begin(slots, y, contacts):
-    """Which contacts are closed at the start."""
+    """Mark the contacts that are closed at the start."""
     for c in range(contacts.closed.size):
         contacts.closed[c] = 1 if overlap(slots.preload, y, c) > 0.0 else 0
 
 
 @internal
-def change(slots, contacts, tangent, c, t):
-    """Change contact c at time t; returns whether it closed."""
+def toggle_contact(slots, contacts, tangent, c, t):
+    """Close contact c at time t, or open it; returns whether it closed."""
     closes = contacts.closed[c] == 0
     contacts.closed[c] = 1 if closes else 0
     apply_saltation(tangent, slots, c, closes)
@@ -56,8 +60,8 @@ def run_flow(method, course, periods, counts, stop):
     Returns (status, periods done, ∫ trace); the log's times count from the first period's start.
     """
     trajectory, contacts, tangent = course
-    slots, drive, y, work = trajectory
-    m, period, trace, onset = slots.chain.inverse_mass.size, drive.period, 0.0, -np.inf
+    slots, drive, y, workspace = trajectory
+    bodies, period, trace, onset = slots.chain.inverse_mass.size, drive.period, 0.0, -np.inf
     begin(slots, y, contacts)
     contacts.logged[0] = 0
     for p in range(periods):
@@ -68,24 +72,24 @@ def run_flow(method, course, periods, counts, stop):
                 return CANCELLED, p, trace
             if steps > _MOST_STEPS:
                 return TOO_MANY_STEPS, p, trace
-            evaluate(slots, drive.beta, t, y, contacts.first, work.forces)
+            evaluate(slots, drive.beta, t, y, contacts.first, workspace.forces)
             status, time, h, contact = flow_step(method, course, t, onset, counts)
             if status != DONE:
                 return status, p, trace
             if h > 0.0:
                 trace += propagate(tangent, slots, time, h, contacts)
-                copy(work.end, y)
-                new_scale(y, work, m)
+                copy(workspace.end, y)
+                new_scale(y, workspace, bodies)
                 end = time_at(time, h)
-                t = period if period - end < 1e-14 * period else end
+                t = period if period - end < _PERIOD_END * period else end
                 counts[STEPS] += 1
             if contact >= 0:
                 if contacts.logged[0] >= contacts.log.shape[0]:
                     return CHATTER, p, trace
-                if change(slots, contacts, tangent, contact, p * period + t):
+                if toggle_contact(slots, contacts, tangent, contact, p * period + t):
                     onset = t
                 counts[EVENTS] += 1
         onset -= period
-        if first_not_finite(y, m) != 0:
+        if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, p, trace
     return DONE, periods, trace

@@ -24,17 +24,17 @@ from ..jit import inline_numba
 from .attempt import keep_stage
 from .event_time import rate_at
 from .run import apply_saltation
-from .tangent import Stages, new_stages, propagate, write_stage
+from .tangent import StageMotions, new_stage_motions, propagate, write_stage_motion
 
 
 class VelocityTangent(NamedTuple):
     """Tangent vectors as columns: matrix (2N, columns), rows δu_1..δu_N, then δv_1..δv_N, and workspaces.
 
-    `jumps` is 1, or 0 to see what comes of a forgotten saltation.
+    `jumps` is 1; 0 leaves the saltation out, so that a test can see the error this makes.
     """
 
     matrix: np.ndarray
-    stages: Stages
+    stages: StageMotions
     slopes: np.ndarray
     state: np.ndarray
     jumps: float
@@ -42,12 +42,13 @@ class VelocityTangent(NamedTuple):
 
 def new_velocity_tangent(start, bodies, jumps):
     """The workspace of the tangents that begin with the columns of `start` (2N, columns)."""
-    return VelocityTangent(start, new_stages(bodies), np.zeros((STAGES, *start.shape)), np.zeros(start.shape), jumps)
+    return VelocityTangent(start, new_stage_motions(bodies), np.zeros((STAGES, *start.shape)), np.zeros(start.shape),
+                           jumps)
 
 
 @keep_stage.of(VelocityTangent)
 def _(tangent, state, slope, stage):
-    write_stage(tangent.stages, state, slope, stage)
+    write_stage_motion(tangent.stages, state, slope, stage)
 
 
 @inline_numba

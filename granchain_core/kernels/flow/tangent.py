@@ -28,20 +28,20 @@ from .attempt import keep_stage
 from .event_time import rate_at
 
 
-class Stages(NamedTuple):
-    """Displacements u and velocities v of all bodies, (stages + 1, N + 2) each, in the stages of a step."""
+class StageMotions(NamedTuple):
+    """Displacements u and velocities v of all bodies in the stages of a step, (stages + 1, N + 2) each."""
 
     u: np.ndarray
     v: np.ndarray
 
 
-def new_stages(bodies):
-    """Room for the stages of a step."""
-    return Stages(np.zeros((STAGES + 1, bodies)), np.zeros((STAGES + 1, bodies)))
+def new_stage_motions(bodies):
+    """Room for the motion in the stages of a step."""
+    return StageMotions(np.zeros((STAGES + 1, bodies)), np.zeros((STAGES + 1, bodies)))
 
 
 @internal
-def write_stage(stages, state, slope, stage):
+def write_stage_motion(stages, state, slope, stage):
     """Write one stage: its displacements from the state, its velocities from the state's slope."""
     for i in range(stages.u.shape[1]):
         stages.u[stage, i], stages.v[stage, i] = state[i], slope[i]
@@ -58,7 +58,7 @@ class Tangent(NamedTuple):
     """
 
     matrix: np.ndarray
-    stages: Stages
+    stages: StageMotions
     stiffness: np.ndarray
     damping: np.ndarray
     slopes: np.ndarray
@@ -75,7 +75,7 @@ def new_tangent(start, bodies, first_contact):
     padded = np.zeros((rows, blocks * VECTOR_WIDTH))
     padded[:, :columns] = start
     matrix[:] = padded.reshape(rows, blocks, VECTOR_WIDTH).transpose(1, 0, 2).reshape(blocks * rows, VECTOR_WIDTH)
-    return Tangent(matrix, new_stages(bodies), np.zeros((STAGES, contacts)), np.zeros((STAGES, contacts)),
+    return Tangent(matrix, new_stage_motions(bodies), np.zeros((STAGES, contacts)), np.zeros((STAGES, contacts)),
                    aligned(STAGES * rows), aligned(rows), np.zeros((STAGES + 1, STAGES)), first_contact)
 
 
@@ -89,7 +89,7 @@ def columns_of(tangent, columns):
 @keep_stage.of(Tangent)
 def _(tangent, state, slope, stage):
     if tangent.matrix.shape[0] > 0:
-        write_stage(tangent.stages, state, slope, stage)
+        write_stage_motion(tangent.stages, state, slope, stage)
 
 
 @by_slot

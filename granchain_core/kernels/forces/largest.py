@@ -25,11 +25,11 @@ from ..equations.motion import contact_force
 from ..jit import by_slot, inline_numba, internal
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS, row_of
 
-#: A force above this part of the largest so far is followed with its slope, a smaller one without: a maximum inside a
-#: step exceeds the step's ends by h²/8 of its curvature, which is some per cent of it.
+#: Only a force above this part of the largest so far is followed with its slope: a maximum inside a step exceeds the
+#: step's ends by h²/8 times the force's curvature, which is a few per cent.
 _FOLLOWED_WITH_SLOPE = 0.9
-#: Largest rise or fall of a force in one step, over its value: after a closing, where g has an
-#: infinite slope, the cubic's slope is bounded by this.
+#: Bound on the cubic's slope: the largest rise or fall of a force in one step, over its value. It is needed after a
+#: closing, where g may have an infinite slope.
 _STEEPEST = 3.0
 #: Entries of `ForceLog.counts`: how many contacts closed with a jump, how many of these were touches within a step of a
 #: method that does not locate them, and the number of the last sample.
@@ -74,7 +74,7 @@ def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
 
 @internal
 def reach(peaks, row, value):
-    """Raise one largest force to `value`."""
+    """Raise one of the largest forces to `value` if that is larger."""
     if value > peaks[row]:
         peaks[row] = value
 
@@ -106,8 +106,8 @@ def force_slope(slots, y, dy, e, c, event, closed):
     d, rate = positive_part(overlap(slots.preload, y, c)), dy[c] - dy[c + 1]
     if c == event:
         d = TINY if closed else 0.0
-    change = acceleration(slots, y, dy, e, c, event, closed) - acceleration(slots, y, dy, e, c + 1, event, closed)
-    return elastic_slope(slots.chain.stiffness[c], d) * rate + dashpot_slope(slots.dissipation, d, rate, change)
+    left, right = acceleration(slots, y, dy, e, c, event, closed), acceleration(slots, y, dy, e, c + 1, event, closed)
+    return elastic_slope(slots.chain.stiffness[c], d) * rate + dashpot_slope(slots.dissipation, d, rate, left - right)
 
 
 @internal
@@ -201,10 +201,10 @@ def _(law, rate, c, last, theta, log):
         if c == last:
             reach(log.peaks, OUTPUT, force)
             reach(log.peaks, OUTPUT_JUMP, force)
-        place = log.counts[CLOSED]
-        log.counts[CLOSED] = place + 1
-        if place < log.closings.shape[0]:
-            row = log.closings[place]
+        number = log.counts[CLOSED]
+        log.counts[CLOSED] = number + 1
+        if number < log.closings.shape[0]:
+            row = log.closings[number]
             row[0], row[1], row[2], row[3] = log.counts[SAMPLE], theta, c, force
 
 

@@ -8,7 +8,7 @@ from ..jit import inline_llvm, internal, kernel
 from ..simd.functions import choose_peak, larger
 from ..simd.vector import load_batch, positive_mask, store
 
-#: Values kept of one force: the largest so far, then the last four values, newest first.
+#: Values stored for one force: the largest so far, then the last four, newest first.
 ROWS = 5
 
 #: The quartic's maximum is at most this factor times the largest of its values, since only smooth peaks are
@@ -48,7 +48,7 @@ def quartic_top(a, b, c, d, e):
 
 @internal
 def watch(peaks, row, value):
-    """Follow one force whose memory starts at peaks[row]."""
+    """Follow one force, whose values begin at peaks[row]."""
     d, c, b, a = peaks[row + 1], peaks[row + 2], peaks[row + 3], peaks[row + 4]
     if value > peaks[row]:
         peaks[row] = value
@@ -78,7 +78,7 @@ def keep_largest_forces(peaks, out):
 
 @kernel
 def reset_peaks(peaks):
-    """Reset the largest value and the last values."""
+    """Reset the largest value and the last ones."""
     for i in range(INPUT_JUMP):
         peaks[i] = -np.inf if i % ROWS == 0 else 0.0
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
@@ -86,7 +86,7 @@ def reset_peaks(peaks):
 
 @kernel
 def next_period(peaks):
-    """Begin a new largest value but keep the last values: a maximum may lie across the end of a period."""
+    """Reset the largest value but keep the last ones: a maximum may lie across the end of a period."""
     for row in range(0, INPUT_JUMP, ROWS):
         peaks[row] = -np.inf
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
@@ -94,7 +94,7 @@ def next_period(peaks):
 
 @inline_llvm
 def watch_batch(peaks, row, value):
-    """Follow one force in all members; its memory starts at row `row` of a (rows, members) array."""
+    """Follow one force in all members; its values begin at row `row` of a (rows, lanes) array."""
     d, c = load_batch(peaks, row + 1), load_batch(peaks, row + 2)
     b, a = load_batch(peaks, row + 3), load_batch(peaks, row + 4)
     largest = larger(load_batch(peaks, row), value)

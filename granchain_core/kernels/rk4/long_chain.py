@@ -1,8 +1,8 @@
 """One chain with SIMD along it: RK4 steps in which no contact opens or closes, eight bodies at a time.
 
-Rows of bodies are blocks of eight; a contact's two bodies come from one block and the next by a shuffle, so that
-every memory access is aligned. The signs of all overlaps are compared from step to step: a step in which one
-changes is not taken here: it is left, with the state before it, to the scalar method, which splits it.
+Rows of bodies are blocks of eight. A shuffle of one block and the next pairs the two bodies of each contact, so that
+every memory access is aligned. The signs of all overlaps are compared from step to step. A step in which one of them
+changes is not taken here; it is left to the scalar method, which splits it.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def steps_without_events(simd, trajectory, j, count, peaks):
     """Take up to `count` steps from half-step index 2j of the drive; returns how many were taken."""
     slots, drive, y, _ = trajectory
     h, now, before, blocks = drive.h, simd.now, simd.before, simd.inverse_mass.shape[0]
-    m = slots.chain.inverse_mass.size
-    unpack(y, m, now, blocks)
+    bodies = slots.chain.inverse_mass.size
+    unpack(y, bodies, now, blocks)
     done, first, last = 0, False, False
     while True:
         i = 2 * (j + done)
@@ -60,11 +60,11 @@ def steps_without_events(simd, trajectory, j, count, peaks):
         if done > 0:
             # an overlap that came nearer to zero and now moves away may have crossed it in between
             if changed or (first_before and not first) or (last_before and not last):
-                pack(before, blocks, y, m)
+                pack(before, blocks, y, bodies)
                 return done - 1
             watch_long_chain_ends(slots, simd, v0, peaks)
         if done == count:
-            pack(now, blocks, y, m)
+            pack(now, blocks, y, bodies)
             return done
         middle, end = tabulated_displacement(slots, drive, i + 1), tabulated_displacement(slots, drive, i + 2)
         later_stage(simd, slots, middle, simd.first, simd.second, h, 0.5, 1.0 / 3.0)
@@ -138,7 +138,10 @@ def _(law, w, inverse_mass, before, G):
 
 @inline_numba
 def comes_nearer(simd, slots, v0):
-    """Whether the overlaps of the first and of the last contact move towards zero at the last step's start."""
+    """Whether the overlaps of the first and of the last contact move towards zero at the last step's start.
+
+    Half of the test of `may_change` (step.py), for the two contacts that may touch within a step and part again.
+    """
     last = slots.chain.stiffness.size - 1
     first_overlap, last_overlap = simd.overlap[0, 0], simd.overlap[last // VECTOR_WIDTH, last % VECTOR_WIDTH]
     first_rate, last_rate = v0 - simd.velocity[0, 1], simd.velocity[last // VECTOR_WIDTH, last % VECTOR_WIDTH]
@@ -159,16 +162,16 @@ def watch_long_chain_ends(slots, simd, v0, peaks):
 
 
 @inline_numba
-def unpack(y, m, blocked, blocks):
-    """Two rows of m bodies into two rows of blocks."""
+def unpack(y, bodies, blocked, blocks):
+    """Two rows of bodies into two rows of blocks."""
     for row in range(2):
-        for i in range(m):
-            blocked[row * blocks + i // VECTOR_WIDTH, i % VECTOR_WIDTH] = y[row * m + i]
+        for i in range(bodies):
+            blocked[row * blocks + i // VECTOR_WIDTH, i % VECTOR_WIDTH] = y[row * bodies + i]
 
 
 @internal
-def pack(blocked, blocks, y, m):
-    """Two rows of blocks back into two rows of m bodies."""
+def pack(blocked, blocks, y, bodies):
+    """Two rows of blocks back into two rows of bodies."""
     for row in range(2):
-        for i in range(m):
-            y[row * m + i] = blocked[row * blocks + i // VECTOR_WIDTH, i % VECTOR_WIDTH]
+        for i in range(bodies):
+            y[row * bodies + i] = blocked[row * blocks + i // VECTOR_WIDTH, i % VECTOR_WIDTH]

@@ -24,12 +24,12 @@ from .step import step, tabulated_displacement, tabulated_velocity
 def advance(simd, method, trajectory, j, count, out):
     """Take `count` steps from step index j of the period. Absent: without SIMD along the chain, one by one.
 
-    The stop flag is read often enough to end within milliseconds; the steps are then incomplete.
+    The stop flag is read often enough for a run to end within milliseconds; fewer steps are then taken.
     """
-    slots, _, y, stages = trajectory
+    slots, _, y, workspace = trajectory
     for i in range(j, j + count):
         left = step(method, trajectory, i, out)
-        watch_state(slots, y, stages.k[0], stages.forces.e, left, out.log)
+        watch_state(slots, y, workspace.k[0], workspace.forces.e, left, out.log)
         if i % STEPS_BETWEEN_STOP_CHECKS == 0 and out.stop[0] != 0:
             break
 
@@ -41,7 +41,7 @@ def _(simd, method, trajectory, j, count, out):
 
 @advance.of(LongChain)
 def _(simd, method, trajectory, j, count, out):
-    slots, drive, y, stages = trajectory
+    slots, drive, y, workspace = trajectory
     done = 0
     while done < count and out.stop[0] == 0:
         most = min(count - done, STEPS_BETWEEN_STOP_CHECKS)
@@ -51,19 +51,19 @@ def _(simd, method, trajectory, j, count, out):
             out.counts[STEPS] += smooth
             out.counts[EVALUATIONS] += 4 * smooth
             i = 2 * (j + done)
-            motion(slots, tabulated_displacement(slots, drive, i), tabulated_velocity(slots, drive, i), y, stages.k[0],
-                   stages.forces)
+            u0, v0 = tabulated_displacement(slots, drive, i), tabulated_velocity(slots, drive, i)
+            motion(slots, u0, v0, y, workspace.k[0], workspace.forces)
         if done < count:
-            watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, out.log)
+            watch_state(slots, y, workspace.k[0], workspace.forces.e, 0.0, out.log)
             left = step(method, trajectory, j + done, out)
-            watch_state(slots, y, stages.k[0], stages.forces.e, left, out.log)
-            watch_equal(slots, y, stages.k[0], stages.forces.e, out.log.peaks)
+            watch_state(slots, y, workspace.k[0], workspace.forces.e, left, out.log)
+            watch_equal(slots, y, workspace.k[0], workspace.forces.e, out.log.peaks)
             done += 1
 
 
 @internal
 def watch_equal(slots, y, dy, e, peaks):
-    """Follow the three forces at one of equal steps (forces/peaks.py)."""
+    """Follow the three forces at the end of one of the equal steps (forces/peaks.py)."""
     last = e.size - 1
     watch(peaks, INPUT, contact_force(slots, y, dy, e, 0))
     watch(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
@@ -71,7 +71,7 @@ def watch_equal(slots, y, dy, e, peaks):
     watch(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
 
 
-class Kept(NamedTuple):
+class RunRecord(NamedTuple):
     """Arrays that a run fills: either samples, or strobes and maxima of whole periods; the others have no rows.
 
     `samples` has T rows, the start first. `strobes` (P + 1, 2, N + 2) are displacement and velocity, the start first,
@@ -84,37 +84,37 @@ class Kept(NamedTuple):
 
 
 @kernel
-def run_steps(method, trajectory, first_step, stride, kept, out):
-    """Run with a fixed-step method from step index `first_step` of the period, keeping every stride-th state.
+def run_steps(method, trajectory, first_step, stride, record, out):
+    """Run with a fixed-step method from step index `first_step` of the period, recording every stride-th state.
 
-    One kernel serves samples and whole periods, because the steps are most of its code. Closings are recorded in the
-    log. Returns (status, samples filled or periods done).
+    One kernel serves samples and whole periods, because most of its code is the steps. Closings are logged. Returns
+    (status, samples filled or periods done).
     """
-    slots, _, y, stages = trajectory
-    m, log, j = slots.chain.inverse_mass.size, out.log, first_step
-    sampled = kept.samples.displacement.shape[0] > 0
-    watch_state(slots, y, stages.k[0], stages.forces.e, 0.0, log)
+    slots, _, y, workspace = trajectory
+    bodies, log, j = slots.chain.inverse_mass.size, out.log, first_step
+    sampled = record.samples.displacement.shape[0] > 0
+    watch_state(slots, y, workspace.k[0], workspace.forces.e, 0.0, log)
     if sampled:
-        keep(slots, 0, y, stages.k[0], stages.forces.e, kept.samples)
+        keep(slots, 0, y, workspace.k[0], workspace.forces.e, record.samples)
     else:
-        keep_strobe(y, stages.k[0], kept.strobes[0])
-    for i in range(kept.samples.displacement.shape[0] - 1 if sampled else kept.maxima.shape[0]):
-        if first_not_finite(y, m) != 0:  # checked before a step spreads it, so that the bead can be reported
+        keep_strobe(y, workspace.k[0], record.strobes[0])
+    for i in range(record.samples.displacement.shape[0] - 1 if sampled else record.maxima.shape[0]):
+        if first_not_finite(y, bodies) != 0:  # checked before a step spreads it, so that the bead can be reported
             return NOT_FINITE, i
         if sampled:
             log.counts[SAMPLE] = i
         else:
             next_period(log.peaks)
-        advance(stages.simd, method, trajectory, j, stride, out)
+        advance(workspace.simd, method, trajectory, j, stride, out)
         j = 0 if j + stride == method.steps_per_period else j + stride
         done = i + 1 if sampled else i
         if out.stop[0] != 0:
             return CANCELLED, done
-        if first_not_finite(y, m) != 0:
+        if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, done
         if sampled:
-            keep(slots, i + 1, y, stages.k[0], stages.forces.e, kept.samples)
+            keep(slots, i + 1, y, workspace.k[0], workspace.forces.e, record.samples)
         else:
-            keep_strobe(y, stages.k[0], kept.strobes[i + 1])
-            keep_largest_forces(log.peaks, kept.maxima[i])
-    return DONE, max(kept.samples.displacement.shape[0], kept.maxima.shape[0])
+            keep_strobe(y, workspace.k[0], record.strobes[i + 1])
+            keep_largest_forces(log.peaks, record.maxima[i])
+    return DONE, max(record.samples.displacement.shape[0], record.maxima.shape[0])

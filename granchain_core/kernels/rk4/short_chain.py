@@ -1,8 +1,8 @@
 """A short chain in one vector of 8, 16 or 32 doubles, up to 30 beads: RK4 split at contact events.
 
 Body i is lane i of the displacements and of w, contact c lane c of the overlaps; bodies beyond the wall have an
-inverse mass of 0 and contacts beyond it no stiffness. A step is three new slopes and the slope at its end, which is the
-next step's first: nothing is evaluated twice, and nothing goes through memory but the forces at the two ends.
+inverse mass of 0 and contacts beyond it no stiffness. A step evaluates three slopes and the one at its end, which is
+the next step's first. Nothing is evaluated twice, and only the forces at the two ends go through memory.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class Width32(NamedTuple):
 #: The widths there are, by their number of bodies.
 WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
 
-#: A step's beginning and its end in the workspace, and the vectors kept of each, one a row.
+#: The chain at a step's beginning and at its end in the workspace; the vectors of each, one a row, and their number.
 BEGIN, END = 0, 1
-U, W, DU, NET_FORCE, ELASTIC, KEPT = range(6)
+U, W, DU, NET_FORCE, ELASTIC, STATE_ROWS = range(6)
 #: Steps whose forces are searched together.
 STEPS_IN_BLOCK = 32
 
@@ -177,7 +177,7 @@ def chain_step(values, ua, ub, vb, h, x, shift, impulse):
 @inline_llvm
 def store_state(wide, end, x):
     """Write the chain at a step's beginning or end into the workspace."""
-    first = KEPT * end
+    first = STATE_ROWS * end
     store(wide.rows, first + U, x.u)
     store(wide.rows, first + W, x.w)
     store(wide.rows, first + DU, x.du)
@@ -190,7 +190,7 @@ def store_state(wide, end, x):
 @inline_llvm
 def load_state(wide, end):
     """The chain at a step's beginning or end from the workspace."""
-    width, rows, first = wide.width, wide.rows, KEPT * end
+    width, rows, first = wide.width, wide.rows, STATE_ROWS * end
     return ChainState(
         load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
         load_row(width, rows, first + NET_FORCE), load_row(width, wide.ends, 2 * end + OVERLAP),

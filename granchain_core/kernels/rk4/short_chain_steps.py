@@ -43,7 +43,7 @@ from .step import tabulated_displacement, tabulated_velocity
 
 @inline_numba
 def split_row(wide, trajectory, j, u_end, v_end, out):
-    """Repeat step j in the workspace from contact event to contact event; its end is written there anew.
+    """Repeat step j in the workspace from contact event to contact event, and overwrite its end there.
 
     The driver is at u_end, moving at v_end, at the end.
     """
@@ -110,9 +110,9 @@ def follow_block(wide, count, maxima, peaks):
 def start_chain(wide, values, trajectory, j):
     """The chain in the trajectory's state at step j."""
     slots, drive, y, _ = trajectory
-    rows, m = wide.rows, slots.chain.inverse_mass.size
-    for i in range(m):
-        rows[U, i], rows[W, i] = y[i], y[m + i]
+    rows, bodies = wide.rows, slots.chain.inverse_mass.size
+    for i in range(bodies):
+        rows[U, i], rows[W, i] = y[i], y[bodies + i]
     return chain_at(values, tabulated_displacement(slots, drive, 2 * j), tabulated_velocity(slots, drive, 2 * j),
                   load_row(wide.width, rows, U), load_row(wide.width, rows, W))
 
@@ -120,12 +120,12 @@ def start_chain(wide, values, trajectory, j):
 @inline_numba
 def end_row(wide, x, trajectory, j):
     """Write the chain at step j into the trajectory: state, slope and elastic forces."""
-    slots, drive, y, stages = trajectory
-    rows, dy, e, m = wide.rows, stages.k[0], stages.forces.e, slots.chain.inverse_mass.size
+    slots, drive, y, workspace = trajectory
+    rows, dy, e, bodies = wide.rows, workspace.k[0], workspace.forces.e, slots.chain.inverse_mass.size
     store_state(wide, BEGIN, x)
-    for i in range(1, m - 1):
-        y[i], y[m + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
-        dy[m + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
+    for i in range(1, bodies - 1):
+        y[i], y[bodies + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
+        dy[bodies + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
         e[i] = rows[ELASTIC, i]
     e[0] = rows[ELASTIC, 0]
     y[0] = tabulated_displacement(slots, drive, 2 * j)
@@ -152,7 +152,7 @@ def run_short_chain(wide, trajectory, j, count, out):
             vb = tabulated_velocity(slots, drive, i + 2)
             end = chain_step(values, ua, ub, vb, drive.h, x, nothing, nothing)
             closed_after, rising_after = positive_mask(end.overlap), positive_mask(end.rate)
-            # another sign, or moving towards zero at the start and away from it at the end
+            # the test of `may_change` (step.py) in bits: another sign, or towards zero at first and away at last
             if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
                 store_state(wide, BEGIN, x)
                 store_state(wide, END, end)

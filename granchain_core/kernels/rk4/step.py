@@ -1,7 +1,8 @@
 """One step of the fixed-step methods: classical Runge–Kutta of order 4 in w, plain or split at contact events.
 
 `rk4` is the formula. `step` is the step of each method: plain, or a whole step that is taken back and `split` at every
-contact that opens or closes in it. The drive phase comes from an integer step count, so no time adds up errors.
+contact that opens or closes in it. The drive phase follows from an integer count of steps, so that rounding errors do
+not accumulate in the time.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class Rk4Split(NamedTuple):
     steps_per_period: int
 
 
-class Stages(NamedTuple):
+class Rk4Workspace(NamedTuple):
     """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays.
 
     `ends` (6, N+1) are overlaps, rates and quadrature errors of a step that is split; contact_cubic.py names the rows.
@@ -81,9 +82,9 @@ def tabulated_velocity(slots, drive, i):
 
 
 @internal
-def rk4(slots, ua, va, ub, vb, h, y, stages):
-    """One RK4 step from y, whose slope is stages.k[0], to stages.end; (u, v)_a at mid-step, _b at its end."""
-    k, stage, end, forces = stages.k, stages.stage, stages.end, stages.forces
+def rk4(slots, ua, va, ub, vb, h, y, workspace):
+    """One RK4 step from y, whose slope is workspace.k[0], to workspace.end; (u, v)_a at mid-step, _b at its end."""
+    k, stage, end, forces = workspace.k, workspace.stage, workspace.end, workspace.forces
     for i in range(y.size):
         stage[i] = y[i] + 0.5 * h * k[0, i]
     motion(slots, ua, va, stage, k[1], forces)
@@ -101,7 +102,9 @@ def rk4(slots, ua, va, ub, vb, h, y, stages):
 def may_change(slots, y, slope, end, end_slope):
     """Whether a contact may open or close within the step: its overlap has another sign at the end, or turns.
 
-    An overlap that moves towards zero at the start and away from it at the end may have crossed it in between.
+    An overlap that moves towards zero at the start and away from it at the end may have crossed it in between. The same
+    test stands in four other places, in the form that each needs: short_chain_steps.py `run_short_chain`, long_chain.py
+    `comes_nearer`, contact_cubic.py `contact_root` and dop853/bracket.py `may_turn`.
     """
     changed = 0
     for c in range(slots.chain.stiffness.size):
@@ -121,12 +124,12 @@ def keep_overlaps(slots, y, slope, ends, overlaps, rates):
 
 @internal
 def correct_state(slots, ends, v0, y):
-    """Subtract the quadrature errors next to contact events from y; the driver moves at v0."""
+    """Subtract from y the quadrature errors next to contact events; the driver moves at v0."""
     inverse_mass = slots.chain.inverse_mass
-    m = inverse_mass.size
-    for i in range(1, m - 1):
+    bodies = inverse_mass.size
+    for i in range(1, bodies - 1):
         y[i] += inverse_mass[i] * (ends[DISPLACEMENT_ERROR, i] - ends[DISPLACEMENT_ERROR, i - 1])
-        y[m + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR, i] - ends[MOMENTUM_ERROR, i - 1])
+        y[bodies + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR, i] - ends[MOMENTUM_ERROR, i - 1])
     correct_work(slots.balance, ends[MOMENTUM_ERROR, 0] * v0, y)
 
 
@@ -142,7 +145,7 @@ def _(balance, excess, y):
 
 @by_type_inlined
 def step(method, trajectory, j, out):
-    """Advance y by one step from half-step index 2j of the drive; stages.k[0] is dy/dt at y before and after.
+    """Advance y by one step from half-step index 2j of the drive; workspace.k[0] is dy/dt at y before and after.
 
     Largest forces and jumps inside the step go into the log. Returns the time from the last state at which they were
     followed to the step's end.
@@ -151,11 +154,11 @@ def step(method, trajectory, j, out):
 
 @internal
 def whole_step(trajectory, j):
-    """One RK4 step from half-step index 2j to stages.end; returns the driver's displacement and velocity there."""
-    slots, drive, y, stages = trajectory
+    """One RK4 step from half-step index 2j to workspace.end; returns the driver's displacement and velocity there."""
+    slots, drive, y, workspace = trajectory
     ua, va = tabulated_displacement(slots, drive, 2 * j + 1), tabulated_velocity(slots, drive, 2 * j + 1)
     ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)
-    rk4(slots, ua, va, ub, vb, drive.h, y, stages)
+    rk4(slots, ua, va, ub, vb, drive.h, y, workspace)
     return ub, vb
 
 
@@ -167,12 +170,12 @@ def span_of(drive, j):
 
 @step.of(Rk4)
 def _(method, trajectory, j, out):
-    slots, drive, y, stages = trajectory
-    now = Instant(y, stages.k[0])
+    slots, drive, y, workspace = trajectory
+    now = Instant(y, workspace.k[0])
     before = end_overlaps(slots.dissipation, slots, now)
     ub, vb = whole_step(trajectory, j)
-    copy(stages.end, y)
-    motion(slots, ub, vb, y, stages.k[0], stages.forces)
+    copy(workspace.end, y)
+    motion(slots, ub, vb, y, workspace.k[0], workspace.forces)
     watch_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
     out.counts[STEPS] += 1
     out.counts[EVALUATIONS] += 4
@@ -181,10 +184,10 @@ def _(method, trajectory, j, out):
 
 @step.of(Rk4Split)
 def _(method, trajectory, j, out):
-    slots, drive, y, stages = trajectory
+    slots, drive, y, workspace = trajectory
     ub, vb = whole_step(trajectory, j)
-    k, end, left = stages.k, stages.end, drive.h
-    motion(slots, ub, vb, end, k[3], stages.forces)
+    k, end, left = workspace.k, workspace.end, drive.h
+    motion(slots, ub, vb, end, k[3], workspace.forces)
     out.counts[STEPS] += 1
     out.counts[EVALUATIONS] += 4
     if may_change(slots, y, k[0], end, k[3]):
@@ -196,12 +199,12 @@ def _(method, trajectory, j, out):
 
 @internal
 def split(trajectory, j, u_end, v_end, out):
-    """Repeat step j of the period, in which contacts change, from event to event; leaves its end in stages.end.
+    """Repeat step j of the period, in which contacts open or close, from event to event; its end is workspace.end.
 
     The driver is at u_end, moving at v_end, at the end. Returns the time from the last event to the step's end.
     """
-    slots, drive, y, stages = trajectory
-    ends, end, k, h, dtheta = stages.ends, stages.end, stages.k, drive.h, drive.dtheta
+    slots, drive, y, workspace = trajectory
+    ends, end, k, h, dtheta = workspace.ends, workspace.end, workspace.k, drive.h, drive.dtheta
     theta, done, last = j * dtheta, 0.0, slots.chain.stiffness.size - 1
     reset_corrections(ends)
     keep_overlaps(slots, y, k[0], ends, OVERLAP, RATE)
@@ -216,8 +219,8 @@ def split(trajectory, j, u_end, v_end, out):
             middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
             u, v = driver_displacement(slots.driver, there), driver_velocity(slots.driver, there)
             rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
-                u, v, h * part, y, stages)
-            motion(slots, u, v, end, k[3], stages.forces)
+                u, v, h * part, y, workspace)
+            motion(slots, u, v, end, k[3], workspace.forces)
             keep_overlaps(slots, end, k[3], ends, OVERLAP, RATE)
             out.counts[EVALUATIONS] += 4
             part = nearer_event(slots.dissipation, ends, contact, last, part, 1.0 - done, h)
@@ -227,13 +230,13 @@ def split(trajectory, j, u_end, v_end, out):
         copy(end, y)
         copy(k[3], k[0])
         # before add_quadrature_errors, which overwrites the overlap with a sign
-        watch_event(slots, y, k[0], stages.forces.e, h * stepped, contact, there, out.log)
+        watch_event(slots, y, k[0], workspace.forces.e, h * stepped, contact, there, out.log)
         add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
-            u_end, v_end, h * (1.0 - done), y, stages)
+            u_end, v_end, h * (1.0 - done), y, workspace)
         correct_state(slots, ends, v_end, end)
-        motion(slots, u_end, v_end, end, k[3], stages.forces)
+        motion(slots, u_end, v_end, end, k[3], workspace.forces)
         out.counts[EVALUATIONS] += 4
         out.counts[EVENTS] += 1
     return h * (1.0 - done)

@@ -13,7 +13,7 @@ from ..jit import internal, kernel
 
 #: Differences used; k differences remove k − 1 slow modes.
 ORBITS = 8
-#: A second difference is linearly dependent on the earlier ones if its orthogonal part is below this
+#: A second difference counts as linearly dependent on the earlier ones if its part orthogonal to them is below this
 #: fraction of it.
 _DEPENDENT = 1e-9
 
@@ -36,14 +36,14 @@ def subtract(a, factor, b):
 
 @kernel
 def reduced_rank(states, basis, triangle, limit):
-    """The limit (2, m) of states (k + 1, 2, m); basis (k, 2m) and triangle (k, k) are workspaces."""
-    count, m = states.shape[0] - 2, states.shape[2]
+    """The limit (2, bodies) of states (k + 1, 2, bodies); basis (k, 2·bodies) and triangle (k, k) are workspaces."""
+    count, bodies = states.shape[0] - 2, states.shape[2]
     residual, weights = basis[count], triangle[count]
     for q in range(2):
-        for i in range(m):
-            residual[q * m + i] = states[0, q, i] - states[1, q, i]
+        for i in range(bodies):
+            residual[q * bodies + i] = states[0, q, i] - states[1, q, i]
             for j in range(count):
-                basis[j, q * m + i] = states[j + 2, q, i] - 2.0 * states[j + 1, q, i] + states[j, q, i]
+                basis[j, q * bodies + i] = states[j + 2, q, i] - 2.0 * states[j + 1, q, i] + states[j, q, i]
     for j in range(count):
         size = sqrt(dot(basis[j], basis[j]))
         for k in range(j):
@@ -52,7 +52,7 @@ def reduced_rank(states, basis, triangle, limit):
         left = sqrt(dot(basis[j], basis[j]))
         triangle[j, j] = left if left > _DEPENDENT * size else 0.0
         scale = 1.0 / left if left > _DEPENDENT * size else 0.0
-        for i in range(2 * m):
+        for i in range(2 * bodies):
             basis[j, i] *= scale
         weights[j] = dot(basis[j], residual)
         subtract(residual, weights[j], basis[j])
@@ -61,7 +61,7 @@ def reduced_rank(states, basis, triangle, limit):
             weights[j] -= triangle[j, k] * weights[k]
         weights[j] = weights[j] / triangle[j, j] if triangle[j, j] > 0.0 else 0.0
     for q in range(2):
-        for i in range(m):
+        for i in range(bodies):
             value = states[0, q, i]
             for j in range(count):
                 value += weights[j] * (states[j + 1, q, i] - states[j, q, i])

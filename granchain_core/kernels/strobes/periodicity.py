@@ -1,10 +1,15 @@
-"""Periodicity of stroboscopic states: changes, their decay, the shortest period. Asked for thousands of times a curve.
+"""Periodicity of stroboscopic states: changes, their decay, the shortest period.
+
+Called thousands of times for one curve.
 
 States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one per drive period. A change of
-displacements is relative to the largest displacement in the record, one of velocities (or w) to the largest of them.
+displacements is relative to the largest displacement in the record, a change of velocities (or w) to the largest of
+them.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,16 +23,32 @@ LEAST_WINDOW = 8
 SETTLED_DISTANCE = 1e-6
 #: Changes of a fixed-step map below this are rounding.
 ROUNDING = 1e-12
-#: A state with a larger change is not settled: nothing decays a thousandfold in one period.
+#: A state with a larger change is not settled, because nothing decays a thousandfold in one period.
 _NOT_SETTLED = 1e-3
-#: A change below this part of the required distance is accepted without a steady rate: a slow mode hidden in it would
-#: have to decay a hundred times more slowly than what is observed.
+#: A change below this part of the required distance is accepted even if its rate is not steady: a slow mode hidden in
+#: it would have to decay a hundred times more slowly than what is observed.
 _DEEP = 1e-2
 #: Changes over q periods that decay faster than this, per q periods, go to zero; else they may be those of a longer
 #: orbit.
 _APPROACHING = 0.97
 #: Changes below this may be extrapolated (kernels/strobes/extrapolation.py).
 _WORTH_EXTRAPOLATING = 1e-2
+
+
+class Detected(NamedTuple):
+    """What a record of strobes shows: an orbit, or the approach to one.
+
+    If `period` > 0 the motion has that period: `rate` is its decay per orbit, −1 where none was seen, and `distance`
+    bounds the distance left to the orbit. Else `period` is 0, `approached` is the first period over which changes decay
+    (0 for none), `approach_rate` their factor per `approached` drive periods, `approach_change` the latest of them.
+    """
+
+    period: int
+    rate: float
+    distance: float
+    approached: int
+    approach_rate: float
+    approach_change: float
 
 
 @internal
@@ -73,7 +94,7 @@ def largest_change(change, first, count):
 
 @internal
 def decay_rate(change, count, n):
-    """Rate of decay per n drive periods in `count` changes, and whether both halves of them show the same.
+    """Rate of decay per n drive periods in `count` changes, and whether both halves of them show the same rate.
 
     Largest changes over one orbit at the window's start, middle and end are compared, so that turning complex
     multipliers do not look like decay or growth; the slower half counts.
@@ -123,13 +144,11 @@ def earlier_rate(strobes, scale, n, rounding, change):
 
 @kernel
 def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
-    """The shortest period of a record of strobes, and the decay towards it; 0 for a period that is not there.
+    """The shortest period of a record of strobes and the decay towards it, as `Detected`.
 
-    Returns (period, rate, distance, approached, approach_rate, approach_change).
-
-    `period` is the smallest whose distance bound change·rate/(1 − rate) is at most `settled`; changes below
-    `rounding` count as none, the rate is −1 where none was seen. `approached` is the first period over which changes
-    decay. `slowest` is a rate per drive period that is known to occur, whether these states show it or not.
+    That period is the smallest whose distance bound change·rate/(1 − rate) is at most `settled`; changes below
+    `rounding` count as none. `slowest` is a rate per drive period that is known to occur, whether these states show it
+    or not.
     `scale` (2,) and `change` (3·longest or more,) are workspaces.
     """
     run = strobes.shape[0] - 1
@@ -147,7 +166,7 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
             continue  # a shorter period is being approached, which is why the change over this one is small
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
-            return n, earlier_rate(strobes, scale, n, rounding, change), rounding, 0, 0.0, 0.0
+            return Detected(n, earlier_rate(strobes, scale, n, rounding, change), rounding, 0, 0.0, 0.0)
         rate, even = decay_rate(change, count, n)
         recent = largest_change(change, count - n, n)
         if rate >= 1.0:
@@ -162,8 +181,8 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
         distance = recent * rate / (1.0 - rate)
         if distance <= settled and (even or recent <= _DEEP * settled):
             q = shortest(strobes, scale, n, max(10.0 * distance, 3.0 * settled))
-            return q, rate ** (q / n), distance, 0, 0.0, 0.0
-    return 0, 0.0, 0.0, approached, approach_rate, approach_change
+            return Detected(q, rate ** (q / n), distance, 0, 0.0, 0.0)
+    return Detected(0, 0.0, 0.0, approached, approach_rate, approach_change)
 
 
 @kernel

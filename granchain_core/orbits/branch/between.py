@@ -31,12 +31,12 @@ class Between:
         return self._finished(solved, a.tangent, self._arclength(a, b, fraction))
 
     def exact(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
-        """The exact orbit at a fraction of the way from a to b, with few derivatives of its own."""
+        """Like `careful`, but mostly with derivatives that are known at a and b."""
         guess, normal, way = self._guess(a, b, fraction)
         return self._solved(guess, normal, a.tangent, self._arclength(a, b, fraction), way)
 
     def rough(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
-        """The orbit at that fraction by the rough map alone; what is alike at a and b is taken from a, not computed."""
+        """Like `careful`, but by the quick map alone. What is alike at a and b is not computed but taken from a."""
         guess, normal, way = self._guess(a, b, fraction)
         arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, way)
         near = self._near(arclength)

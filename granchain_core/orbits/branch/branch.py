@@ -3,7 +3,7 @@
     branch = continue_branch(scene("sec2"), "f", 340.0, 60.0)
 
 Pseudo-arclength continuation (Keller 1977) of fixed points of the n-period stroboscopic map. The points come out one
-by one from a `Continuation`, which can be left at any time, saved, and taken up again as if it had never stopped.
+by one from a `Continuation`, which can be paused at any time, saved, and continued as if it had never stopped.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Branch(Labelled):
     axis : KnobAxis
         The knob, where it starts and where it ends.
     period : int
-        Of its orbits, in drive periods.
+        Period of its orbits in drive periods.
     arms : tuple of Arm
         One or two directions from the same seed; `ended` and `reason` say how each ended.
     points : list of BranchPoint
@@ -209,13 +209,13 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     scene : Scene
         The chain; its tension must not be cut.
     knob : str
-        "f", "A0", "D", "k", "kappa", "F0", or a ratio of masses: "dimer", "taper", "striker" or "impurity".
+        "f", "A0", "D", "k", "kappa", "F0", "dimer", "taper", "striker" or "impurity".
     start, end : float
         Values of the knob in SI between which the branch is followed; the first orbit is at `start`.
     period : int, optional
-        Of the orbits, in drive periods; the steady state's at `start` if not given.
+        Period of the orbits in drive periods; by default that of the steady state at `start`.
     start_state : State, optional
-        Near the first orbit; the steady state from rest if not given.
+        A state near the first orbit; by default the steady state reached from rest.
     both : bool
         Begin at the scene's own value of the knob and follow both ways, to `start` and to `end`.
     most_points : int

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...scaling import scale_chain, scale_like
 from ...steady.returns import least_period
 from ...stop import Stop
 from ..stroboscopic_map import BACK, TOLERANCE, Flow, StroboscopicMap
@@ -47,6 +48,7 @@ class BranchEquations:
         self.axis, self.period, self.stop = axis, period, stop
         self.size = 2 * axis.scene.N
         self.weight = np.sqrt(self.size)
+        self._scaled = scale_chain(axis.scene)
         self._reused = threading.local()
 
     def point(self, x: np.ndarray, value: float) -> np.ndarray:
@@ -67,7 +69,7 @@ class BranchEquations:
         return StroboscopicMap(self.axis.scene_at(value), periods or self.period, self.stop, tolerance)
 
     def reused_map(self, value: float, tolerance: float) -> StroboscopicMap:
-        """The map at a knob value, in the thread's one object: it is valid until the thread's next call."""
+        """The map at a knob value, in an object that the thread's next call changes."""
         found: StroboscopicMap | None = getattr(self._reused, "map", None)
         if found is None:
             found = self._reused.map = self.stroboscopic_map(value, tolerance=tolerance)
@@ -77,7 +79,7 @@ class BranchEquations:
 
     def quick_steps(self, z: np.ndarray) -> int:
         """Steps in a period of the quick map near z, 0 where the flow takes its place."""
-        return quick_steps(self.axis.scene_at(self.value(z)))
+        return quick_steps(scale_like(self._scaled, self.axis.scene_at(self.value(z))))
 
     def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
         """Where the quick map leads from x, or a rough flow where there are 0 steps."""
@@ -111,7 +113,7 @@ class BranchEquations:
         return Solved(newton.z, flow, self.knob_slope(newton.z, flow.end, TOLERANCE), tuple(newton.residuals))
 
     def solve_near(self, z: np.ndarray, normal: np.ndarray, near: Near, farthest: float = np.inf) -> Solved:
-        """The orbit where P_x and P_p are known nearby, so that few further derivatives are needed."""
+        """Like `solve`, where P_x and P_p are known nearby, so that few further derivatives are needed."""
         newton = Newton(self, z, normal, farthest)
         newton.approach(near)
         flow = newton.finish()

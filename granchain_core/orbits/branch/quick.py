@@ -12,7 +12,7 @@ from ...integrate import Engine, fixed_step_setting
 from ...integrate.fixed import FixedStep
 from ...kernels.jit import all_in_simd_kernels
 from ...kernels.rk4.step import Rk4Split
-from ...scaling import scale_chain
+from ...scaling import ScaledChain, scale_like
 from ...scene import Scene
 from ...stop import Stop
 
@@ -38,21 +38,23 @@ class QuickMap:
         """The state n periods of `steps` steps after x."""
         if self._engine is None:
             self._engine = Engine(scene, fixed_step_setting(), 1, stop=self.stop)
-        engine = self._engine
-        engine.stepper = FixedStep(Rk4Split(steps), scale_chain(scene), 1, simd=True)
-        engine.stepper.pause = engine.stop.pause
-        engine.grid = engine.stepper.grid
+        engine, scaled = self._engine, scale_like(self._engine.scaled, scene)
+        if engine.grid == steps:
+            engine.stepper.move(scaled)
+        else:
+            engine.stepper = FixedStep(Rk4Split(steps), scaled, 1, simd=True)
+            engine.stepper.pause = engine.stop.pause
+            engine.grid = steps
         engine.start_scaled(x)
         engine.periods(self.periods, watch=False)
         return engine.scaled.beads_of(engine.y)
 
 
-def quick_steps(scene: Scene) -> int:
-    """Steps in a period of the quick map, 0 where the flow is faster.
+def quick_steps(scaled: ScaledChain) -> int:
+    """Steps in a period of the quick map of a scene, 0 where the flow is faster.
 
     The map would jump if they changed with the knob, so those of one scene serve for all that are compared.
     """
-    scaled = scale_chain(scene)
     least = int(_REFINE * max(16.0, scaled.period / scaled.step)) + 1
     if least > _MOST_QUICK_STEPS or not all_in_simd_kernels(scaled.slots):
         return 0

@@ -5,9 +5,10 @@ period_doubling  a real multiplier passes −1
 neimark_sacker   a complex pair passes the unit circle
 grazing          a contact touches or separates once more, or once less, along the orbit
 
-Each change lies between two computed orbits, which are the ends of its interval; only a fold's extends beyond them, by
-a bound from both tangents, which assumes that the branch turns by less than 30° between them. Test functions only
-choose the next orbit to compute, so a wrong one cannot make an interval wrong.
+Each change lies between two computed orbits. For period doublings, Neimark–Sacker points and grazings the interval is
+that of the two orbits. The interval of a fold extends beyond them by a bound from both tangents, which assumes that the
+branch turns by less than 30° between them. Test functions only choose the next orbit to compute, so a wrong test
+function cannot make an interval wrong.
 """
 
 from __future__ import annotations

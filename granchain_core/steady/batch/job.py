@@ -11,7 +11,7 @@ from ...integrate import Engine, State, fixed_step_setting
 from ...integrate.batch import Batch
 from ...integrate.methods import AT_A_JUMP, typical_error
 from ...integrate.stated import relative_changes
-from ...kernels.batch.period_end import DISTANCE, PERIOD
+from ...kernels.batch.period_end import CHECK_DISTANCE, CHECK_PERIOD
 from ...regime import Regime
 from ...scaling import ScaledChain
 from ...scene import Scene
@@ -80,7 +80,7 @@ class Job:
         assert self.coarse is not None
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
-        y, distance = batch.state.y[:, member], float(batch.state.last_check[member, DISTANCE])
+        y, distance = batch.state.y[:, member], float(batch.state.last_check[member, CHECK_DISTANCE])
         maxima, jumps = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
         left = force_distances(farther, self.scaled, maxima, y)
@@ -115,7 +115,7 @@ class Job:
 def draft_result(job: Job, batch: Batch, member: int) -> SteadyState:
     """The result of the coarse run alone."""
     run = int(batch.state.periods[member])
-    period = batch.state.last_check[member, PERIOD]
+    period = batch.state.last_check[member, CHECK_PERIOD]
     if period <= 0:
         return unsettled(job, batch, member, run)
     regime = _periodic(batch, member, run)
@@ -128,7 +128,7 @@ def outcome_of_coarse_run(job: Job, batch: Batch, member: int) -> SteadyState | 
     """The job for the finer run or the Lyapunov exponent, the end of its budget, or None where the member goes on."""
     here = int(batch.state.periods[member])
     run = job.run + here
-    period = batch.state.last_check[member, PERIOD]
+    period = batch.state.last_check[member, CHECK_PERIOD]
     if period > 0:
         regime = _periodic(batch, member, run)
         settled = (regime, batch.settled_maxima(member, int(period)))

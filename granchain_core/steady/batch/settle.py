@@ -5,14 +5,15 @@ Every scene becomes a member of a batch, with coarse steps. Once its regime is d
 Coarse run: `check_coarse` (kernels/batch/period_end.py) bounds the distance to the orbit; an orbit that was reached by
 extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run, a third of the step:
 `check_fine`, until that bound is small or six extrapolations are spent; what is left goes into the stated error, with
-the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, twice, as many at a
-time as there are pairs of members. What is still undecided is marked `doubtful` and settled alone
+the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, measured twice
+beside a neighbouring trajectory in another lane. What is still undecided is marked `doubtful` and settled alone
 (settling/single_chain.py).
 """
 
 from __future__ import annotations
 
 import itertools
+from bisect import insort
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -26,7 +27,7 @@ from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
-from ..lyapunov import MOST_APART, exponents_in_pairs
+from ..lyapunov import exponents_of, put_with_shadow
 from ..regime_criteria import agree, clearly_chaotic, find_period, regime_from_exponents, undecided
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK, REMEMBERED
@@ -37,38 +38,38 @@ from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
 _DRAFT = 300
 #: Decay per orbit above which an orbit found by extrapolation needs its multipliers.
 _SLOW_DECAY = 0.998
-#: Largest |μ|, by one-sided differences, that settles it.
+#: Such an orbit is accepted if its largest |μ|, by one-sided differences, is below this.
 _SURE = 0.995
-#: Scenes whose exponents are found at once.
-_PAIRS = BATCH_SIZE // 2
 
 
 class _JobsInBatch:
-    """A batch with the jobs of its members, those waiting for a place and those whose regime is in doubt."""
+    """A batch with the jobs of its members, those that wait for a lane, and those in doubt, which wait for two."""
 
     def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
         self.batch = Batch(first.scene, stop)
-        self.pairs: Batch | None = None
         self.draft = draft
         self.stop = stop
         self.latest = self.batch.example
         self.starts = itertools.chain([first], starts)
         self.waiting: list[Job] = []
         self.jobs: dict[int, Job] = {}
-        self.left: set[int] = set()
+        self.free = list(reversed(range(BATCH_SIZE)))
+        self.left = set[int]()  # lanes that are free since the batch last ran
+        self.shadows: dict[int, int] = {}
         self.doubtful: list[Job] = []
 
     def fill(self) -> None:
-        """Put jobs into all free places; those for which there is none are left empty."""
-        for member in range(BATCH_SIZE):
-            if member not in self.jobs:
-                job = self.waiting.pop() if self.waiting else self._next_job()
-                if job is not None:
-                    self.jobs[member] = job
-                    self._start(member, job)
-                elif member in self.left:
-                    self.batch.empty(member)
-                self.left.discard(member)
+        """Put jobs into the free lanes. One in doubt takes two: a single free lane waits for another."""
+        while self.free and not (self.doubtful and len(self.free) < 2):
+            job = self.doubtful.pop(0) if self.doubtful else self.waiting.pop() if self.waiting else self._next_job()
+            if job is None:
+                break
+            member = self.free.pop()
+            self.jobs[member] = job
+            self._start(member, job)
+        for member in self.left & set(self.free):
+            self.batch.empty(member)
+        self.left.clear()
 
     def _next_job(self) -> Job | None:
         """The job of the next start, if there is one."""
@@ -80,7 +81,14 @@ class _JobsInBatch:
         return Job(start.scene, scaled, scaled.from_si(state), number=start.number)
 
     def _start(self, member: int, job: Job) -> None:
-        """The coarse run is checked once it may have settled, the finer one once the difference has decayed."""
+        """The coarse run is checked once it may have settled, the finer one once the difference has decayed.
+
+        A job in doubt gets a shadow.
+        """
+        if job.in_doubt:
+            shadow = self.shadows[member] = self.free.pop()
+            put_with_shadow(self.batch, member, shadow, job.scaled, job.y, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
+            return
         if job.coarse is None:
             look = min(_DRAFT if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
             self.batch.put(member, job.scaled, job.y, 1, look)
@@ -94,9 +102,13 @@ class _JobsInBatch:
         """Run until a member is due for a check, and check it."""
         member, finite = self.batch.run()
         job = self.jobs[member]
-        if not finite:
+        if not finite or (job.in_doubt and np.isnan(self.batch.growth(member)).any()):
             self._free(member)
             return failed(job)
+        if job.in_doubt:
+            result = self._decide(job, member)
+            self._free(member)
+            return result
         if self.draft:
             result = draft_result(job, self.batch, member)
             self._free(member)
@@ -108,54 +120,52 @@ class _JobsInBatch:
         self._free(member)
         if isinstance(outcome, SteadyState):
             return confirmed(outcome, self.stop)
-        (self.doubtful if outcome.in_doubt else self.waiting).append(outcome)
+        if outcome.in_doubt:
+            self._doubt(outcome)
+        else:
+            self.waiting.append(outcome)
         return None
 
     def _free(self, member: int) -> None:
-        """Take a job out of its place, which `fill` fills or empties."""
+        """Take a job out of its lanes, which `fill` fills or empties."""
         del self.jobs[member]
-        self.left.add(member)
+        lanes = [member, self.shadows.pop(member)] if member in self.shadows else [member]
+        self.free += lanes
+        self.left.update(lanes)
 
-    def undecided(self) -> list[Job]:
-        """Doubtful jobs of similar steps a period, one for a pair of members; fewer only if nothing else is to do."""
-        jobs = sorted(self.doubtful, key=lambda job: job.steps)
-        for i in range(len(jobs) - _PAIRS + 1):
-            if jobs[i + _PAIRS - 1].steps <= MOST_APART * jobs[i].steps:
-                return jobs[i : i + _PAIRS]
-        return [] if self.jobs else [job for job in jobs if job.steps <= MOST_APART * jobs[0].steps]
+    def _decide(self, job: Job, member: int) -> SteadyState | None:
+        """Classify a job in doubt by its Lyapunov exponents; one whose neighbours come closer runs on."""
+        seen = exponents_of(self.batch, member, PERIODS_IN_BLOCK)
+        growth = np.concatenate([job.blocks, seen.exponents])
+        job.run += len(seen.strobes)
+        job.y, job.in_doubt, job.blocks = seen.y, False, np.zeros(0)
+        regime = replace(find_period(seen.strobes), periods_run=job.run)
+        if regime.period is not None:
+            job.coarse = (regime, seen.maxima[-regime.period :].max(axis=0))
+            self.waiting.append(job)
+            return None
+        job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as a chain settled alone is judged
+        goes_on = job.run < MOST_PERIODS and job.affordable
+        if undecided(growth) and goes_on:
+            job.blocks = growth
+            self._doubt(job)
+            return None
+        regime, before = regime_from_exponents(growth, job.record, job.run), job.measured
+        if before is None and regime.name != "unsettled" and not clearly_chaotic(growth):
+            job.measured = regime
+            self._doubt(job)
+            return None
+        if regime.name == "unsettled" and growth.mean() < 0.0 and goes_on:
+            self.waiting.append(job)
+            return None
+        reported, clear = decided(regime, before, clearly_chaotic(growth))
+        return SteadyState(job.scene, job.maxima, reported, None, job.scaled.to_si(seen.y), number=job.number,
+                           doubtful=not clear and job.affordable)
 
-    def decide(self, jobs: list[Job]) -> Iterator[SteadyState]:
-        """Classify doubtful jobs by their Lyapunov exponents; one whose neighbours come closer runs on."""
-        self.doubtful = [job for job in self.doubtful if job not in jobs]
-        self.pairs = self.pairs or Batch(jobs[0].scene, self.stop)
-        found = exponents_in_pairs([(job.scaled, job.y) for job in jobs], EXPONENT_BLOCKS, PERIODS_IN_BLOCK, self.pairs)
-        for job, (growth, strobes, maxima, y) in zip(jobs, found, strict=True):
-            if not np.isfinite(growth).all():
-                yield failed(job)
-                continue
-            job.run += len(strobes)
-            job.y, job.in_doubt = y, False
-            regime = replace(find_period(strobes), periods_run=job.run)
-            if regime.period is not None:
-                job.coarse = (regime, maxima[-regime.period :].max(axis=0))
-                self.waiting.append(job)
-                continue
-            job.record = np.concatenate([job.record, strobes])[-REMEMBERED:]  # as a chain settled alone is judged
-            growth, job.blocks = np.concatenate([job.blocks, growth]), np.zeros(0)
-            if undecided(growth) and job.run < MOST_PERIODS and job.affordable:
-                job.blocks, job.in_doubt = growth, True
-                self.doubtful.append(job)
-                continue
-            regime, before = regime_from_exponents(growth, job.record, job.run), job.measured
-            if before is None and regime.name != "unsettled" and not clearly_chaotic(growth):
-                job.measured, job.in_doubt = regime, True
-                self.doubtful.append(job)
-            elif regime.name == "unsettled" and growth.mean() < 0.0 and job.run < MOST_PERIODS and job.affordable:
-                self.waiting.append(job)
-            else:
-                reported, clear = decided(regime, before, clearly_chaotic(growth))
-                yield SteadyState(job.scene, job.maxima, reported, None, job.scaled.to_si(y), number=job.number,
-                                  doubtful=not clear and job.affordable)
+    def _doubt(self, job: Job) -> None:
+        """Let a job wait for two lanes, behind those with as many steps a period or more: the longest begin first."""
+        job.in_doubt = True
+        insort(self.doubtful, job, key=lambda one: -one.steps)
 
 
 def decided(regime: Regime, before: Regime | None, sure: bool) -> tuple[Regime, bool]:
@@ -189,17 +199,12 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
         return
     refuse_undriven(first.scene)
     jobs = _JobsInBatch(first, starts, stop, draft)
-    while True:
+    jobs.fill()
+    while jobs.jobs:
+        result = jobs.step()
+        if result is not None:
+            yield result
         jobs.fill()
-        undecided = jobs.undecided()
-        if undecided:
-            yield from jobs.decide(undecided)
-        elif not jobs.jobs:
-            return
-        else:
-            result = jobs.step()
-            if result is not None:
-                yield result
 
 
 def confirmed(result: SteadyState, stop: Stop) -> SteadyState:

@@ -38,7 +38,7 @@ class CurvePoint:
     Attributes
     ----------
     frequency : float
-        [Hz]
+        Drive frequency [Hz].
     max_output_force, max_output_force_elastic, max_input_force : float
         Largest forces [N]; where the motion is not periodic, those of the last periods. NaN where the computation
         failed.
@@ -80,7 +80,7 @@ class CurvePoint:
 
     @property
     def error_estimate(self) -> float | None:
-        """Relative error of the output force; None where none is claimed."""
+        """Relative error of the output force; None where none is stated."""
         return self.force_errors.output
 
 

@@ -148,7 +148,7 @@ def block_points(scenes: list[Scene]) -> list[CurvePoint]:
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
     """A draft of the curve from rest, on one core, to be drawn while a knob still moves.
 
-    Coarse steps and few periods: no errors are claimed, and motions that are not periodic by then are unsettled. Empty
+    Coarse steps and few periods: no errors are stated, and motions that are not periodic by then are unsettled. Empty
     for scenes that a batch cannot run. Raises `BadInput` and `Cancelled`.
     """
     if not can_share_batch(scene):

@@ -16,7 +16,7 @@ from ...stop import Stop
 from ..orbit_errors import errors_between
 from .settled import Settled
 
-#: Finest steps, the fixed-step method's over this.
+#: Finest steps: how many of them take the place of one default step.
 _MOST_REFINED = 64
 
 

@@ -19,7 +19,7 @@ def seen(record: np.ndarray) -> Batch:
     """A batch of two-bead chains in one member of which all numbers of the beads were `record`, strobe by strobe."""
     batch = Batch(scene("sec2").evolve(N=2), Stop())
     batch.state.strobes[MEMBER, : len(record), :, 1:-1] = record[:, None, None]
-    batch.state.kept[MEMBER] = batch.state.periods[MEMBER] = len(record)
+    batch.state.strobe_count[MEMBER] = batch.state.periods[MEMBER] = len(record)
     batch.state.y[[1, 2, ROW + 1, ROW + 2], MEMBER] = record[-1]
     return batch
 
@@ -44,13 +44,13 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
     """
     batch = seen(1.0 + 1e-4 * rate ** np.arange(period_end._TEST_ORBITS + 1))
     state = batch.state
-    state.testing[MEMBER], state.slowest[MEMBER], state.last_check[MEMBER, period_end.PERIOD] = 1, 0.9, 1.0
+    state.testing[MEMBER], state.slowest[MEMBER], state.last_check[MEMBER, period_end.CHECK_PERIOD] = 1, 0.9, 1.0
     state.scale[:] = 1e-12, 1e12
     state.before[MEMBER, :, 1:-1] = 1.0
     assert period_end.decayed.py_func(state, MEMBER) == stable
     assert state.testing[MEMBER] == 0 and (state.slowest[MEMBER] > 0.0) == stable
     assert (state.y[1, MEMBER] == 1.0) == stable
-    assert (state.last_check[MEMBER, period_end.PERIOD] == 1.0) == stable, "what was no orbit has no period"
+    assert (state.last_check[MEMBER, period_end.CHECK_PERIOD] == 1.0) == stable, "what was no orbit has no period"
     assert state.scale == pytest.approx(1.0, rel=1e-2)
 
 

@@ -1,0 +1,77 @@
+"""A chain whose drive is given piece by piece: a sampled force on bead 1, or a driver with a given motion.
+
+Fixed steps in w, split where a contact opens or closes. The force is one cubic between two samples, the driver's
+displacement one quadratic. Steps end at the samples, so that the right-hand side is smooth in each of them.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..effects.driver import Moved, driver_displacement, driver_velocity
+from ..effects.given_force import Sampled
+from ..equations.motion import Trajectory, motion
+from ..forces.largest import watch_state
+from ..jit import by_slot, kernel
+from ..samples import first_not_finite, keep
+from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
+from .step import DriveTable, step
+
+
+class DrivePieces(NamedTuple):
+    """A force or a motion between its samples: piece i lasts spans[i] and is taken in substeps[i] steps.
+
+    `coefficients` (I, 4) are those of the force's cubics, (I, 3) those of the displacement's quadratics, constant term
+    first.
+    """
+
+    spans: np.ndarray
+    coefficients: np.ndarray
+    substeps: np.ndarray
+
+
+@by_slot
+def begin_piece(driver, slots, y, workspace):
+    """Evaluate the slope again where the driver's acceleration jumps, for the energy account. Absent: nothing jumps."""
+
+
+@begin_piece.of(Sampled)
+def _(driver, slots, y, workspace):
+    pass
+
+
+@begin_piece.of(Moved)
+def _(driver, slots, y, workspace):
+    motion(slots, driver_displacement(driver, 0.0), driver_velocity(driver, 0.0), y, workspace.k[0], workspace.forces)
+
+
+@kernel
+def run_pieces(method, trajectory, pieces, samples, out):
+    """Run through all pieces and keep the state at every sample, the first one included.
+
+    The trajectory's drive table is empty, so that the force is evaluated at every stage; its step is that of each
+    piece. Returns (status, rows filled).
+    """
+    slots, drive, y, workspace = trajectory
+    bodies = slots.chain.inverse_mass.size
+    taken = 0
+    watch_state(slots, y, workspace.k[0], workspace.forces.e, 0.0, out.log)
+    keep(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
+    for i in range(pieces.spans.size):
+        for q in range(pieces.coefficients.shape[1]):
+            slots.driver.piece[q] = pieces.coefficients[i, q]
+        begin_piece(slots.driver, slots, y, workspace)
+        h = pieces.spans[i] / pieces.substeps[i]
+        here = Trajectory(slots, DriveTable(drive.values, h, h), y, workspace)
+        for j in range(pieces.substeps[i]):
+            left = step(method, here, j, out)
+            watch_state(slots, y, workspace.k[0], workspace.forces.e, left, out.log)
+            taken += 1
+            if taken % STEPS_BETWEEN_STOP_CHECKS == 0 and out.stop[0] != 0:
+                return CANCELLED, i + 1
+        if first_not_finite(y, bodies) != 0:
+            return NOT_FINITE, i + 1
+        keep(slots, i + 1, y, workspace.k[0], workspace.forces.e, samples)
+    return DONE, pieces.spans.size + 1
