@@ -69,10 +69,11 @@ SHORT = {
 OTHER = {name: ["--set", "D=90"] for name in SHORT}
 
 
-def head(out: Path, kind: str, capsys: pytest.CaptureFixture[str], words: list[str]) -> bytes:
-    """The head of the command's folder of blocks, as an interrupted one leaves it."""
+@pytest.fixture(scope="module", params=SHORT)
+def finished(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> tuple[str, Path, bytes]:
+    """A command, its result, and the head of its folder of blocks, as an interrupted one leaves it."""
+    name, out = request.param, tmp_path_factory.mktemp("finished") / "a.h5"
     kept: list[bytes] = []
-
     remove = Kept.remove
 
     def read_and_remove(self: Kept[object]) -> None:
@@ -83,17 +84,17 @@ def head(out: Path, kind: str, capsys: pytest.CaptureFixture[str], words: list[s
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Kept, "remove", read_and_remove)
-        assert main([*words, "--out", str(out)]) == 0
-    capsys.readouterr()
-    return kept[0]
+        assert main([*SHORT[name], "--out", str(out)]) == 0
+    return name, out, kept[0]
 
 
-@pytest.mark.parametrize("name", SHORT)
-def test_a_finished_result_is_looked_at_before_its_blocks(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+def test_a_finished_result_is_looked_at_before_its_blocks(finished: tuple[str, Path, bytes], tmp_path: Path,
+                                                          monkeypatch: pytest.MonkeyPatch,
                                                           capsys: pytest.CaptureFixture[str]) -> None:
     """Killed after the result was written, while its blocks still stand, whole or not: nothing is computed again."""
-    out = tmp_path / "a.h5"
-    content = head(out, name, capsys, SHORT[name])
+    name, result, content = finished
+    out = Path(shutil.copy(result, tmp_path))
+    capsys.readouterr()
     folder_of(out).mkdir()
     (folder_of(out) / f"{name}.json").write_bytes(content)
     before, computed = out.read_bytes(), []
@@ -114,10 +115,11 @@ def test_a_finished_result_is_looked_at_before_its_blocks(name: str, tmp_path: P
         assert out.read_bytes() == before
 
 
-@pytest.mark.parametrize("name", SHORT)
-def test_another_question_is_refused(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    out = tmp_path / "a.h5"
-    content = head(out, name, capsys, SHORT[name])
+def test_another_question_is_refused(finished: tuple[str, Path, bytes], tmp_path: Path,
+                                     capsys: pytest.CaptureFixture[str]) -> None:
+    name, result, content = finished
+    out = Path(shutil.copy(result, tmp_path))
+    capsys.readouterr()
     assert main([*SHORT[name], *OTHER[name], "--out", str(out), "--resume"]) == 2
     assert "give another --out" in capsys.readouterr().err
     folder_of(out).mkdir()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -17,6 +20,12 @@ from granchain_core.scene import scene
 
 #: What is seen from the back row: a part of the picture's height, powers of ten, a part of its width without a line.
 HEIGHT, POWERS, WIDTH = 0.05, 1.0, 0.1
+
+
+@functools.cache
+def computed(picture: Callable[[], Picture]) -> Picture:
+    """A picture, computed once for all tests."""
+    return picture()
 
 
 def ours_and_others(shown: Picture) -> list[tuple[Trace, Trace]]:
@@ -43,7 +52,7 @@ def seen(shown: Picture, one: np.ndarray, other: np.ndarray) -> bool:
 @pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
 def test_a_picture_shows_ours_beside_something_else(case) -> None:  # type: ignore[no-untyped-def]
     assert case.picture is not None
-    shown = case.picture()
+    shown = computed(case.picture)
     assert shown.x_label and shown.y_label and len(shown.traces) >= 2
     for trace in shown.traces:
         assert trace.label and trace.values.shape == shown.x.shape
@@ -64,18 +73,18 @@ def test_what_is_hardly_apart_is_not_seen() -> None:
 
 
 def test_symmetry_holds_the_middle_bead_and_the_loop_does_not() -> None:
-    ours, naive = at_once_picture().traces
+    ours, naive = computed(at_once_picture).traces
     assert np.abs(ours.values).max() == 0.0
     assert np.abs(naive.values).max() > 0.3
 
 
 def test_eulers_last_bead_is_faster_than_the_first_was() -> None:
-    last, _, naive, _ = collisions_picture().traces
+    last, _, naive, _ = computed(collisions_picture).traces
     assert last.values[-1] < 1.0 < 1.2 < naive.values[-1]
 
 
 def test_least_squares_leaves_contacts_open_and_calls_it_success() -> None:
-    shown = preloads_picture()
+    shown = computed(preloads_picture)
     ours, naive = shown.traces
     assert np.allclose(ours.values, 1.0, rtol=1e-12, atol=0.0)
     assert naive.label.endswith("success = True") and (naive.values == 0.0).sum() >= 5 and naive.values.max() > 3.0
@@ -99,13 +108,13 @@ def test_scipys_defaults_round_a_pulse_and_slow_it() -> None:
 
 
 def test_one_step_for_all_throws_the_light_bead_out() -> None:
-    ours, naive = sizes_picture().traces
+    ours, naive = computed(sizes_picture).traces
     ended = np.isnan(naive.values)
     assert np.abs(ours.values).max() < 1.5 and ended[-1] and ended.mean() > 0.5
 
 
 def test_the_free_observer_grows_by_its_multiplier_in_every_solver() -> None:
-    free, founded, *naive = drifting_picture().traces
+    free, founded, *naive = computed(drifting_picture).traces
     rate = np.log10(float(free.label.rpartition(" ")[2]))
     assert np.allclose(np.diff(free.values)[1:], rate, atol=0.01)  # three digits are told
     assert founded.values.max() < -5.5
@@ -131,7 +140,7 @@ def test_a_jump_is_the_limit_of_a_fast_push() -> None:
         force = np.where(gap > 0.0, chain.springs * np.abs(gap) ** 1.5 + chain.damping * (v[:-1] - v[1:]), 0.0)
         return np.concatenate([state[4:], force[:-1] - force[1:]])
 
-    shown = switched_picture()
+    shown = computed(switched_picture)
     ours, naive = (trace.values[2:] for trace in shown.traces)
     times = start + chain.period * shown.x[2:]
     before = solve_ivp(slope, (start - width, start), np.zeros(8), "Radau", rtol=1e-9, atol=1e-12).y[:, -1]
