@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .diagram import Attractor, Attractors, Diagram, attractors, diagram
+    from .driven import Driven, Signal, drive
     from .fit import Fit, fit
-    from .observe import Driven, Observation, Signal, drive, observe
+    from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
     from .orbits import periodic_orbit as orbit
@@ -42,8 +43,8 @@ if TYPE_CHECKING:
     from .state import State
     from .steady.curve.curve import Curve, CurvePoint
     from .steady.curve.resonance_curve import iter_curve, resonance_curve
-    from .steady.settling.recorded import Settled, settled, settling
-    from .steady.settling.recorded import settled as settle
+    from .steady.settling.settle import settle, settled, settling
+    from .steady.settling.settled import Settled
     from .stop import Stop
     from .store import load, save
 
@@ -51,12 +52,13 @@ if TYPE_CHECKING:
 _MODULES = {
     "run.run": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",), "result": ("Cost", "Run"),
     "state": ("State",), "stop": ("Stop",),
-    "steady.settling.recorded": ("Settled", "settled", "settling"), "regime": ("Regime",),
+    "steady.settling.settle": ("settle", "settled", "settling"), "steady.settling.settled": ("Settled",),
+    "regime": ("Regime",),
     "steady.curve.curve": ("Curve", "CurvePoint"),
     "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
     "diagram": ("Attractor", "Attractors", "Diagram", "attractors", "diagram"),
-    "observe": ("Driven", "Observation", "Signal", "drive", "observe"),
+    "driven": ("Driven", "Signal", "drive"), "observe": ("Observation", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
@@ -65,7 +67,7 @@ _MODULES = {
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
 #: Short names and what they stand for.
-_SHORT = {"settle": "settled", "orbit": "periodic_orbit", "branch": "continue_branch"}
+_SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
     "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve",

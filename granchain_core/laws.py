@@ -1,7 +1,7 @@
-"""The damping laws: the name of each in scenes and in words, and its slot class.
+"""The damping laws: the name of each in scenes and in words, its slot class, and the publication to cite for it.
 
-Exponents stand beside the compiled code (kernels/effects/dissipation.py); the list of choices, the scale of D, the
-equation on screen, the names of effects and the reference solutions read this table.
+Exponents are in kernels/effects/dissipation.py, with the compiled code. The choices of the knob, the scale of D, the
+equation on screen, the names of effects, `granchain cite` and the reference solutions read this table.
 """
 
 from __future__ import annotations
@@ -14,11 +14,16 @@ from typing import Any
 
 @dataclass(frozen=True)
 class Law:
-    """The damping force D (δ/δ_r)^a δ̇ of a closed contact: its name, the name of its slot class, and its title."""
+    """The damping force D (δ/δ_r)^a δ̇ of a closed contact.
+
+    Its `name` in scenes, the name of its slot class, its `title` in words, and its `source`, the publication to cite,
+    "" where there is none.
+    """
 
     name: str
     slot_class: str
     title: str
+    source: str
 
     @property
     def slot(self) -> Any:
@@ -48,9 +53,13 @@ class Law:
 
 
 LAWS: dict[str, Law] = {law.name: law for law in (
-    Law("linear", "LinearDashpot", "dashpot"),
-    Law("tsuji", "Tsuji", "Tsuji damping"),
-    Law("kuwabara-kono", "KuwabaraKono", "Kuwabara–Kono damping"),
+    Law("linear", "LinearDashpot", "dashpot", source=""),
+    Law("tsuji", "Tsuji", "Tsuji damping",
+        "Y. Tsuji, T. Tanaka, T. Ishida. Lagrangian numerical simulation of plug flow of cohesionless particles in a "
+        "horizontal pipe. Powder Technology 71, 239–250 (1992)."),
+    Law("kuwabara-kono", "KuwabaraKono", "Kuwabara–Kono damping",
+        "G. Kuwabara, K. Kono. Restitution coefficient in a collision between two spheres. Jpn. J. Appl. Phys. 26, "
+        "1230–1233 (1987)."),
 )}
 
 

@@ -9,6 +9,9 @@ import numpy as np
 from .scene import Scene
 from .tables import Column, Labelled
 
+#: Most recorded values of one motion: samples times beads.
+MOST_RECORDED = 50_000_000
+
 _COLUMNS = {  # by name: (axes, unit, meaning)
     "displacement": (("time", "bead"), "m", "bead displacement from its rest position"),
     "velocity": (("time", "bead"), "m/s", "bead velocity"),

@@ -1,7 +1,6 @@
 """The table of knobs: symbol, unit, range, LaTeX and meaning of each.
 
-Sliders, command line, share links, HDF5 attributes and the docs all read this table, so a fact about a
-parameter stands in one place.
+Sliders, command line, share links and HDF5 attributes read it, and a test compares the pages with it.
 """
 
 from __future__ import annotations

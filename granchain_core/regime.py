@@ -8,6 +8,9 @@ from dataclasses import dataclass
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Those of steady states that never repeat; their errors are not stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
+#: What distances are taken to shrink by per orbit (`Regime.contraction`): |μ|, at most 1 less the first number; a decay
+#: that was observed, at most the second; and the third where none was.
+LEAST_BELOW_1, SLOWEST_DECAY, DECAY_NOT_SEEN = 1e-6, 0.999, 0.5
 
 
 @dataclass(frozen=True)
@@ -79,10 +82,10 @@ class Regime:
 
     @property
     def contraction(self) -> float:
-        """Factor by which a distance shrinks per orbit: |μ|, else the observed decay, else a half."""
+        """Factor by which a distance shrinks per orbit: |μ|, else the observed decay, else `DECAY_NOT_SEEN`."""
         if self.multiplier is not None:
-            return min(1.0 - 1e-6, self.multiplier)
-        return min(0.999, self.decay or 0.5)
+            return min(1.0 - LEAST_BELOW_1, self.multiplier)
+        return min(SLOWEST_DECAY, self.decay or DECAY_NOT_SEEN)
 
     @property
     def evidence(self) -> str:

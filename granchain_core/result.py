@@ -15,8 +15,20 @@ from .motion import Motion, motion_columns
 from .regime import Regime
 from .scene import Scene
 from .scene.validity import overlap_warnings
+from .state import State
 from .tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
 from .tables.provenance import Attribute
+
+#: Where a run can have begun, its `start`: at rest, with the initial velocities of its scene, or in a given state.
+AT_REST, INITIAL_VELOCITY, GIVEN_STATE = "rest", "initial velocity", "given state"
+RUN_STARTS = (AT_REST, INITIAL_VELOCITY, GIVEN_STATE)
+
+
+def start_words(scene: Scene, start: State | None) -> str:
+    """Where a motion of `scene` from `start` begins, one of `RUN_STARTS`; without a start it is the scene's own."""
+    if start is not None:
+        return GIVEN_STATE
+    return INITIAL_VELOCITY if scene.moves_at_start else AT_REST
 
 
 @dataclass(frozen=True)
@@ -79,11 +91,11 @@ class Jumps:
         return self.time[mine], self.force[mine]
 
     def axis(self) -> dict[str, Column]:
-        """Their numbers."""
+        """The axis of the jumps: their numbers, from 0."""
         return axis("jump", np.arange(len(self.time)), "1", "number of the closing at which a contact force jumps")
 
     def columns(self) -> dict[str, Column]:
-        """Their times, contacts and forces as columns of a table."""
+        """Times, contacts and forces of the jumps as columns of a table."""
         more = {"missing": self.missing, "unresolved": self.unresolved}
         return {"jump_time": Column(self.time, ("jump",), "s", "time at which a contact closes in motion", more),
                 "jump_contact": Column(self.contact, ("jump",), "1", "contact that closes"),
@@ -164,7 +176,7 @@ class Run(Motion):
     status : str
         "done", "accuracy-not-reached" or "over-budget".
     start : str
-        Where the motion began: "rest", "initial velocity" or "given state".
+        Where the motion began, one of `RUN_STARTS`: "rest", "initial velocity" or "given state".
     cost : Cost
         Computing time, steps and evaluations.
     jumps : Jumps
@@ -195,7 +207,7 @@ class Run(Motion):
     error_estimate: float | None
     energy_residual: float | None
     cost: Cost
-    start: str = "rest"
+    start: str = AT_REST
     force_errors: ForceErrors = ForceErrors()
     jumps: Jumps = field(default_factory=Jumps)
 
@@ -215,9 +227,9 @@ class Run(Motion):
     def _single(self) -> dict[str, Column]:
         """Largest forces, errors and regime: columns without an axis."""
         forces = np.array([getattr(self, name) for name in MAXIMA])
+        kinds = ("input", "output", "elastic output")
         errors = {name: Column(np.array(error), (), "1", f"relative error of the largest {force} force, NaN if unknown")
-                  for name, error, force in zip(ERRORS, self.force_errors.row, ("input", "output", "elastic output"),
-                                                strict=True)}
+                  for name, error, force in zip(RUN_ERRORS, self.force_errors.row, kinds, strict=True)}
         return {**force_columns(forces, (), "over the recorded time"), **errors,
                 "error_estimate_displacement": Column(
                     np.array(or_nan(self.error_estimate)), (), "1",
@@ -234,7 +246,7 @@ class Run(Motion):
                 "energy_residual": or_nan(self.energy_residual), "samples_per_period": self.samples,
                 "cost": json.dumps(asdict(self.cost)), "regime": json.dumps(asdict(self.regime)),
                 **{name: getattr(self, name) for name in MAXIMA},
-                **dict(zip(ERRORS, self.force_errors.row, strict=True))}
+                **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 
     def summary(self) -> list[str]:
         """Regime, largest forces and errors."""
@@ -244,7 +256,7 @@ class Run(Motion):
 
 
 #: Attributes with the relative errors of a run's largest forces.
-ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
+RUN_ERRORS = ("error_estimate_input", "error_estimate_output", "error_estimate_elastic")
 
 
 def said_forces(found: HasForces) -> list[str]:
@@ -268,8 +280,10 @@ def residual(energy: np.ndarray | None) -> float | None:
 
 
 def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime, error: float | None,
-             cost: Cost, status: str = "done", force_errors: np.ndarray | None = None) -> Run:
+             cost: Cost, *, start: str, status: str = "done", force_errors: np.ndarray | None = None) -> Run:
     """The `Run` of recorded samples; time counts from drive phase 0, `first_sample` being the index of row 0.
+
+    `start` is where the motion began, one of `RUN_STARTS`.
 
     The arrays of `samples` become the run's and are scaled in place: of a long chain they have hundreds of megabytes,
     and copies took up to a third of a second, in which the computation could not be cancelled.
@@ -288,7 +302,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
         drive_displacement=scene.drive_amplitude * np.sin(2 * np.pi * inside / engine.samples),
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
         status=status, regime=regime, error_estimate=error, energy_residual=residual(samples.energy), cost=cost,
-        force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
+        start=start, force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
     )
 
 

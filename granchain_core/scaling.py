@@ -40,7 +40,7 @@ _DAMPING_LIMIT = 1.39
 #: The largest speed of a bead over that of what pushes it: a light bead leaves a heavy one twice as fast.
 _FASTEST = 2.0
 #: More steps than this in one drive period are refused: one period would take a good part of a minute.
-MOST_STEPS = 50_000_000
+MOST_STEPS_PER_PERIOD = 50_000_000
 
 
 @dataclass(frozen=True)
@@ -181,11 +181,11 @@ class ScaledChain:
     def steps_per_period(self, multiple_of: int = 1) -> int:
         """Steps of the fixed-step method in one period, a multiple of `multiple_of`."""
         steps = max(multiple_of, math.ceil(self.period / self.step / multiple_of) * multiple_of, 16)
-        if steps > MOST_STEPS:
+        if steps > MOST_STEPS_PER_PERIOD:
             raise BadInput(
                 f"drive frequency f = {self.scene.f:g} Hz is so far below the chain's own rate that one period takes "
-                f"{steps:.1e} steps; at most {MOST_STEPS:.0e} are allowed: the nearest valid frequency is about "
-                f"{self.scene.f * steps / MOST_STEPS:.3g} Hz."
+                f"{steps:.1e} steps; at most {MOST_STEPS_PER_PERIOD:.0e} are allowed: the nearest valid frequency is "
+                f"about {self.scene.f * steps / MOST_STEPS_PER_PERIOD:.3g} Hz."
             )
         return math.ceil(steps / multiple_of) * multiple_of
 

@@ -29,24 +29,24 @@ from .orbits.branch.axis import KnobAxis
 from .orbits.branch.equations import BranchEquations
 from .orbits.branch.point import record_along
 from .orbits.branch.quick import quick_steps
-from .orbits.flow import StroboscopicMap
+from .orbits.stroboscopic_map import StroboscopicMap
+from .pieces import (
+    ACCURACY_KERNELS,
+    ADAPTIVE_KERNELS,
+    BRANCH_KERNELS,
+    COST_ACCOUNT_KERNELS,
+    COST_KERNELS,
+    CURVE_KERNELS,
+    FIXED_STEP_KERNELS,
+    OBSERVER_KERNELS,
+    ORBIT_KERNELS,
+)
 from .scaling import scale_chain
 from .scene import Scene, scene
 from .scene.effects import effects_of
 from .state import rest
 from .steady.lyapunov import exponents
 from .stop import Stop
-
-#: Names of the pieces of one structure's kernels.
-CURVE = "curve"
-ADAPTIVE = "adaptive"
-FIXED_STEP = "fixed step"
-ORBIT = "orbit"
-BRANCH = "branch"
-OBSERVER = "observer"
-ACCURACY = "accuracy"
-COST = "cost"
-COST_ACCOUNT = "cost account"
 
 
 def structure(shown: Scene) -> str:
@@ -101,7 +101,7 @@ def _branch(short: Scene) -> None:
 def _observer(short: Scene) -> None:
     """The motion of a chain with its observer, and the observer's tangents."""
     Pair(short, 2).engine.record(2)
-    if not short.cuts_tension:  # such a scene has no multipliers to compute (orbits/flow.py)
+    if not short.cuts_tension:  # such a scene has no multipliers to compute (orbits/stroboscopic_map.py)
         StroboscopicMap(short, 1)(np.zeros(2 * short.N), observer=True)
 
 
@@ -117,9 +117,10 @@ def _cost(balance: bool) -> Callable[[Scene], None]:
 
 #: Every piece with the function that compiles it by a short run, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
-    CURVE: _curve, ADAPTIVE: _engine(adaptive_setting(1e-3)), FIXED_STEP: _engine(fixed_step_setting()),
-    ORBIT: _orbit, BRANCH: _branch, OBSERVER: _observer,
-    ACCURACY: compile_methods, COST: _cost(balance=False), COST_ACCOUNT: _cost(balance=True),
+    CURVE_KERNELS: _curve, ADAPTIVE_KERNELS: _engine(adaptive_setting(1e-3)),
+    FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
+    ORBIT_KERNELS: _orbit, BRANCH_KERNELS: _branch, OBSERVER_KERNELS: _observer,
+    ACCURACY_KERNELS: compile_methods, COST_KERNELS: _cost(balance=False), COST_ACCOUNT_KERNELS: _cost(balance=True),
 }
 
 
@@ -131,7 +132,7 @@ def compile_piece(shown: Scene, piece: str) -> None:
             _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 
-def is_warm(shown: Scene, pieces: Iterable[str] = (FIXED_STEP, ADAPTIVE)) -> bool:
+def is_warm(shown: Scene, pieces: Iterable[str] = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)) -> bool:
     """Whether these pieces of the scene's structure have been compiled on this machine."""
     if CACHE_FOLDER is None:
         return False

@@ -37,10 +37,6 @@ def announce_compiling() -> None:
     event.register("numba:compile", Listener())
 
 
-#: Pieces of kernels by their names in granchain_core/warm.py, whose import takes a sixth of a second.
-FIXED_STEP, ORBIT = "fixed step", "orbit"
-
-
 @contextmanager
 def compiling_beside(chosen: Scene, *pieces: str) -> Iterator[None]:
     """When Numba begins to compile in this block, compile these pieces (granchain_core/warm.py) in another process.

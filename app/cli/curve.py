@@ -8,9 +8,10 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from granchain_core import Amplitude, BadInput, Scene
+from granchain_core.pieces import FIXED_STEP_KERNELS
 
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
-from .compiling import FIXED_STEP, compiling_beside
+from .compiling import compiling_beside
 from .data_options import add_amplitude, chosen_amplitude
 from .keeping import add_resume, finished, keeping
 from .options import add_result, add_scheduler, number, scheduler_of, whole
@@ -47,7 +48,7 @@ def do(arguments: argparse.Namespace) -> None:
     if low > high:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
     amplitude = chosen_amplitude(arguments, chosen)
-    with compiling_beside(chosen, FIXED_STEP):
+    with compiling_beside(chosen, FIXED_STEP_KERNELS):
         swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points), amplitude)
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", swept)
     if arguments.json:

@@ -14,13 +14,14 @@ import numpy as np
 from granchain_core import BadInput, Cancelled
 from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
 from granchain_core.diagram.blocks import Blocks
-from granchain_core.diagram.cells import ERRORS, REGIMES, cell_of
+from granchain_core.diagram.cells import CELL_REGIMES, ERRORS, cell_of
 from granchain_core.diagram.grid import MOST_CELLS
+from granchain_core.pieces import FIXED_STEP_KERNELS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
 
 from .common import chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
-from .compiling import FIXED_STEP, compiling_beside
+from .compiling import compiling_beside
 from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
 from .keeping import add_resume, finished, keeping
@@ -80,7 +81,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
     done = [0]
     with scheduler_of(arguments) as client:
         blocks = Blocks.open(grid, arguments.out, arguments.resume)
-        with (compiling_beside(grid.scene, FIXED_STEP),
+        with (compiling_beside(grid.scene, FIXED_STEP_KERNELS),
               keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells")):
             found, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
     with unbroken(arguments.out):
@@ -131,7 +132,7 @@ def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[n
 
 
 def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
-    counts = {name: int((found.cells["regime"] == code).sum()) for code, name in enumerate(REGIMES)}
+    counts = {name: int((found.cells["regime"] == code).sum()) for code, name in enumerate(CELL_REGIMES)}
     inward, worst, elastic = (_largest(found.cells[name]) for name in ERRORS)
     if arguments.json:
         grid = found.grid

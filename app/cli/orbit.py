@@ -9,14 +9,15 @@ import numpy as np
 
 from granchain_core import BadInput, Scene
 from granchain_core.integrate import State
+from granchain_core.pieces import ORBIT_KERNELS
 
 from .common import chosen_scene, in_background, show_json
-from .compiling import ORBIT, compiling_beside
+from .compiling import compiling_beside
 from .options import add_json, add_scene, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
 
-STARTS = ("settled", "rest", "random")
+ORBIT_STARTS = ("settled", "rest", "random")
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -40,7 +41,7 @@ def do(arguments: argparse.Namespace) -> None:
     check_picture(arguments.picture)
     chosen = chosen_scene(arguments)
     start = _start(chosen, arguments.start, arguments.seed)
-    with compiling_beside(chosen, ORBIT):
+    with compiling_beside(chosen, ORBIT_KERNELS):
         found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop))
     write_picture(arguments.picture, f"Multipliers of {chosen.name}", found)
     if arguments.json:

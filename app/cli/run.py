@@ -10,6 +10,7 @@ from typing import Any
 from granchain_core import BadInput, Run, Scene
 from granchain_core.integrate import method_for
 from granchain_core.regime import Regime
+from granchain_core.result import start_words
 from granchain_core.run.budget import BUDGET
 
 from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
@@ -101,7 +102,7 @@ def _is_asked_for(found: Run, chosen: Scene, arguments: argparse.Namespace) -> b
     rows = arguments.record * arguments.samples + 1
     periods = round(float(found.time[0]) / chosen.period)
     return (found.scene.digest, found.start, found.samples, len(found.time), periods, found.cost.method) == (
-        chosen.digest, "initial velocity" if chosen.moves_at_start else "rest", arguments.samples, rows,
+        chosen.digest, start_words(chosen, None), arguments.samples, rows,
         arguments.periods, method)
 
 

@@ -13,8 +13,8 @@ from panel.io import unlocked
 
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Difference, Measured, stated_features
+from granchain_core.pieces import CURVE_KERNELS
 from granchain_core.steady.curve.resonance_curve import draft_curve
-from granchain_core.warm import CURVE
 
 from ..pictures.curve import WORDS
 from ..serve.compiler import COMPILER, PICTURE_PIECES
@@ -93,7 +93,7 @@ class CurveController:
             return
         self._chapters.forget()
         self.changed(scene)
-        if self._visible and self._wanted["rest"] and self._affordable(scene) and COMPILER.has(scene, CURVE):
+        if self._visible and self._wanted["rest"] and self._affordable(scene) and COMPILER.has(scene, CURVE_KERNELS):
             self._drafts.submit(partial(self._draft, scene, self._begun))
 
     @staticmethod

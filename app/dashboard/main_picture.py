@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from granchain_core import Cancelled, OverBudget, Run, Scene, Settled, State, settling
-from granchain_core.warm import FIXED_STEP
+from granchain_core.pieces import FIXED_STEP_KERNELS
 
 from ..frames import Frames, prepared_frames, samples_for
 from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
@@ -162,12 +162,12 @@ class Pictures:
 
     def _await_live_kernels(self, scene: Scene, stop: SchedulerSlot) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
-        if not COMPILER.has(scene, FIXED_STEP):
+        if not COMPILER.has(scene, FIXED_STEP_KERNELS):
             words = compiling_words("the kernels for this set of effects", 10).capitalize()
             self._host.next_tick(self._note, f"{words}; the picture then appears by itself.")
             for piece in PICTURE_PIECES:
                 COMPILER.ask(scene, piece)
-            if not COMPILER.await_piece(scene, FIXED_STEP, stop):
+            if not COMPILER.await_piece(scene, FIXED_STEP_KERNELS, stop):
                 raise Cancelled
 
     def _live_step(self, samples: int | None, stop: SchedulerSlot) -> Iterator[LivePicture]:

@@ -25,7 +25,7 @@ from granchain_core.experiment import (
 )
 from granchain_core.experiment.labelled import HDF5
 from granchain_core.experiment.measured import MOST_BYTES, MOST_ROWS
-from granchain_core.experiment.reader import KINDS
+from granchain_core.experiment.reader import TABLE_KINDS
 from granchain_core.experiment.units import QUANTITIES, UNITS
 from granchain_core.scene import ASSETS
 from granchain_core.scene.driven import refuse_undriven
@@ -212,7 +212,7 @@ def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
             found = read_experiment(path, answers)
     else:
         try:
-            found = read_data(content, answers, KINDS, name, MOST_BYTES, MOST_ROWS)
+            found = read_data(content, answers, TABLE_KINDS, name, MOST_BYTES, MOST_ROWS)
         except Unclear:  # asked again for a curve alone, which is what the page offers
             found = read_data(content, answers, ("curve",), name, MOST_BYTES, MOST_ROWS)
     if isinstance(found, Shaker):

@@ -25,8 +25,7 @@ from bokeh.plotting import figure
 from bokeh.transform import factor_cmap, transform
 
 from granchain_core.diagram import Axis, Diagram, Grid
-from granchain_core.diagram.cells import REGIMES as NAMES
-from granchain_core.diagram.cells import empty_cells
+from granchain_core.diagram.cells import CELL_REGIMES, empty_cells
 
 from ..format import in_words, short_error
 from .axes import Scale, knob_scale
@@ -182,7 +181,7 @@ def category(cell: np.ndarray) -> str:
 
 
 def _category(regime: int, period: int) -> str:
-    return "failed" if NAMES[regime] == "failed" else regime_key(NAMES[regime], period)
+    return "failed" if CELL_REGIMES[regime] == "failed" else regime_key(CELL_REGIMES[regime], period)
 
 
 def cell_words(grid: Grid, cell: np.ndarray) -> str:
@@ -190,7 +189,7 @@ def cell_words(grid: Grid, cell: np.ndarray) -> str:
     i, j = divmod(int(cell["number"]), grid.shape[1])
     place = ", ".join(f"{axis.values[at] / scale.factor:.4g} {scale.unit or axis.knob}"
                       for axis, at, scale in zip((grid.x, grid.y), (j, i), _scales(grid), strict=True))
-    name = NAMES[int(cell["regime"])]
+    name = CELL_REGIMES[int(cell["regime"])]
     if name == "failed":
         return f"{place}: computation failed"
     regime = f"period {int(cell['period'])}" if cell["period"] else name

@@ -16,8 +16,9 @@ from concurrent.futures import Future, wait
 from pathlib import Path
 
 from granchain_core import Scene
+from granchain_core.pieces import ADAPTIVE_KERNELS, CURVE_KERNELS, FIXED_STEP_KERNELS
 from granchain_core.stop import Stop
-from granchain_core.warm import ADAPTIVE, CURVE, FIXED_STEP, compile_piece, is_warm, structure
+from granchain_core.warm import compile_piece, is_warm, structure
 
 from .delays import STOP_POLL
 from .queues import COMPILATIONS, LOADING
@@ -25,7 +26,7 @@ from .queues import COMPILATIONS, LOADING
 log = logging.getLogger("granchain")
 
 #: The kernels of the main picture and of its curve.
-PICTURE_PIECES = (FIXED_STEP, ADAPTIVE, CURVE)
+PICTURE_PIECES = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, CURVE_KERNELS)
 _ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -12,7 +12,7 @@ from granchain_core.accuracy import Row
 from granchain_core.accuracy.compared_methods import label
 from granchain_core.integrate import METHODS, Setting, method_for
 from granchain_core.run.live import LIVE_SETTING
-from granchain_core.steady.settling.relax import orbit_setting
+from granchain_core.steady.settling.refine_orbit import orbit_setting
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class PlacedSetting:
 
 
 def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
-    """The setting of the last computation behind the picture, by the rule of `granchain_core.steady.settling.relax`."""
+    """The setting of the last computation behind the picture, by the rule of steady/settling/refine_orbit.py."""
     if live:
         return LIVE_SETTING
     if picture is None:

@@ -6,13 +6,14 @@ import csv
 import io
 import json
 import pprint
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from granchain_core import CurvePoint, Run, Scene, State, __version__
+from granchain_core.tables.words import evidence_columns
 
 from ..frames import jumps_of
 from .session import without_frequency
@@ -54,16 +55,23 @@ def trains_csv(run: Run) -> str:
 
 
 def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
-    """The resonance curves, one row a point: largest forces, and the stated relative error of the output force."""
-    titles = ["start", "frequency_Hz", "force_N", "elastic_part", "at_the_driver", "claim", "regime", "period"]
+    """The resonance curves, one row a point: largest forces, and the regime with its evidence.
 
-    def row(start: str, point: CurvePoint) -> list[str]:
+    `claim` is the stated relative error of the output force; a cell is empty where a number is not known.
+    """
+    told = [(start, point) for start, points in curves.items() for point in points]
+    evidence = evidence_columns([point.regime for _, point in told], "frequency")
+    titles = ["start", "frequency_Hz", "force_N", "elastic_part", "at_the_driver", "claim", "regime", "period",
+              *evidence]
+
+    def row(start: str, point: CurvePoint, known: Iterable[float]) -> list[str]:
         claim = point.force_errors.output
         return [start, repr(point.frequency), repr(point.max_output_force), repr(point.max_output_force_elastic),
                 repr(point.max_input_force), "" if claim is None else repr(claim), point.regime.name,
-                str(point.regime.period or "")]
+                str(point.regime.period or ""), *("" if np.isnan(one) else repr(one) for one in known)]
 
-    return _csv(titles, (row(start, point) for start, points in curves.items() for point in points))
+    rows = zip(*(column.values.tolist() for column in evidence.values()), strict=True)
+    return _csv(titles, (row(start, point, known) for (start, point), known in zip(told, rows, strict=True)))
 
 
 def script(screen: Screen) -> str:

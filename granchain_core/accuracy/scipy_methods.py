@@ -12,6 +12,7 @@ import numpy as np
 
 from ..errors import Cancelled, NumbersFailed
 from ..integrate import Counts
+from ..integrate.adaptive import LEAST_STEPS_PER_PERIOD
 from ..kernels.dop853.step import evaluate
 from ..kernels.status import EVALUATIONS
 from ..scaling import ScaledChain, scale_chain
@@ -43,8 +44,6 @@ SOLVERS: dict[str, Solver] = {
                "Hairer, Nørsett & Wanner 1993, section II.5"),
     )
 }
-#: The largest step is a period over this number, so that the driver is never stepped over.
-_LEAST_STEPS = 16
 #: Least relative tolerance SciPy takes without changing it.
 _LEAST_RTOL = 3e-14
 #: A contact event nearer to a step's start than this fraction of the period is the event that the step started from.
@@ -52,7 +51,10 @@ _SAME_EVENT = 1e-9
 
 
 class Motion:
-    """The beads' equations as SciPy wants them: a function of time and one flat array (u_1..u_N, w_1..w_N)."""
+    """The beads' equations as SciPy wants them: a function of time and one flat array (u_1..u_N, w_1..w_N), (2N,).
+
+    All is scaled, and time is counted from the start of the period.
+    """
 
     def __init__(self, scaled: ScaledChain, stop: Stop) -> None:
         self.scaled = scaled
@@ -62,12 +64,12 @@ class Motion:
         self._whole, self._slope, self._forces = np.zeros(scaled.size), np.zeros(scaled.size), scaled.forces()
 
     def inner(self, y: np.ndarray) -> np.ndarray:
-        """The beads' part of a whole state array."""
+        """The beads' part (2N,) of a whole state array (2(N + 2),)."""
         row = self._row
         return np.concatenate([y[1 : row - 1], y[row + 1 : 2 * row - 1]])
 
     def __call__(self, t: float, inner: np.ndarray) -> np.ndarray:
-        """Slope at local time t of the period."""
+        """Slope (2N,) at time t of the period."""
         row, whole = self._row, self._whole
         self.evaluations += 1
         whole[1 : row - 1], whole[row + 1 : 2 * row - 1] = inner[: row - 2], inner[row - 2 :]
@@ -85,7 +87,7 @@ class Motion:
 
 def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: int, stop: Stop | None = None,
           located: bool = False) -> tuple[np.ndarray, Counts]:
-    """Scaled displacements (rows, N) from rest at `samples` a period, both ends; atol = rtol = tolerance.
+    """Scaled displacements (periods · samples + 1, N) from rest at `samples` a period; atol = rtol = tolerance.
 
     Solved period by period, so that the drive phase stays exact; with `located` the solver is also started anew
     wherever a contact opens or closes, as a careful user would do it. Raises `NumbersFailed` and `Cancelled`.
@@ -108,7 +110,10 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
 
 def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray, samples: int,
             located: bool) -> tuple[np.ndarray, np.ndarray]:
-    """One drive period: the state at its end and the displacements at its samples, the start left out."""
+    """One drive period from the state `inner` (2N,): the state at its end, and the displacements (samples, N).
+
+    The start is no sample. Raises `NumbersFailed` and `Cancelled`.
+    """
     from scipy import integrate
 
     period, n = motion.scaled.period, len(inner) // 2
@@ -117,7 +122,7 @@ def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray,
 
     def start(t: float, state: np.ndarray, end: float) -> Any:
         make = getattr(integrate, solver.name)
-        return make(motion, t, state, end, max_step=period / _LEAST_STEPS, atol=tolerance,
+        return make(motion, t, state, end, max_step=period / LEAST_STEPS_PER_PERIOD, atol=tolerance,
                     rtol=max(tolerance, _LEAST_RTOL))
 
     one, event = start(0.0, inner, period), period
@@ -145,7 +150,10 @@ def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray,
 
 
 def _first_event(motion: Motion, dense: Any, one: Any, before: np.ndarray) -> float:
-    """When the first contact opens or closes inside the step just taken; infinite where none does."""
+    """Scaled time at which the first contact opens or closes inside the step just taken; infinite where none does.
+
+    `dense` is the step's interpolant, `one` the solver after it, and `before` the state (2N,) where it began.
+    """
     from scipy.optimize import brentq
 
     changed = (motion.overlaps(one.t_old, before) > 0.0) != (motion.overlaps(one.t, one.y) > 0.0)

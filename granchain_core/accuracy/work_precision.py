@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..integrate import METHODS, Engine, Setting, adaptive_setting
+from ..integrate.stated import relative_difference
 from ..scene import Scene
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, provenance
@@ -294,4 +295,4 @@ def _distance(moved: np.ndarray, exact: np.ndarray) -> float:
     """Largest displacement error over the largest displacement; infinite where the method did not reach the end."""
     if not np.isfinite(moved).all():
         return float("inf")
-    return float(np.abs(moved - exact).max() / np.abs(exact).max())
+    return relative_difference(exact, moved)

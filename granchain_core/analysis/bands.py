@@ -30,8 +30,9 @@ def bands(scene: Scene) -> list[tuple[float, float]]:
     Returns
     -------
     list of (float, float)
-        Lowest and highest frequency of each band [Hz], ascending, a band for each bead of the pattern. The upper edge
-        of the last band is the cut-off.
+        Lowest and highest frequency of each band [Hz], ascending, a band for each bead of the unit cell: the pattern,
+        repeated to an even number of beads where `dimer` makes every second bead another one. The upper edge of the
+        last band is the cut-off.
 
     Raises
     ------

@@ -20,9 +20,9 @@ import numpy as np
 from ..errors import check_range
 from ..integrate import State
 from ..integrate.methods import ADAPTIVE
-from ..orbits.flow import StroboscopicMap
+from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene
-from ..steady.settling.nearby_orbit import MOST_BEADS
+from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, or_nan, provenance
@@ -189,7 +189,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     True
     """
     check_range("periods =", periods, _BLOCKS, MOST_PERIODS)
-    check_range("N =", scene.N, 1, MOST_BEADS)
+    check_range("N =", scene.N, 1, MOST_BEADS_WITH_MULTIPLIERS)
     stroboscopic_map = StroboscopicMap(scene, 1, stop)
     x = stroboscopic_map.inner(run_until_settled(scene, start, stop).engine.y)
     size = len(x)

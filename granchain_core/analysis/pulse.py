@@ -56,7 +56,8 @@ class Pulse(Labelled):
     speed : numpy.ndarray, shape (N - 1,)
         Speed of the maximum from the previous contact to the next one [beads/s]; NaN at both ends.
     width : numpy.ndarray, shape (N - 1,)
-        Time for which the force is above half of its maximum, times the speed: the width at half height [beads].
+        Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN at
+        both ends.
     velocity : numpy.ndarray, shape (N,)
         Largest velocity of every bead until the pulse has passed it [m/s].
 

@@ -83,7 +83,7 @@ class Spectrum(Labelled):
             "phase": Column(self.phase, along, "rad", "phase of the cosine, counted from drive phase 0")}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Force, period and aliasing, and those of its run."""
+        """Force, period, aliasing and resolution, and the attributes of its run."""
         return {**self.run.attributes(), "force": self.force, "period": self.period or 0, "aliasing": self.aliasing,
                 "resolution": self.resolution}
 
@@ -103,7 +103,7 @@ class Transfer(Labelled):
     Attributes
     ----------
     frequency : numpy.ndarray, shape (M,)
-        Lines at which the input force has at least 1e-6 of its largest part [Hz].
+        Lines at which the input force is above 1e-6 of its largest part and above twice its `aliasing` [Hz].
     gain, phase : numpy.ndarray, shape (M,)
         |H|, and its argument [rad]: negative where the output is late.
     run : Run
@@ -135,7 +135,7 @@ class Transfer(Labelled):
             "phase": Column(self.phase, along, "rad", "phase of the output less that of the input")}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Those of its run."""
+        """The attributes of its run."""
         return self.run.attributes()
 
     def summary(self) -> list[str]:
@@ -163,7 +163,8 @@ def spectrum(run: Run, force: str = "output") -> Spectrum:
     Raises
     ------
     BadInput
-        Another force, less than a period recorded, or fewer than four samples a period.
+        Another force; fewer than four samples a drive period, or an odd number; less than one period of the motion
+        recorded, or not whole drive periods.
 
     Examples
     --------

@@ -20,7 +20,7 @@ from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..scene import Scene
 from ..steady.batch.threads import on_all_cores
-from ..steady.curve.order import STARTS, coarse_first
+from ..steady.curve.order import CURVE_STARTS, coarse_first
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, provenance, regime_columns
@@ -161,8 +161,8 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
     knobs = [name for name, quantity in QUANTITIES.items() if quantity.is_continuous]
     if knob not in knobs:
         raise unknown_name("knob of a strobe diagram", knob, knobs)
-    if start not in STARTS:
-        raise unknown_name("start", start, STARTS)
+    if start not in CURVE_STARTS:
+        raise unknown_name("start", start, CURVE_STARTS)
     if not 1 <= len(values) <= MOST_VALUES:
         raise BadInput(f"A strobe diagram has 1 to {MOST_VALUES} values of its knob, not {len(values)}.")
     check_range("keep =", keep, 1, MOST_STROBES)

@@ -19,12 +19,12 @@ from ..result import ForceErrors
 from ..scene import Scene
 from ..state import rest
 from ..steady.batch.job import Start
-from ..steady.regime import grows, is_neutral
+from ..steady.regime_criteria import grows, is_neutral
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .attractor import Attractor, Attractors, Origin
 from .compute import settle_on_all_cores
-from .sameness import LIVE_SETTING, Found, found, merged
+from .sameness import SECTION_SETTING, Found, found, merged
 
 #: Frequencies of a sweep before the one asked for.
 _SWEEP = 8
@@ -45,8 +45,8 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
                progress: Callable[[float], None] | None = None) -> Attractors:
     """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
-    Random states are uniform in a box of displacements and velocities, 1.5 times those of the motion from rest;
-    the shares refer to this box (docs/diagram.md).
+    Random states are uniform in a box of displacements and velocities, 1.5 times the largest of the motion from rest,
+    and at least A0 and 2π f A0; the shares refer to this box (docs/diagram.md).
 
     Parameters
     ----------
@@ -122,7 +122,7 @@ def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
     u, v = orbit.state.displacement, orbit.state.velocity
     for one in group:
         shape = np.random.default_rng(one.result.number).standard_normal((2, len(u)))
-        engine = Engine(orbit.scene, LIVE_SETTING, 1, stop=stop)
+        engine = Engine(orbit.scene, SECTION_SETTING, 1, stop=stop)
         engine.start(State(u + _BESIDE * np.abs(u).max() * shape[0], v + _BESIDE * np.abs(v).max() * shape[1]))
         engine.periods(_RUN_ON)
         yield Start(orbit.scene, engine.state, one.result.number)
@@ -163,7 +163,7 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
 
 def _run_on(scene: Scene, state: State, stop: Stop | None) -> tuple[State, np.ndarray, float]:
     """State after `_PASS` periods by the fixed-step method, scaled strobes on the way, the unit of velocity [m/s]."""
-    engine = Engine(scene, LIVE_SETTING, 1, stop=stop)
+    engine = Engine(scene, SECTION_SETTING, 1, stop=stop)
     engine.start(state)
     strobes, _ = engine.periods(_PASS)
     return engine.state, strobes, engine.scaled.scales.velocity
@@ -184,8 +184,8 @@ def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
 def _regime(regimes: list[Regime]) -> Regime:
     """The regime of a group, of irregular motions by the mean of their Lyapunov exponents with its standard error.
 
-    The rule is that of steady/regime.py. The error that falls as 1/periods is alike in all of them, and their mean
-    does not reduce it: an exponent counts as zero within the error of a single one.
+    The rule is that of steady/regime_criteria.py. The error that falls as 1/periods is alike in all of them, and their
+    mean does not reduce it: an exponent counts as zero within the error of a single one.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     if regimes[0].period is not None or not known:

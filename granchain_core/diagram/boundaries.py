@@ -17,7 +17,7 @@ from ..errors import BadInput, NumbersFailed
 from ..orbits import Orbit, periodic_orbit
 from ..stop import Stop
 from .boundary import BoundaryPoint, boundary_curves, boundary_point
-from .cells import REGIMES, Diagram
+from .cells import CELL_REGIMES, Diagram
 
 #: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
@@ -80,7 +80,7 @@ def boundaries(found: Diagram, rows: Iterable[int] | None = None, values: Iterab
 def _pairs(found: Diagram, row: int) -> Iterator[_Pair]:
     """Neighbours in a row of which one is periodic and the other something else."""
     width = found.grid.shape[1]
-    quasi = REGIMES.index("quasi-periodic")
+    quasi = CELL_REGIMES.index("quasi-periodic")
     for column in range(width - 1):
         numbers = row * width + column, row * width + column + 1
         for inside, outside in (numbers, numbers[::-1]):

@@ -23,13 +23,13 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
 from ..integrate import State
-from ..orbits.flow import StroboscopicMap
+from ..orbits.branch.special import BIFURCATIONS
+from ..orbits.stroboscopic_map import StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene
 from ..stop import Stop
 from .grid import KNOBS
 
-KINDS = ("fold", "period_doubling", "neimark_sacker")
 #: How exactly the critical multiplier meets its condition; the map's own tangents are good to about 1e-7.
 _MET = 1e-6
 #: Residual at which an orbit is found.
@@ -158,8 +158,8 @@ def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: i
 
 
 def _check(scene: Scene, kind: str, x: str, y: str) -> None:
-    if kind not in KINDS:
-        raise unknown_name("kind of boundary", kind, KINDS)
+    if kind not in BIFURCATIONS:
+        raise unknown_name("kind of boundary", kind, BIFURCATIONS)
     for knob in (x, y):
         if knob not in KNOBS:
             raise unknown_name("knob for a boundary", knob, KNOBS)
@@ -263,7 +263,10 @@ def _stepped(scene: Scene, kind: str, way: list[BoundaryPoint], end: float, peri
 
 
 def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
-    """The direction along which a branch passes its fold: the null vector of the map's derivative less one."""
+    """The direction (2N + 1,) of state and knob along which a branch passes its fold, from the fold's state (2N,).
+
+    It is the null vector of the map's derivative less one; the knob does not change along it.
+    """
     _, derivative = branch.map(np.append(state, 1.0))
     _, _, rows = np.linalg.svd(derivative - np.eye(len(state)))
     return np.append(rows[-1], 0.0)

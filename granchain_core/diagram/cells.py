@@ -28,7 +28,7 @@ from ..tables.words import ERRORS, EVIDENCE
 from .grid import Grid
 
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
-REGIMES = (*NAMES, "failed")
+CELL_REGIMES = (*NAMES, "failed")
 #: One cell. Forces in N, NaN where the computation failed; stated errors are relative, `error_estimate` that of the
 #: output force, NaN where none is stated; `period` in drive periods, 0 where not periodic; `decay` per orbit,
 #: `multiplier` (the largest |μ|) and `lyapunov` (per drive period) NaN where not seen or not computed.
@@ -55,7 +55,7 @@ def cell_of(result: SteadyState) -> np.ndarray:
     regime = result.regime
     name = "failed" if result.failure else regime.name
     mean, error = regime.lyapunov or (np.nan, np.nan)
-    return np.array((result.number, REGIMES.index(name), regime.period or 0, regime.periods_run, *result.maxima,
+    return np.array((result.number, CELL_REGIMES.index(name), regime.period or 0, regime.periods_run, *result.maxima,
                      *ForceErrors.of(result.errors).row, _or_nan(regime.decay),
                      _or_nan(regime.multiplier), mean, error), dtype=CELL)
 
@@ -104,8 +104,8 @@ class Diagram(Labelled):
         axes: dict[str, Column] = {}
         for one in (self.grid.y, self.grid.x):
             axes |= axis(one.knob, one.array, QUANTITIES[one.knob].unit, QUANTITIES[one.knob].label)
-        flags = {"flag_values": np.array([-1, *range(len(REGIMES))], dtype=np.int8),
-                 "flag_meanings": " ".join(["not_computed", *REGIMES])}
+        flags = {"flag_values": np.array([-1, *range(len(CELL_REGIMES))], dtype=np.int8),
+                 "flag_meanings": " ".join(["not_computed", *CELL_REGIMES])}
         forces, errors = (np.stack([self.column(name) for name in names], axis=-1) for names in (MAXIMA, ERRORS))
         columns = {
             **force_columns(forces, both), **error_columns(errors, both),
@@ -127,7 +127,7 @@ class Diagram(Labelled):
         """The ranges of both knobs, and how many cells are of each regime."""
         sides = (f"{one.knob} {one.values[0]:g} to {one.values[-1]:g} {QUANTITIES[one.knob].unit}"
                  for one in (self.grid.x, self.grid.y))
-        counts = {name: int((self.cells["regime"] == code).sum()) for code, name in enumerate(REGIMES)}
+        counts = {name: int((self.cells["regime"] == code).sum()) for code, name in enumerate(CELL_REGIMES)}
         missing = int((self.cells["regime"] < 0).sum())
         return [f"{self.grid.shape[1]} × {self.grid.shape[0]} cells: {', '.join(sides)}",
                 ", ".join(f"{count} {name}" for name, count in counts.items() if count)
@@ -141,9 +141,9 @@ class Diagram(Labelled):
     def regime(self, number: int) -> Regime | None:
         """The regime of a cell; None where nothing is computed or the computation failed."""
         cell = self.cells[number]
-        if not 0 <= cell["regime"] < REGIMES.index("failed"):
+        if not 0 <= cell["regime"] < CELL_REGIMES.index("failed"):
             return None
         lyapunov = None if np.isnan(cell["lyapunov"]) else (float(cell["lyapunov"]), float(cell["lyapunov_error"]))
         decay, multiplier = (None if np.isnan(cell[name]) else float(cell[name]) for name in ("decay", "multiplier"))
-        return Regime(REGIMES[cell["regime"]], int(cell["period"]) or None, decay, None, int(cell["periods_run"]),
+        return Regime(CELL_REGIMES[cell["regime"]], int(cell["period"]) or None, decay, None, int(cell["periods_run"]),
                       lyapunov, multiplier)

@@ -13,7 +13,7 @@ from ..scene import Amplitude, Scene
 from ..steady.batch.job import Start
 from ..steady.batch.settle import batch_states
 from ..steady.batch.threads import on_all_cores
-from ..steady.settling.alone import safe_state, settled_alone
+from ..steady.settling.single_chain import safe_state, settled_alone
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells

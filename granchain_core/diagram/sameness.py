@@ -28,7 +28,7 @@ _APART = 3.0
 #: States in the section of a motion that is not periodic, taken after as many further periods.
 _SECTION = 400
 #: Method by which a motion's section is taken, and the tolerance for that of an orbit.
-LIVE_SETTING = fixed_step_setting()
+SECTION_SETTING = fixed_step_setting()
 _ADAPTIVE_SETTING = adaptive_setting(1e-11)
 
 
@@ -56,12 +56,12 @@ class Found:
 def found(result: SteadyState) -> Found:
     """A result with the section of its motion."""
     period = result.regime.period
-    return Found(result, _strobes(result.scene, result.state, period, LIVE_SETTING) if period else _section(result))
+    return Found(result, _strobes(result.scene, result.state, period, SECTION_SETTING) if period else _section(result))
 
 
 def _section(result: SteadyState) -> np.ndarray:
     """Stroboscopic states of displacement and velocity of a motion that is not periodic, scaled, (P, 2, N)."""
-    engine = Engine(result.scene, LIVE_SETTING, 1)
+    engine = Engine(result.scene, SECTION_SETTING, 1)
     engine.start(result.state)
     engine.periods(_SECTION)
     return engine.periods(_SECTION)[0][1:]
@@ -139,7 +139,7 @@ def _distance(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def _to_nearest(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> float:
-    """Median relative distance of the states of one section to the nearest of another."""
+    """Median relative distance of the states of a section (P, 2, N) to the nearest of another; `scale` (1, 2, 1)."""
     from scipy.spatial.distance import cdist
 
     flat = [(section / scale).reshape(len(section), -1) for section in (a, b)]

@@ -21,12 +21,12 @@ class Noted:
 
     @property
     def virtual(self) -> bool:
-        """Whether nothing of it was measured."""
+        """Whether the data are a virtual experiment: nothing of them was measured."""
         return self.note.startswith(VIRTUAL)
 
     @property
     def word(self) -> str:
-        """What it is called in keys of pictures: "measured", or "virtual experiment"."""
+        """What the data are called in keys of pictures: "measured", or "virtual experiment"."""
         return VIRTUAL if self.virtual else "measured"
 
 

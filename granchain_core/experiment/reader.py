@@ -24,11 +24,11 @@ from .text_table import decimal_of, number_of, read_text_table
 #: Largest file accepted [bytes] and most rows of it.
 MOST_BYTES, MOST_ROWS = 50_000_000, 1_000_000
 #: What a file can hold: a resonance curve, the shaker's amplitudes over frequency, a time series.
-KINDS = ("curve", "shaker", "series")
+TABLE_KINDS = ("curve", "shaker", "series")
 
 
 def read_experiment(path: str | Path, answers: Answers | None = None,
-                    wanted: Sequence[str] = KINDS) -> Series | Shaker | Measured:
+                    wanted: Sequence[str] = TABLE_KINDS) -> Series | Shaker | Measured:
     """The series, shaker amplitudes or resonance curve in a file.
 
     Raises `Unclear` for what has to be asked, and `BadInput` naming the line.
@@ -51,7 +51,7 @@ def read_experiment(path: str | Path, answers: Answers | None = None,
     return replace(found, understood=f"{path.name}: {found.understood}")
 
 
-def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[str] = KINDS,
+def read_data(content: bytes, answers: Answers | None = None, wanted: Sequence[str] = TABLE_KINDS,
               source: str = "", most_bytes: int = MOST_BYTES, most_rows: int = MOST_ROWS,
               convention: Convention = NO_CONVENTION) -> Series | Shaker | Measured:
     """The measurement in the bytes of a text file; `wanted` are the kinds that its reader can use.

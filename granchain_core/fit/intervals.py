@@ -13,7 +13,7 @@ from .search import Problem, descended
 #: The part of repetitions in which an interval holds the truth.
 LEVEL = 0.95
 #: Steps towards each end, evaluations of a descent on the way, and how near √Δχ² must come to its limit.
-_STEPS, _DESCENT, _NEAR = 8, 6, 0.03
+_STEPS, _DESCENT, _AT_THE_LIMIT = 8, 6, 0.03
 #: A misfit that much below the least so far, in its unit, is another minimum.
 _LOWER = 0.3
 
@@ -100,7 +100,7 @@ def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: n
             inside, root_inside, start = trial, root, place
         else:
             outside, root_outside = trial, root
-        if abs(root - top) < _NEAR * top:
+        if abs(root - top) < _AT_THE_LIMIT * top:
             return trial, False
         if root <= top and trial == bound:
             return bound, True

@@ -89,7 +89,7 @@ def _two(what: str, text: str, form: str) -> tuple[float, float]:
 
 
 def per_frequency(free: Sequence[Free], frequencies: Sequence[float] | np.ndarray) -> list[Free]:
-    """The same parameters with one A0 for each frequency in place of the constant one."""
+    """The free parameters with one A0 for each frequency in place of the constant one."""
     found: list[Free] = []
     for one in free:
         found += [replace(one, name=f"A0@{f:.10g}") for f in frequencies] if one.name == "A0" else [one]

@@ -35,7 +35,11 @@ _APART, _ROUNDS = 0.1, 3
 
 @dataclass(eq=False)
 class Problem:
-    """Misfit of a target over places in the unit cube of the free parameters; all that was evaluated is kept."""
+    """Misfit of a target over places in the unit cube of the free parameters; all that was evaluated is kept.
+
+    A place (P,) has a number from 0 to 1 for each of the P parameters in `free`. `places` and `misfits` are those that
+    were evaluated, in that order; `tell` is called with their number after each; `scheduler` is a Dask client or None.
+    """
 
     scene: Scene
     target: Target
@@ -58,7 +62,7 @@ class Problem:
             self._keep(place, found[number])
 
     def evaluate(self, place: np.ndarray) -> Evaluation:
-        """Residuals at a place (a point of the unit cube): first those of the data, then those of the priors."""
+        """The target's evaluation at a place (P,), whose numbers are clipped to the cube. Raises `Cancelled`."""
         place = _inside(place)
         key = place.tobytes()
         if key not in self._known:
@@ -74,16 +78,16 @@ class Problem:
         self.tell(len(self.misfits))
 
     def values(self, place: np.ndarray) -> np.ndarray:
-        """Parameters at a place."""
+        """Parameters (P,) at a place (P,), each in its own unit."""
         return np.array([one.value(float(x)) for one, x in zip(self.free, place, strict=True)])
 
     def priors(self, place: np.ndarray) -> np.ndarray:
-        """Residuals of the priors."""
+        """Residuals of the priors at a place, one for each parameter that has one, in standard deviations."""
         return np.array([(value - one.prior[0]) / one.prior[1]
                          for one, value in zip(self.free, self.values(np.clip(place, 0, 1)), strict=True) if one.prior])
 
     def residuals(self, place: np.ndarray) -> np.ndarray:
-        """All residuals; the last one is the root of the logarithms of the variances."""
+        """Residuals (R,) at a place: of the data, of the priors, and the root of the logarithms of the variances."""
         found = self.evaluate(place)
         return np.concatenate([found.residuals, self.priors(place), [np.sqrt(max(found.log_variance, 0.0))]])
 
@@ -99,7 +103,10 @@ class Problem:
         return float((found.residuals**2).sum() + (self.priors(place) ** 2).sum() + found.log_variance)
 
     def jacobian(self, place: np.ndarray, moving: Sequence[int]) -> np.ndarray:
-        """Derivatives of the residuals by differences to the side that stays within the bounds."""
+        """Derivatives (R, M) of the residuals by the M parameters `moving`, given by number.
+
+        They are differences over `STEP` of the cube, to the side that stays within the bounds.
+        """
         beside = [_beside(place, j) for j in moving]
         self.ahead([place, *beside])
         base = self.residuals(place)

@@ -19,7 +19,7 @@ from ..scene import Amplitude, Scene
 from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.resonance import peaks_and_valleys
 from ..steady.curve.resonance_curve import resonance_curve
-from ..steady.settling.recorded import settled
+from ..steady.settling.settle import settle
 from ..stop import Stop
 from .trains import Train, moved
 
@@ -100,7 +100,7 @@ class CurveTarget:
 
     @property
     def frequencies(self) -> np.ndarray:
-        """Where it was measured [Hz]."""
+        """Where it was measured (F,) [Hz]."""
         return self.measured.frequency
 
     @property
@@ -109,7 +109,10 @@ class CurveTarget:
         return True
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
-        """Residuals at every measured frequency, from the core's own curve."""
+        """Residuals (F,) at the measured frequencies, in standard deviations; the model's forces (F,) [N] from a curve.
+
+        Raises `Cancelled`.
+        """
         curve = resonance_curve(scene, self.measured.frequency, self.start, stop=stop, amplitude=amplitude)
         _check(stop, len(curve.points) == len(self.measured.frequency))
         name = "max_output_force_elastic" if self.elastic else "max_output_force"
@@ -143,13 +146,13 @@ class SeriesTarget:
 
     @property
     def channels(self) -> dict[str, np.ndarray]:
-        """The measured forces by name."""
+        """The measured forces by name, (T,) each [N], thinned out where the series is long."""
         both = {"input_force": self.series.input_force, "output_force": self.series.output_force}
         return {name: values[self._kept] for name, values in both.items() if values is not None}
 
     @property
     def time(self) -> np.ndarray:
-        """The times of their samples [s]."""
+        """The times (T,) of their samples [s]."""
         return self.series.time[self._kept]
 
     @property
@@ -163,7 +166,7 @@ class SeriesTarget:
 
     @property
     def frequencies(self) -> np.ndarray:
-        """Empty: a series is compared at the scene's own drive frequency."""
+        """Empty (0,): a series is compared at the scene's own drive frequency."""
         return np.zeros(0)
 
     @property
@@ -172,12 +175,15 @@ class SeriesTarget:
         return True
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
-        """Residuals of every sample of every channel."""
+        """Residuals (C·T,) of every sample, one channel after another, in standard deviations; the model's forces [N].
+
+        Raises `Cancelled`.
+        """
         time, measured = self.time, self.channels
         largest = max(float(np.abs(values).max()) for values in measured.values())
         sigma = self.error or ASSUMED * largest
         try:
-            found = settled(scene, samples=_TRAIN, stop=stop)
+            found = settle(scene, samples=_TRAIN, stop=stop)
         except NumbersFailed:
             count = sum(map(len, measured.values()))
             return Evaluation(np.full(count, FAILED), 0.0, ("failed",), np.full(count, np.nan))
@@ -219,7 +225,7 @@ class FeatureTarget:
 
     @property
     def frequencies(self) -> np.ndarray:
-        """The stated frequencies [Hz]."""
+        """The stated frequencies (F,) [Hz]."""
         return np.array([one.frequency for one in self.features])
 
     @property
@@ -228,7 +234,10 @@ class FeatureTarget:
         return False
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
-        """For every feature the distance to the nearest extremum of its kind."""
+        """Residuals (F,): distances to the nearest extremum of each feature's kind, in standard deviations.
+
+        The model's values (F,) are the frequencies of these extrema [Hz], NaN where there is none. Raises `Cancelled`.
+        """
         curve = resonance_curve(scene, self.grid, self.start, stop=stop, amplitude=amplitude)
         _check(stop, len(curve.points) == len(self.grid))
         found = {kind: extrema(curve.points, kind) for kind in (True, False)}

@@ -9,7 +9,7 @@ import numpy as np
 from ..experiment import Measured, Series
 from ..scene import Scene
 from ..steady.curve.resonance_curve import resonance_curve
-from ..steady.settling.recorded import settled
+from ..steady.settling.settle import settle
 from .trains import Train
 
 SOURCE = "virtual experiment"
@@ -30,7 +30,7 @@ def virtual_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, error
 
 def virtual_series(scene: Scene, periods: int, samples: int, error: float, random: np.random.Generator) -> Series:
     """The model's forces over so many drive periods, begun at any phase, with normal noise of `error` [N]."""
-    found = settled(scene, samples=_FINER * samples).run
+    found = settle(scene, samples=_FINER * samples).run
     time = np.arange(periods * samples) / (samples * scene.f)
     begun, width = random.random() * float(found.time[-1] - found.time[0]), 1.0 / (samples * scene.f)
     forces = [Train.of(found, name).mean_over(time + begun, width) + error * random.standard_normal(len(time))

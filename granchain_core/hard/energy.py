@@ -9,7 +9,7 @@ import numpy as np
 from ..integrate import Engine, State, adaptive_setting, fixed_step_setting
 from ..integrate.methods import ADAPTIVE
 from ..kernels.effects.driver import Harmonic
-from ..orbits.flow import StroboscopicMap
+from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene, scene
 from ..steady.curve.resonance_curve import iter_curve
 from ..steady.lyapunov import exponents

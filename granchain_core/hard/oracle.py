@@ -17,13 +17,20 @@ from ..errors import NumbersFailed
 from ..laws import LAWS
 from ..scene import Scene
 
+#: Fewest steps in a drive period, so that the driver is never stepped over.
+_LEAST_STEPS = 16.0
 #: Most contact events of one solution; more are an accident.
 _MOST_EVENTS = 20_000
 
 
 @dataclass(frozen=True, eq=False)
 class Plain:
-    """A chain in scaled units, with the linear dashpot only: masses and foundation (N,), contacts (N+1,)."""
+    """A chain in scaled units, with the linear dashpot only.
+
+    `masses` (N,); `springs`, the stiffness of contacts, and `static`, their overlap at rest, (N+1,); `damping` of a
+    contact, stiffness `foundation` of a bead's own spring, drive frequency `beta`. A state (2N,) has displacements,
+    then velocities; times are scaled.
+    """
 
     masses: np.ndarray
     springs: np.ndarray
@@ -47,17 +54,17 @@ class Plain:
         return 2.0 * np.pi / self.beta
 
     def overlaps(self, t: float, state: np.ndarray) -> np.ndarray:
-        """Overlap of every contact."""
+        """Overlap of every contact (N+1,) at scaled time t in a state (2N,)."""
         bodies = np.concatenate([[np.sin(self.beta * t)], state[: len(self.masses)], [0.0]])
         return bodies[:-1] - bodies[1:] + self.static
 
     def rates(self, t: float, state: np.ndarray) -> np.ndarray:
-        """How fast the overlaps grow."""
+        """How fast the overlaps grow, (N+1,)."""
         bodies = np.concatenate([[self.beta * np.cos(self.beta * t)], state[len(self.masses) :], [0.0]])
         return bodies[:-1] - bodies[1:]
 
     def slope(self, t: float, state: np.ndarray, closed: np.ndarray) -> np.ndarray:
-        """(u̇, v̇) while exactly the contacts in `closed` act."""
+        """(u̇, v̇) (2N,) while exactly the contacts in `closed` (N+1,) of bool act."""
         n = len(self.masses)
         pressed = np.maximum(self.overlaps(t, state), 0.0)
         force = closed * (self.springs * pressed**1.5 + self.damping * self.rates(t, state))
@@ -66,7 +73,7 @@ class Plain:
 
 def solved(chain: Plain, start: np.ndarray, times: np.ndarray, method: str = "DOP853",
            rtol: float = 1e-12) -> np.ndarray:
-    """States (T, 2N) of displacements and velocities at `times` from `start` at the first of them.
+    """States (T, 2N) of displacements and velocities at scaled `times` (T,), from `start` (2N,) at the first of them.
 
     Raises `NumbersFailed` where SciPy gives up.
     """
@@ -80,7 +87,8 @@ def solved(chain: Plain, start: np.ndarray, times: np.ndarray, method: str = "DO
     closed = (gaps > 0.0) | ((gaps == 0.0) & (chain.rates(t, state) > 0.0))
     for _ in range(_MOST_EVENTS):
         found: Any = solve_ivp(lambda s, y, c=closed: chain.slope(s, y, c), (t, times[-1]), state, method=method,
-                               rtol=max(rtol, 3e-14), atol=1e-2 * rtol, dense_output=True, max_step=chain.period / 16.0,
+                               rtol=max(rtol, 3e-14), atol=1e-2 * rtol, dense_output=True,
+                               max_step=chain.period / _LEAST_STEPS,
                                events=[_event(chain, c, bool(closed[c])) for c in range(n + 1)])
         if found.status < 0:
             raise NumbersFailed(f"SciPy's {method} gave up at scaled time {t:.6g}: {found.message}", "solver-gave-up")

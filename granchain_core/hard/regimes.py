@@ -7,13 +7,13 @@ import numpy as np
 from ..integrate import Engine, adaptive_setting
 from ..observe.drift import observer_drift
 from ..orbits import periodic_orbit
-from ..orbits.flow import StroboscopicMap
+from ..orbits.stroboscopic_map import StroboscopicMap
 from ..run.run import run
 from ..scene import scene
 from ..steady.curve.curve import CurvePoint
 from ..steady.curve.resonance_curve import iter_curve
-from ..steady.regime import find_period
-from ..steady.settling.recorded import settled
+from ..steady.regime_criteria import find_period
+from ..steady.settling.settle import settle
 from .case import Measurement, Picture, Trace
 from .naive_solvers import observed_apart
 from .oracle import Plain
@@ -28,10 +28,10 @@ def normal_form(rng: np.random.Generator, kind: str, closeness: float,
                 count: int) -> tuple[np.ndarray, np.ndarray, int]:
     """Strobes (count + 1, 2, N) of a map near a bifurcation, its orbit (q, 2, N) and the orbit's period q.
 
-    In the coordinates of the normal form one direction has the multiplier 1 − ε (fold) or −(1 − ε) (period doubling,
-    "flip"), or two have the pair (1 − ε)e^{±iθ} (Neimark–Sacker), with a quadratic or cubic term; the others decay
-    fast. A random linear change of coordinates hides it, and rounding of 1e-15 is added. Beyond a period doubling the
-    orbit has period 2.
+    In the coordinates of the normal form one direction has the multiplier 1 − ε (fold) or −(1 − ε) (period doubling),
+    or two have the pair (1 − ε)e^{±iθ} (Neimark–Sacker), with a quadratic or cubic term; the others decay
+    fast. A random linear change of coordinates hides it, and rounding of 1e-15 is added. Beyond a period doubling
+    ("doubled") the orbit has period 2.
     """
     size = 2 * _BEADS
     basis = np.linalg.qr(rng.standard_normal((size, size)))[0] + 0.2 * rng.standard_normal((size, size))
@@ -46,7 +46,7 @@ def normal_form(rng: np.random.Generator, kind: str, closeness: float,
         new = fast * x
         if kind == "fold":
             new[0], new[1] = (1.0 - closeness) * x[0] - 0.5 * x[0] ** 2, 0.0
-        elif kind == "flip":
+        elif kind == "period_doubling":
             new[0], new[1] = -(1.0 - closeness) * x[0] + 0.5 * x[0] ** 3, 0.3 * x[1]
         elif kind == "doubled":
             new[0], new[1] = -(1.0 + 0.5 * closeness) * x[0] + x[0] ** 3, 0.3 * x[1]
@@ -66,14 +66,14 @@ def distance(state: np.ndarray, orbit: np.ndarray, scale: np.ndarray) -> float:
 
 
 def claims(count: int, seed: int) -> tuple[int, int, int]:
-    """Of `count` maps near a bifurcation: settled claims, claims whose bound or period is wrong, slow ones claimed.
+    """How often `count` maps near a bifurcation are called settled, how often wrongly, and how many slow ones are.
 
-    A slow one has a multiplier so near 1 that it cannot have settled within its strobes.
+    Wrong is a bound or a period. A slow map has a multiplier so near 1 that it cannot have settled within its strobes.
     """
     rng = np.random.default_rng(seed)
     made, wrong, slow = 0, 0, 0
     for _ in range(count):
-        kind = str(rng.choice(["fold", "flip", "doubled", "neimark-sacker"]))
+        kind = str(rng.choice(["fold", "period_doubling", "doubled", "neimark_sacker"]))
         closeness = 10.0 ** rng.uniform(-5.0, -0.5)
         strobes, orbit, period = normal_form(rng, kind, closeness, _STROBES)
         found = find_period(strobes)
@@ -108,7 +108,7 @@ def chain_claims(count: int) -> tuple[int, int]:
     checked, outside = 0, 0
     for frequency in np.linspace(560.0, 640.0, count):
         chosen = scene("sec2").evolve(f=float(frequency))
-        found = settled(chosen)
+        found = settle(chosen)
         if found.regime.name != "periodic":
             continue
         orbit = periodic_orbit(chosen, found.regime.period, found.state)
@@ -122,7 +122,7 @@ def chain_claims(count: int) -> tuple[int, int]:
 
 def near_bifurcation_picture() -> Picture:
     """Distance from the orbit of a slow approach, the change per period, and our bound where stated."""
-    strobes, orbit, _ = normal_form(np.random.default_rng(8), "flip", 0.02, 1_000)
+    strobes, orbit, _ = normal_form(np.random.default_rng(8), "period_doubling", 0.02, 1_000)
     scale, marks = np.abs(strobes).max(axis=(0, 2)), np.arange(20, 1_000, 20)
     true = [distance(strobes[i], orbit, scale) for i in marks]
     change = [float((np.abs(strobes[i] - strobes[i - 2]).max(axis=1) / scale).max()) for i in marks]
@@ -159,10 +159,10 @@ def two_attractors(quick: bool) -> list[Measurement]:
     found, chosen = arrivals(), scene("sec2").evolve(f=_SHARED)
     orbits = {start: periodic_orbit(chosen, p.regime.period, p.state) for start, p in found.items()}
     forces = [p.max_output_force for p in found.values()]
-    again = {start: settled(chosen, p.state) for start, p in found.items()}
+    again = {start: settle(chosen, p.state) for start, p in found.items()}
     same = max(abs(again[s].run.max_output_force / found[s].max_output_force - 1.0) for s in found)
     leading = max(float(np.abs(o.multipliers).max()) for o in orbits.values())
-    named = [settled(chosen).start == "rest", *(one.start == "previous state" for one in again.values()),
+    named = [settle(chosen).start == "rest", *(one.start == "previous state" for one in again.values()),
              run(chosen, periods=0, record=1, samples=4).start == "rest",
              run(chosen, periods=0, record=1, samples=4, start=found["up"].state).start == "given state"]
     return [

@@ -24,7 +24,7 @@ _LONGEST = 64_000_000
 
 
 class Child:
-    """The same as `Plain`, by a child that is ended with this object, after too long, or when this process ends."""
+    """Reads a file as `Plain` does, in a child that ends with this object, after too long, or with this process."""
 
     def __init__(self, path: str) -> None:
         seconds = _SECONDS + Path(path).stat().st_size // _BYTES_A_SECOND
@@ -51,24 +51,24 @@ class Child:
         self._process.wait()
 
     def attribute(self, path: str, name: str) -> float | int | str | None:
-        """As `Plain.attribute`."""
+        """An attribute of the group or dataset at `path`; None where there is none. As `Plain.attribute`."""
         return self._ask("attribute", path, name)
 
     def stored(self, path: str) -> Stored | None:
-        """As `Plain.stored`."""
+        """Type, shape and unit of a dataset; None where there is none. As `Plain.stored`."""
         found = self._ask("stored", path)
         return found and Stored(str(found["type"]), tuple(found["shape"]), found["units"])
 
     def names(self) -> list[str]:
-        """As `Plain.names`."""
+        """The paths of all datasets in the file. As `Plain.names`."""
         return [str(name) for name in self._ask("names")]
 
     def words(self, path: str) -> list[str]:
-        """As `Plain.words`."""
+        """One row of words. As `Plain.words`."""
         return [str(word) for word in self._ask("words", path)]
 
     def numbers(self, path: str, rows: int | None = None) -> np.ndarray:
-        """As `Plain.numbers`."""
+        """The numbers of a dataset, of which only the first `rows` where that is given. As `Plain.numbers`."""
         found = self._ask("numbers", path, rows)
         kind, shape = np.dtype(found["type"]), tuple(found["shape"])
         size = math.prod(shape) * kind.itemsize

@@ -17,7 +17,7 @@ from ..stop import Stop
 from .stepper import Start, empty_samples
 
 #: At least this many steps are made in a period, so that the driver is never stepped over.
-_LEAST_STEPS = 16
+LEAST_STEPS_PER_PERIOD = 16
 #: First step to try, in scaled time, in a period that is long enough.
 _FIRST_STEP = 0.01
 #: Least scale of displacements and of w, in which tolerances are measured.
@@ -28,7 +28,7 @@ class Adaptive:
     """Dormand–Prince 8 in (u, w) at a relative tolerance per step."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
-        largest, size = scaled.period / _LEAST_STEPS, scaled.size
+        largest, size = scaled.period / LEAST_STEPS_PER_PERIOD, scaled.size
         self.method = Dop853(tolerance, largest)
         self.scaled = scaled
         self.grid = samples

@@ -39,12 +39,13 @@ class Failure:
                                  time, self.step, self.cost)
         if self.status == STEP_TOO_SMALL:
             return NumbersFailed(f"The step of {self.method} became too small {when}; ask for less accuracy than "
-                                 f"{self.scene.accuracy:g} or use method rk4-split.", "step-too-small",
-                                 time=time, cost=self.cost)
+                                 f"{self.scene.accuracy:g}, or on the command line for --method rk4-split.",
+                                 "step-too-small", time=time, cost=self.cost)
         if self.status == TOO_MANY_STEPS:
             return NumbersFailed(f"A drive period takes {self.method} millions of steps {when}; raise the frequency f.",
                                  "too-many-steps", time=time, cost=self.cost)
         if self.status == CHATTER:
-            return NumbersFailed(f"Contacts open and close endlessly {when}; the chain chatters: raise the damping D "
-                                 f"or use method rk4-split.", "chatter", time=time, cost=self.cost)
+            return NumbersFailed(f"Contacts open and close endlessly {when}; the chain chatters: raise the damping "
+                                 f"D, or on the command line use --method rk4-split.", "chatter", time=time,
+                                 cost=self.cost)
         raise ValueError(f"{self.status} is not the status of a computation that failed")

@@ -23,12 +23,14 @@ FIXED_STEP = "rk4-split"
 ADAPTIVE = "dop853"
 
 #: Above this relative error the fixed-step method is the cheaper one (`granchain accuracy sec2` measures it).
-_FIXED_STEP_IS_CHEAPER = 1e-10
+FIXED_STEP_IS_CHEAPER = 1e-10
 #: The fixed-step method's usual relative error at the default step; it falls with the fourth power of the step.
 _FIXED_STEP_ERROR = 7e-6
 #: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
 #: tests.numerics.stated_errors`).
 _SPREAD = 8.0
+#: The adaptive method's first tolerance per step: this part of the accuracy asked for, and at most so large.
+_TOLERANCE_PER_ACCURACY, _LARGEST_TOLERANCE = 0.1, 1e-3
 #: Smallest tolerance of a step that is still followed by a finer one.
 _SMALLEST = 1e-15
 
@@ -212,9 +214,9 @@ def adaptive_setting(tolerance: float = 0.0) -> Setting:
 
 def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
-    if accuracy >= _FIXED_STEP_IS_CHEAPER and not tension_cut:  # where tension is cut the fixed-step method has order 1
+    if accuracy >= FIXED_STEP_IS_CHEAPER and not tension_cut:  # where tension is cut the fixed-step method has order 1
         return fixed_step_setting(max(_COARSEST, (_FIXED_STEP_ERROR / accuracy) ** 0.25))
-    return adaptive_setting(min(1e-3, 0.1 * accuracy))
+    return adaptive_setting(min(_LARGEST_TOLERANCE, _TOLERANCE_PER_ACCURACY * accuracy))
 
 
 def typical_error(setting: Setting) -> float:
@@ -249,4 +251,4 @@ def setting_of(name: str, accuracy: float) -> Setting:
     """The first setting of the method called `name` for `accuracy`; `BadInput` for a method that does not exist."""
     if name not in METHODS:
         raise unknown_name("method", name, METHODS)
-    return Setting(name, tolerance=0.1 * accuracy) if METHODS[name].adaptive else Setting(name)
+    return Setting(name, tolerance=_TOLERANCE_PER_ACCURACY * accuracy) if METHODS[name].adaptive else Setting(name)

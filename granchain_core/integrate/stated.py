@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .methods import METHODS, Setting, typical_error
+from ..scaling import ScaledChain
+from .methods import METHODS, Setting, jump_errors, typical_error
 from .safety_factors import IRREGULAR, REGULAR, RUN_FORCES, RUN_FORCES_THAT_JUMP
 
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
@@ -18,6 +19,22 @@ _SMOOTH = 1e-10
 _WORTHLESS = 0.05
 #: What is stated then, relative to the largest displacement: two motions that have parted differ by at most twice it.
 _ALL = 2.0
+
+
+def relative_difference(one: np.ndarray, other: np.ndarray) -> float:
+    """Largest |one − other| over the largest |one|, of two arrays of one shape; 0 where `one` is zero everywhere."""
+    largest = float(np.abs(one).max())
+    return float(np.abs(one - other).max()) / largest if largest > 0.0 else 0.0
+
+
+def least_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.ndarray,
+                 maxima: np.ndarray) -> np.ndarray:
+    """Lower limits of the stated errors (4,) of a motion with this step: of displacements, then of the largest forces.
+
+    They are the typical errors; of forces at jumps (2,) also `jump_errors`. All in scaled units.
+    """
+    typical = typical_error(setting)
+    return np.array([typical, *np.maximum(typical, jump_errors(setting, scaled, step, jumps, maxima))])
 
 
 def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:

@@ -1,16 +1,14 @@
 """Observers, models (3) and (4) of the paper: a chain pushed by a measured force, and whether it converges."""
 
-from .driven import Driven, drive
 from .figure_11 import Figure11, figure_11
 from .observation import Observation, Residual, observe
 from .read import first_state, read_force, read_force_csv
 from .record import ForceRecord, force_record
-from .signal import Signal
 from .stability import ObserverPoint, ObserverStability, Threshold, observer_stability
 from .twin import Twin, twin
 
 __all__ = [
-    "Driven", "Figure11", "ForceRecord", "Observation", "ObserverPoint", "ObserverStability", "Residual", "Signal",
-    "Threshold", "Twin", "drive", "figure_11", "first_state", "force_record", "observe", "observer_stability",
+    "Figure11", "ForceRecord", "Observation", "ObserverPoint", "ObserverStability", "Residual",
+    "Threshold", "Twin", "figure_11", "first_state", "force_record", "observe", "observer_stability",
     "read_force", "read_force_csv", "twin",
 ]

@@ -19,9 +19,11 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import State
+from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR, REGULAR
-from ..motion import Motion, elastic_output, motion_columns
+from ..integrate.stated import relative_difference
+from ..motion import MOST_RECORDED, Motion, elastic_output, motion_columns
 from ..result import Cost
 from ..scene import Scene
 from ..state import rest
@@ -30,11 +32,6 @@ from ..tables import Column, Table, axis, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
-
-#: Most values recorded of one kind: samples times beads.
-MOST_VALUES = 50_000_000
-#: Most halvings of the steps: beyond it rounding and the error of the events dominate.
-_MOST_HALVINGS = 7
 
 
 @dataclass(frozen=True)
@@ -194,9 +191,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     """
     record = time if isinstance(time, ForceRecord) else force_record(time, force, output)
     record = prepared(record, scene, offset, gap)
-    if len(record.time) * scene.N > MOST_VALUES:
-        raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_VALUES:.0e} values; "
-                       f"give at most {MOST_VALUES // scene.N} samples.")
+    if len(record.time) * scene.N > MOST_RECORDED:
+        raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_RECORDED:.0e} values; "
+                       f"give at most {MOST_RECORDED // scene.N} samples.")
     began = clock.perf_counter()
     stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else start
@@ -205,10 +202,10 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     while True:
         halvings += 1
         now = chain.run(begin, halvings)
-        integration = REGULAR * _difference(now.displacement, before.displacement)
+        integration = REGULAR * relative_difference(now.displacement, before.displacement)
         if progress is not None:
-            progress(halvings / (_MOST_HALVINGS + 1))
-        if integration <= scene.accuracy or halvings == _MOST_HALVINGS:
+            progress(halvings / (MOST_HALVINGS + 1))
+        if integration <= scene.accuracy or halvings == MOST_HALVINGS:
             break
         before = now
     thin = record.thinned()
@@ -225,16 +222,11 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         scene=scene, record=record, displacement=displacement, velocity=now.velocity * scales.velocity, force=forces,
         max_output_force=float(maxima[1]) * scales.force, max_output_force_elastic=float(maxima[2]) * scales.force,
         integration_error=integration,
-        interpolation_error=IRREGULAR * _difference(now.displacement[kept], coarse.displacement),
+        interpolation_error=IRREGULAR * relative_difference(now.displacement[kept], coarse.displacement),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",
         cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )
-
-
-def _difference(one: np.ndarray, other: np.ndarray) -> float:
-    largest = float(np.abs(one).max())
-    return float(np.abs(one - other).max()) / largest if largest > 0.0 else 0.0
 
 
 def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | None:

@@ -17,12 +17,10 @@ from ..kernels.effects.driver import BODY_FAR_AWAY
 from ..kernels.effects.given_force import ObserverCoupling
 from ..kernels.effects.preload import Preload
 from ..kernels.samples import Samples
+from ..orbits.stroboscopic_map import TOLERANCE
 from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop
-
-#: Tolerance of one step, relative to the largest displacement and w: the pair is then followed to about 1e-11.
-TOLERANCE = 1e-13
 
 
 def scale_pair(scene: Scene) -> ScaledChain:

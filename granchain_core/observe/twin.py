@@ -27,7 +27,7 @@ from .pair import Pair
 #: Largest distance, relative to the motion, at which the difference of two motions still grows linearly.
 LINEAR = 0.03
 #: Smallest distance that is not rounding.
-ROUNDING = 1e-11
+LEAST_DISTANCE = 1e-11
 #: Differences below this, all through a period, are rounding: the observer is in step and is followed no further.
 SYNCHRONISED = 1e-12
 #: Most periods of one twin: a minute or so.
@@ -186,7 +186,7 @@ def observer_start(scene: Scene, chain: State, perturbation: float | State) -> S
 
 def linear_window(distance: np.ndarray) -> tuple[int, int]:
     """First strobe and one past the last of the longest run of linear distances, without its transient."""
-    beyond = np.flatnonzero((distance > LINEAR) | (distance < ROUNDING))
+    beyond = np.flatnonzero((distance > LINEAR) | (distance < LEAST_DISTANCE))
     edges = np.concatenate([[-1], beyond, [len(distance)]])
     longest = int(np.argmax(np.diff(edges)))
     first, end = int(edges[longest]) + 1, int(edges[longest + 1])

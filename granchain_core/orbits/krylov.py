@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..errors import NumbersFailed
-from .flow import StroboscopicMap
+from .stroboscopic_map import StroboscopicMap
 
 if TYPE_CHECKING:
     from scipy.sparse.linalg import LinearOperator

@@ -18,11 +18,11 @@ import numpy as np
 from ..errors import check_range
 from ..integrate import Engine, adaptive_setting
 from ..steady.poincare import Section
-from ..steady.settling.nearby_orbit import MOST_BEADS
+from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..stop import Stop
-from .flow import TOLERANCE, StroboscopicMap
 from .krylov import arnoldi
 from .orbit import Orbit
+from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
 #: Size of the carried disturbance relative to the motion.
 _SMALL = 1e-5
@@ -73,7 +73,7 @@ def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
 
     With `observer`, those of the observer of model (4), Zhang et al. 2016.
     """
-    if len(x) <= 2 * MOST_BEADS:
+    if len(x) <= 2 * MOST_BEADS_WITH_MULTIPLIERS:
         values, vectors = np.linalg.eig(stroboscopic_map(x, observer=observer).derivative)
     else:
         values, vectors = arnoldi(stroboscopic_map, x, max(rank + 2, _FEWEST), observer, vectors=True)

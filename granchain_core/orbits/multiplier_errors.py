@@ -16,7 +16,7 @@ import numpy as np
 from ..integrate import State
 from ..scene import Scene
 from ..stop import Stop
-from .flow import TOLERANCE, StroboscopicMap
+from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
 #: Tolerance of the coarser map over that of the map.
 _COARSER = 10.0

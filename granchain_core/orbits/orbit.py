@@ -19,16 +19,16 @@ from ..integrate.methods import ADAPTIVE
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
-from ..steady.regime import LONGEST_PERIOD
+from ..steady.regime_criteria import LONGEST_PERIOD
 from ..steady.returns import relative_change
-from ..steady.settling.nearby_orbit import MOST_BEADS
+from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
 from ..tables.provenance import Attribute
 from ..tables.words import multiplier_columns, state_columns
-from .flow import Flow, StroboscopicMap, refuse_cut
 from .multiplier_errors import derivative_change, errors_of
+from .stroboscopic_map import Flow, StroboscopicMap, refuse_cut
 
 #: Residual at which an orbit is found, relative to the largest displacement and w.
 CONVERGED = 1e-11
@@ -59,8 +59,8 @@ class Orbit(Labelled):
     multipliers : numpy.ndarray of complex, shape (2N,)
         Sorted by modulus, largest first; of more than 100 beads the leading ones only.
     liouville : float or None
-        Difference between the logarithm of the multipliers' product and ∫ trace, relative to the latter; None where
-        not all multipliers are known or the smallest are rounding.
+        Difference between the logarithm of the multipliers' product and ∫ trace, relative to the latter where that is
+        above 1; None where not all multipliers are known or the smallest are rounding.
     changes : numpy.ndarray, shape (events, 2)
         Contact events along the orbit: contact + 1, negative where it opens, and the time over the drive period.
     observer_multipliers : numpy.ndarray of complex or None
@@ -263,7 +263,7 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
 
 
 def _dense(x: np.ndarray) -> bool:
-    return len(x) <= 2 * MOST_BEADS
+    return len(x) <= 2 * MOST_BEADS_WITH_MULTIPLIERS
 
 
 def _flow(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> Flow:

@@ -27,7 +27,7 @@ import numpy as np
 from ..integrate import Engine, adaptive_setting
 from ..integrate.methods import ADAPTIVE
 from ..regime import Regime
-from ..result import Cost, Run, run_from
+from ..result import GIVEN_STATE, Cost, Run, run_from
 from ..steady.curve.resonance import ENDED, STOPS, pushes
 from .orbit import Orbit
 
@@ -99,4 +99,4 @@ def recorded(orbit: Orbit) -> Run:
     samples = engine.record(orbit.period * _SAMPLES)
     leading = float(np.abs(orbit.multipliers).max())
     regime = Regime("periodic", orbit.period, None, None, orbit.period, multiplier=leading)
-    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, ADAPTIVE))
+    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, ADAPTIVE), start=GIVEN_STATE)

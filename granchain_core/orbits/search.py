@@ -18,8 +18,8 @@ from ..scaling import scale_chain
 from ..scene import Scene
 from ..steady.returns import least_period
 from ..stop import Stop
-from .flow import BACK, StroboscopicMap
 from .orbit import Orbit, periodic_orbit
+from .stroboscopic_map import BACK, StroboscopicMap
 
 #: Closest returns from which Newton's method is started.
 _STARTS = 4

@@ -17,7 +17,8 @@ from ..scene import Scene, scene
 from ..state import rest
 from ..steady.curve.curve import Curve
 from ..steady.curve.resonance_curve import resonance_curve
-from ..steady.settling.recorded import Settled, settled
+from ..steady.settling.settle import settle
+from ..steady.settling.settled import Settled
 from ..stop import Stop
 from .given import Given, behind, moved
 from .results import (
@@ -66,7 +67,7 @@ def transmission(given: Given, stop: Stop | None, progress: Progress) -> Transmi
 
 def energy(names: Sequence[str], stop: Stop | None) -> EnergyMaps:
     """Figure 3 or one of its parts."""
-    return EnergyMaps(tuple((settled(scene(name), samples=_ENERGY, stop=stop), ENERGY[name]) for name in names))
+    return EnergyMaps(tuple((settle(scene(name), samples=_ENERGY, stop=stop), ENERGY[name]) for name in names))
 
 
 def shaker(given: Given) -> ShakerAmplitude:
@@ -129,7 +130,7 @@ def _observer(chain: Scene, series: Series | None, back: float,
 
 
 def _state(name: str, stop: Stop | None) -> Settled:
-    return settled(scene(name), samples=_TRAIN, stop=stop)
+    return settle(scene(name), samples=_TRAIN, stop=stop)
 
 
 def _within(progress: Progress, begin: float, part: float) -> Progress:

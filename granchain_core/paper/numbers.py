@@ -13,13 +13,14 @@ from ..diagram import attractors
 from ..errors import unknown_name
 from ..observe import figure_11
 from ..orbits import periodic_orbit
+from ..regime import Regime
 from ..scene import scene
 from ..state import rest
 from ..steady.curve.curve import Curve
 from ..steady.curve.resonance import pushes
 from ..steady.curve.resonance_curve import resonance_curve
-from ..steady.regime import Regime
-from ..steady.settling.recorded import Settled, settled
+from ..steady.settling.settle import settle
+from ..steady.settling.settled import Settled
 from .compute import SECTION_2, STATES
 from .features import dips, peaks
 
@@ -31,8 +32,8 @@ _FINE = 3840
 
 
 @functools.cache
-def _settled(name: str, **changes: float) -> Settled:
-    return settled(scene(name).evolve(**changes))
+def _settle(name: str, **changes: float) -> Settled:
+    return settle(scene(name).evolve(**changes))
 
 
 @functools.cache
@@ -45,7 +46,7 @@ def _words(regime: Regime) -> str:
 
 
 def _elastic(name: str, **changes: float) -> float:
-    return _settled(name, **changes).run.max_output_force_elastic
+    return _settle(name, **changes).run.max_output_force_elastic
 
 
 def _scales() -> Numbers:
@@ -73,7 +74,7 @@ def _stop_band() -> Numbers:
 
 
 def _energy() -> Numbers:
-    found = [settled(scene(name), samples=_FINE) for name in ("fig3a", "fig3b")]
+    found = [settle(scene(name), samples=_FINE) for name in ("fig3a", "fig3b")]
     ratios = [pushes(one.run) or (0, 0) for one in found]
     return [*(f"{strong}:{periods}" for strong, periods in ratios),
             *(1e6 * float(one.run.kinetic_energy.max()) for one in found)]
@@ -94,20 +95,20 @@ def _shaker() -> Numbers:
 
 
 def _one_amplitude() -> Numbers:
-    found = [_settled("rig", f=f, A0=7e-6, kappa=0.001) for f in (60.0, 90.0, 100.0)]
+    found = [_settle("rig", f=f, A0=7e-6, kappa=0.001) for f in (60.0, 90.0, 100.0)]
     forces = [one.run.max_output_force_elastic for one in found]
     return [forces[0], _words(found[0].regime), *forces[1:]]
 
 
 def _stiffness() -> Numbers:
-    stiff = _settled("rig", k=0.001 * scene("rig").K).run
+    stiff = _settle("rig", k=0.001 * scene("rig").K).run
     ends = [scene("rig").evolve(A0=a, kappa=0.001) for a in (6e-6, 13e-6)]
     return [stiff.max_output_force, stiff.max_input_force, *(one.k / 1e3 for one in ends),
             *(one.foundation_frequency for one in ends)]
 
 
 def _output_force() -> Numbers:
-    runs = [_settled("fig12-60").run, _settled("fig3b").run]
+    runs = [_settle("fig12-60").run, _settle("fig3b").run]
     return [force for one in runs for force in (one.max_output_force, one.max_output_force_elastic)]
 
 
@@ -125,7 +126,7 @@ def _model_4() -> Numbers:
 
 
 def _states() -> Numbers:
-    found = [_settled(name) for name in STATES.values()]
+    found = [_settle(name) for name in STATES.values()]
     same = {_words(one.regime) for one in found}
     return [*(one.run.max_output_force_elastic for one in found), " or ".join(sorted(same))]
 
@@ -136,7 +137,7 @@ def _two_solutions() -> Numbers:
         values.append(attractors(chain.evolve(**changes, **({"kappa": 0.001} if changes else {})), 32))
     counts = {float(len(one)) for one in values[:2]}
     words = {_words(one.regime) for found in values[:2] for one in found}
-    hard = settled(chain.evolve(f=100.0), rest(chain))
+    hard = settle(chain.evolve(f=100.0), rest(chain))
     return [counts.pop() if len(counts) == 1 else math.nan, " or ".join(sorted(words)), _words(hard.regime),
             float(len(values[2])), " or ".join(sorted({_words(one.regime) for one in values[2]}))]
 

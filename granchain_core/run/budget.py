@@ -49,7 +49,7 @@ class CompilerClock(event.Listener):
 
     @property
     def seconds(self) -> float:
-        """Those of this thread so far."""
+        """Seconds of this thread so far."""
         return getattr(self._own, "seconds", 0.0)
 
     def on_start(self, event: event.Event) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from ..integrate import Engine, State, fixed_step_setting
 from ..kernels.forces.peaks import next_period
 from ..regime import Regime
-from ..result import Cost, Jumps, Run, run_from
+from ..result import Cost, Jumps, Run, run_from, start_words
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
@@ -64,6 +64,7 @@ class LiveChain:
         self.time = 0.0
         self._index = 0
         self._waiting: Scene | None = None
+        self._began = start_words(scene, start)
         self._engine = self._new_engine(scene, rest(scene) if start is None else start)
         if start is not None:
             self._index = round(start.phase * samples) % samples
@@ -93,7 +94,7 @@ class LiveChain:
         """Back to rest at drive phase 0, with the newest knobs."""
         self.scene = self._waiting or self.scene
         self._waiting = None
-        self.time, self._index = 0.0, 0
+        self.time, self._index, self._began = 0.0, 0, start_words(self.scene, None)
         self._engine = self._new_engine(self.scene, rest(self.scene))
 
     def advance(self, count: int) -> Run:
@@ -124,7 +125,7 @@ class LiveChain:
         next_period(engine.log.peaks)
         record = engine.record(count)
         cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)
-        run = run_from(engine, record, first, _NOT_ASKED, None, cost)
+        run = run_from(engine, record, first, _NOT_ASKED, None, cost, start=self._began)
         start = self.time - float(run.time[0])
         run = replace(run, time=self.time + np.arange(count + 1) * (self.scene.period / self.samples),
                       jumps=replace(run.jumps, time=run.jumps.time + start))

@@ -14,15 +14,16 @@ import numpy as np
 
 from ..errors import BadInput, check_range
 from ..integrate import Counts, Engine, Setting, State, fixed_step_setting, method_for
-from ..integrate.methods import jump_errors, setting_of, typical_error
-from ..integrate.stated import Computations, force_differences
+from ..integrate.methods import setting_of
+from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
+from ..motion import MOST_RECORDED
 from ..regime import Regime
-from ..result import Cost, Run, residual, run_from
+from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
 from ..state import rest
-from ..steady.regime import find_period
+from ..steady.regime_criteria import find_period
 from ..steady.settling.regime_decisions import REMEMBERED, regime_without_continuing
 from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
@@ -30,8 +31,6 @@ from .run_checkpoints import Reached, RunCheckpoints
 
 #: Most drive periods of one run.
 MOST_PERIODS = 10_000_000
-#: Most recorded values of one run: rows times beads.
-MOST_VALUES = 50_000_000
 #: Stated error above which a motion may be chaotic: finer computations do not help then.
 _CHAOS_SUSPECTED_ABOVE = 0.3
 #: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.
@@ -98,7 +97,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     OverBudget
         The run would take longer than `budget` from the beginning; it is a `BadInput`.
     NumbersFailed
-        The motion is no longer finite, or a step has shrunk to nothing; the message says which bead, when and why.
+        The motion is no longer finite, a step has shrunk to nothing, a period takes millions of steps, or contacts open
+        and close endlessly (chatter); the message says when and why.
     Cancelled
         `stop` was set.
 
@@ -134,8 +134,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     regime = _regime(scene, last, periods + record, stop)
     cost = Cost.of(time.perf_counter() - began, total, setting.method)
     first = periods * samples + round(begin.phase * samples)
-    result = run_from(last.engine, last.samples, first, regime, float(error), cost, status, np.array(forces))
-    return replace(result, start=_origin(scene, start))
+    return run_from(last.engine, last.samples, first, regime, float(error), cost, status=status,
+                    force_errors=np.array(forces), start=start_words(scene, start))
 
 
 def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Setting, samples: int,
@@ -164,20 +164,15 @@ def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Sett
         before = now
 
 
-def _origin(scene: Scene, start: State | None) -> str:
-    if start is not None:
-        return "given state"
-    return "initial velocity" if scene.moves_at_start else "rest"
-
-
 def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
     for name, value, low, high in (("periods", periods, 0, MOST_PERIODS), ("record", record, 1, MOST_PERIODS),
                                    ("samples", samples, 1, 1_000_000)):
         check_range(f"{name} =", value, low, high)
     rows = record * samples * scene.N
-    if rows > MOST_VALUES:
+    if rows > MOST_RECORDED:
+        most = max(1, MOST_RECORDED // (samples * scene.N))
         raise BadInput(f"{record} periods of {samples} samples for {scene.N} beads are {rows:.1e} values; at most "
-                       f"{MOST_VALUES:.0e} are recorded: record {max(1, MOST_VALUES // (samples * scene.N))} periods.")
+                       f"{MOST_RECORDED:.0e} are recorded: record {most} periods.")
 
 
 def _attempt(reached: Reached, sizes: tuple[int, int], progress: Callable[[float], None] | None, total: Counts,
@@ -212,29 +207,21 @@ def _strobes(rows: Samples, samples: int) -> np.ndarray:
     return np.stack([rows.displacement[::samples], rows.velocity[::samples]], axis=1)
 
 
-def _difference(now: _Attempt, before: _Attempt) -> float:
-    """Largest difference of any displacement sample over the largest displacement."""
-    largest = float(np.abs(now.samples.displacement).max())
-    if largest == 0.0:
-        return 0.0
-    return float(np.abs(now.samples.displacement - before.samples.displacement).max()) / largest
-
-
 def _differences(now: _Attempt, before: _Attempt) -> np.ndarray:
     """Relative differences (4,) of the displacements and of the largest input, output and elastic output force.
 
     The differences of forces are taken with a factor for caution.
     """
     jumps = now.engine.scaled.scene.forces_jump
-    return np.array([_difference(now, before), *force_differences(now.engine.maxima, before.engine.maxima, jumps)])
+    return np.array([relative_difference(now.samples.displacement, before.samples.displacement),
+                     *force_differences(now.engine.maxima, before.engine.maxima, jumps)])
 
 
 def _least(now: _Attempt, setting: Setting) -> np.ndarray:
-    """Lower limits of the stated errors (4,): typical for this step, and for forces at jumps `jump_errors`."""
+    """Lower limits of the stated errors (4,)."""
     engine = now.engine
     step = setting.step(engine.scaled, engine.samples)
-    jumps = jump_errors(setting, engine.scaled, step, engine.jumps, engine.maxima)
-    return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])
+    return least_errors(setting, engine.scaled, step, engine.jumps, engine.maxima)
 
 
 def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime:

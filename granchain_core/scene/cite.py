@@ -1,7 +1,8 @@
-"""What to cite for a scene: the software, the paper of the model, and the sources of its effects."""
+"""What to cite for a scene: the software, the paper of the model, and the sources of its damping law and effects."""
 
 from __future__ import annotations
 
+from ..laws import LAWS
 from ..version import __version__
 from .description import Description
 from .effects import effects_of
@@ -26,19 +27,13 @@ _DIODE = ("N. Boechler, G. Theocharis, C. Daraio. Bifurcation-based acoustic swi
 _BREATHERS = ("C. Chong, F. Li, J. Yang, M. O. Williams, I. G. Kevrekidis, P. G. Kevrekidis, C. Daraio. Damped-driven "
               "granular chains: an ideal playground for dark breathers and multibreathers. Phys. Rev. E 89, 032924 "
               "(2014).")
-_LAWS = {
-    "tsuji": "Y. Tsuji, T. Tanaka, T. Ishida. Lagrangian numerical simulation of plug flow of cohesionless particles "
-             "in a horizontal pipe. Powder Technology 71, 239–250 (1992).",
-    "kuwabara-kono": "G. Kuwabara, K. Kono. Restitution coefficient in a collision between two spheres. Jpn. J. Appl. "
-                     "Phys. 26, 1230–1233 (1987).",
-}
 
 
 def citations(scene: Description) -> list[tuple[str, str]]:
     """What for, and what to cite, for the model and the effects of a scene."""
     found = [("software", _SOFTWARE), ("model", _PAPER), ("contact", _HERTZ)]
-    if scene.has_dissipation and scene.dissipation in _LAWS:
-        found.append((f"{scene.dissipation} damping", _LAWS[scene.dissipation]))
+    if scene.has_dissipation and LAWS[scene.dissipation].source:
+        found.append((f"{scene.dissipation} damping", LAWS[scene.dissipation].source))
     found += [(effect.title, effect.source) for effect in effects_of(scene) if effect.source]
     if not scene.is_driven and scene.F0 == 0.0:
         found.append(("solitary wave", _NESTERENKO))

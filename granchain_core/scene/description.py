@@ -127,7 +127,7 @@ class Description:
 
     @property
     def beads(self) -> tuple[Bead, ...]:
-        """All beads from left to right."""
+        """All beads, from the driver to the wall."""
         return tuple(self.bead(i) for i in range(1, self.N + 1))
 
     def masses(self) -> np.ndarray:

@@ -11,6 +11,9 @@ from ..result import ForceErrors
 from ..scene import Scene
 from ..state import State
 
+#: Drive periods over which the largest forces of an irregular motion are taken.
+IRREGULAR_PERIODS = 100
+
 
 @dataclass(frozen=True, eq=False)
 class SteadyState:

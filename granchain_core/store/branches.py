@@ -23,14 +23,14 @@ from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
+from ..orbits.branch.special import SPECIAL_KINDS
+from ..orbits.branch.tables import NO_CONTACT
 from ..scene import Amplitude
 from ..tables import MAXIMA
 from .writing import write_file, write_result
 
-_NONE = -1
-#: How an arm can have ended, kinds of special points, and what grazes.
+#: How an arm can have ended, and how a contact grazes.
 _ENDS = ("", "reached", "returned", "closed", "merged", "lost")
-_KINDS = ("fold", "period_doubling", "neimark_sacker", "grazing")
 _EVENTS = ("", "touch", "separation")
 #: Numbers of one turning point.
 _TURN = 4
@@ -127,11 +127,11 @@ def _read_special(file: File, n: int) -> list[SpecialPoint]:
     count = len(before)
     read = {name: file.numbers(f"special/{name}", (count,)) for name in (
         "knob", "knob_low", "knob_high", "multiplier_real", "multiplier_imag")}
-    contacts = within("/special/contact", file.numbers("special/contact", (count,), "i"), _NONE, n)
-    kinds, events = file.words("special/kind", count, _KINDS), file.words("special/event", count, _EVENTS)
+    contacts = within("/special/contact", file.numbers("special/contact", (count,), "i"), NO_CONTACT, n)
+    kinds, events = file.words("special/kind", count, SPECIAL_KINDS), file.words("special/event", count, _EVENTS)
     return [SpecialPoint(
         kind=kinds[i], knob=float(read["knob"][i]), interval=(float(read["knob_low"][i]), float(read["knob_high"][i])),
         before=before[i], after=after[i],
         multiplier=(None if np.isnan(read["multiplier_real"][i])
                     else complex(read["multiplier_real"][i], read["multiplier_imag"][i])),
-        contact=None if contacts[i] == _NONE else int(contacts[i]), event=events[i] or None) for i in range(count)]
+        contact=None if contacts[i] == NO_CONTACT else int(contacts[i]), event=events[i] or None) for i in range(count)]

@@ -2,9 +2,11 @@
 
 /curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, their relative errors
         error_estimate (of the output force), error_estimate_elastic, error_estimate_input (frequency);
-        regime, status, period (frequency); periods_run, decay, multiplier, lyapunov, lyapunov_error, the evidence for
-        the regime, absent in older files (frequency); drive_amplitude (frequency, m) where A0 depends on the frequency,
-        which the root's attribute `amplitude` describes
+        regime, status, period (frequency); the evidence for the regime, which older files lack in part or whole:
+        periods_run, decay, multiplier, lyapunov, lyapunov_error, and followed, approaches, distance, return_distance,
+        return_limit, smallest_window_ratio, largest_window_ratio (frequency);
+        drive_amplitude (frequency, m) where A0 depends on the frequency, which the root's attribute `amplitude`
+        describes
 """
 
 from __future__ import annotations
@@ -23,9 +25,9 @@ from ..result import ForceErrors
 from ..scene import Amplitude, Scene
 from ..state import rest
 from ..steady.curve.curve import Curve, CurvePoint
-from ..steady.curve.order import STARTS
+from ..steady.curve.order import CURVE_STARTS
 from ..tables import MAXIMA
-from ..tables.words import ERRORS
+from ..tables.words import ERRORS, EVIDENCE, MORE_EVIDENCE
 from .writing import or_none, write_file, write_result
 
 _NUMBERS = ("frequency", *MAXIMA, *ERRORS)
@@ -60,24 +62,37 @@ def _read(file: File) -> Curve:
     proven = _evidence(file, shape)
     points = [_point(scene, *one) for one in zip(numbers.T, periods, names, outcomes, proven, strict=True)]
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
-    return Curve(scene, one_of("start", file.text("start"), STARTS), points, file.number("wall_s"), amplitude)
+    return Curve(scene, one_of("start", file.text("start"), CURVE_STARTS), points, file.number("wall_s"), amplitude)
 
 
 def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:
-    """What is known of each point's regime; nothing in files from before it was kept."""
-    if not file.has("curve/periods_run"):
-        return [{"decay": None, "periods_run": 0}] * shape[0]
-    run = within("/curve/periods_run", file.numbers("curve/periods_run", shape, "i"), 0, np.iinfo(np.int64).max)
-    decay, multiplier, mean, error = (file.numbers(f"curve/{name}", shape, "any")
-                                      for name in ("decay", "multiplier", "lyapunov", "lyapunov_error"))
-    return [{"periods_run": int(periods), "decay": or_none(d), "multiplier": or_none(m),
-             "lyapunov": None if np.isnan(a) else (float(a), float(b))}
-            for periods, d, m, a, b in zip(run, decay, multiplier, mean, error, strict=True)]
+    """What is known of each point's regime; what a file from before it was kept does not have is not known."""
+    numbers = {name: file.numbers(f"curve/{name}", shape, "any") if file.has(f"curve/{name}")
+               else np.full(shape, np.nan) for name in EVIDENCE | MORE_EVIDENCE}
+    run, followed, approaches = (_whole(file, name, shape, most) for name, most in (
+        ("periods_run", np.iinfo(np.int64).max), ("followed", 1), ("approaches", np.iinfo(np.int32).max)))
+    return [{"periods_run": int(run[i]), "followed": bool(followed[i]), "approaches": int(approaches[i]) or None,
+             "lyapunov": _pair(numbers["lyapunov"][i], numbers["lyapunov_error"][i]),
+             "window_ratios": _pair(numbers["smallest_window_ratio"][i], numbers["largest_window_ratio"][i]),
+             **{name: or_none(numbers[name][i])
+                for name in ("decay", "multiplier", "distance", "return_distance", "return_limit")}}
+            for i in range(shape[0])]
+
+
+def _whole(file: File, name: str, shape: tuple[int, ...], most: int) -> np.ndarray:
+    """Whole numbers from 0 to `most`; 0 in files without them."""
+    path = f"curve/{name}"
+    return within(f"/{path}", file.numbers(path, shape, "i"), 0, most) if file.has(path) else np.zeros(shape, np.int64)
+
+
+def _pair(first: float, second: float) -> tuple[float, float] | None:
+    """Two numbers that are known together."""
+    return None if np.isnan(first) else (float(first), float(second))
 
 
 def _point(scene: Scene, numbers: np.ndarray, period: int, name: str, outcome: str,
            proven: dict[str, Any]) -> CurvePoint:
     frequency, input_force, output_force, elastic, *errors = map(float, numbers)
-    regime = Regime(name, int(period) or None, distance=None, **proven)
+    regime = Regime(name, int(period) or None, **proven)
     return CurvePoint(frequency, output_force, elastic, input_force, regime,
                       ForceErrors(*(or_none(error) for error in errors)), rest(scene), status=outcome)

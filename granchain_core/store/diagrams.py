@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from ..diagram import Axis, Diagram, Grid
-from ..diagram.cells import CELL, REGIMES, empty_cells
+from ..diagram.cells import CELL, CELL_REGIMES, empty_cells
 from ..diagram.grid import KNOBS, MOST_CELLS
 from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
@@ -62,5 +62,5 @@ def _column(file: File, name: str, shape: tuple[int, ...]) -> np.ndarray:
     kind, path = CELL[name], f"map/{name}"
     if kind.kind == "f":
         return file.numbers(path, shape, unit="N" if name in MAXIMA else "1").reshape(-1)
-    low, high = (-1, len(REGIMES) - 1) if name == "regime" else (0, np.iinfo(kind).max)
+    low, high = (-1, len(CELL_REGIMES) - 1) if name == "regime" else (0, np.iinfo(kind).max)
     return within(f"/{path}", file.numbers(path, shape, "i"), low, high).reshape(-1)

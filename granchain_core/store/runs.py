@@ -17,13 +17,14 @@ from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..regime import NAMES, Regime
-from ..result import ERRORS, Cost, ForceErrors, Jumps, Run
+from ..result import AT_REST, GIVEN_STATE, RUN_ERRORS, RUN_STARTS, Cost, ForceErrors, Jumps, Run
 from ..tables import MAXIMA
 from .writing import or_none
 
-#: What a run's `status` and `start` can be.
+#: What a run's `status` can be.
 STATUSES = ("done", "accuracy-not-reached", "over-budget")
-STARTS = ("rest", "initial velocity", "given state")
+#: What older files of a steady state say for `GIVEN_STATE`.
+_PREVIOUS_STATE = "previous state"
 
 
 def load(path: str | Path) -> Run:
@@ -67,13 +68,21 @@ def _read(file: File) -> Run:
     return Run(
         scene=scene, samples=file.whole("samples_per_period", 1),
         status=one_of("status", file.text("status"), STATUSES),
-        start=one_of("start", file.text("start") if file.stated("start") else STARTS[0], STARTS),
+        start=_start(file),
         regime=_regime(file), cost=_cost(file), jumps=_read_jumps(file, scene.N),
         error_estimate=or_none(file.number("accuracy_reached")),
         energy_residual=or_none(file.number("energy_residual")),
-        force_errors=ForceErrors(*(or_none(file.number(name, absent=np.nan)) for name in ERRORS)),
+        force_errors=ForceErrors(*(or_none(file.number(name, absent=np.nan)) for name in RUN_ERRORS)),
         **arrays, **largest,  # type: ignore[arg-type]  # names of its fields
     )
+
+
+def _start(file: File) -> str:
+    """Where a run began; files written before it was kept are of runs from rest."""
+    if not file.stated("start"):
+        return AT_REST
+    found = file.text("start")
+    return GIVEN_STATE if found == _PREVIOUS_STATE else one_of("start", found, RUN_STARTS)
 
 
 def _rows(file: File) -> int:

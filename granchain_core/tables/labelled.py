@@ -31,11 +31,11 @@ class Labelled:
             raise NotImplementedError
 
     def tables(self) -> tuple[Table, ...]:
-        """Its tables, the main one first; each is a group of its file."""
+        """The tables of the result, the main one first; each is a group of its file."""
         raise NotImplementedError
 
     def attributes(self) -> dict[str, Attribute]:
-        """What it has one of, with where it comes from: the attributes of its file's root."""
+        """What the result has one of, and where it comes from: the attributes of its file's root."""
         raise NotImplementedError
 
     def summary(self) -> Sequence[str]:

@@ -17,10 +17,10 @@ from ..experiment.measured import VIRTUAL
 from ..fit.trains import Train
 from ..integrate import Engine, State, fixed_step_setting
 from ..integrate.methods import typical_error
-from ..result import Cost, Run, run_from
+from ..result import GIVEN_STATE, Cost, Run, run_from
 from ..scene import Scene
 from ..scene.driven import refuse_undriven
-from ..steady.settling.recorded import settled
+from ..steady.settling.settle import settle
 from ..stop import Stop
 from ..version import __version__
 from .sensors import Sensors
@@ -190,7 +190,7 @@ def _samples(scene: Scene, sensors: Sensors) -> int:
 
 def _motion(scene: Scene, length: float, samples: int, stop: Stop | None) -> Run:
     """The steady state from phase 0 on, over `length` [s] and a little more."""
-    found = settled(scene.evolve(accuracy=max(scene.accuracy, _ACCURACY)), stop=stop)
+    found = settle(scene.evolve(accuracy=max(scene.accuracy, _ACCURACY)), stop=stop)
     periods = math.ceil(length * scene.f) + 1
     if periods * samples * scene.N > MOST_VALUES:
         raise BadInput(f"{periods} drive periods of {samples} samples for {scene.N} beads are more than "
@@ -200,4 +200,4 @@ def _motion(scene: Scene, length: float, samples: int, stop: Stop | None) -> Run
     engine.start(State(found.run.displacement[-1], found.run.velocity[-1]))
     began, rows = time.perf_counter(), engine.record(periods * samples)
     cost = Cost.of(time.perf_counter() - began, engine.counts, setting.method)
-    return run_from(engine, rows, 0, found.regime, typical_error(setting), cost)
+    return run_from(engine, rows, 0, found.regime, typical_error(setting), cost, start=GIVEN_STATE)

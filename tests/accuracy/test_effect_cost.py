@@ -7,8 +7,9 @@ import pytest
 from granchain_core import Cancelled, scene
 from granchain_core.accuracy import effect_cost as module
 from granchain_core.accuracy.effect_cost import CODE, Variant, effect_cost
+from granchain_core.pieces import ACCURACY_KERNELS, COST_KERNELS
 from granchain_core.stop import Stop
-from granchain_core.warm import ACCURACY, COST, compile_piece, is_warm
+from granchain_core.warm import compile_piece, is_warm
 
 CHAIN = scene("sec2")
 
@@ -60,7 +61,7 @@ def test_timing_stops_at_once_and_is_held_up() -> None:
     assert len(held) == 3
 
 
-@pytest.mark.parametrize("piece", [ACCURACY, COST])
+@pytest.mark.parametrize("piece", [ACCURACY_KERNELS, COST_KERNELS])
 def test_a_compiled_piece_is_known_as_that(piece: str) -> None:
     compile_piece(CHAIN, piece)
     assert is_warm(CHAIN, (piece,))

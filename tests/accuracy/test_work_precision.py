@@ -22,8 +22,9 @@ from granchain_core.accuracy.limit import Limited
 from granchain_core.accuracy.naive import NATURAL_STEPS, lesson
 from granchain_core.accuracy.scipy_methods import solve
 from granchain_core.integrate import METHODS
+from granchain_core.pieces import ACCURACY_KERNELS
 from granchain_core.stop import Stop
-from granchain_core.warm import ACCURACY, compile_piece
+from granchain_core.warm import compile_piece
 
 SHORT = scene("sec2").evolve(N=2, f=2000.0)
 
@@ -147,7 +148,7 @@ def test_a_solver_of_scipy_stops_between_two_steps(solver: str, monkeypatch: pyt
 
 def test_a_measurement_is_cancelled_in_its_middle() -> None:
     """While rows of SciPy's solvers are measured, which take minutes with the rig."""
-    compile_piece(scene("rig"), ACCURACY)
+    compile_piece(scene("rig"), ACCURACY_KERNELS)
     reached = threading.Event()
     cancelled_in_the_middle(lambda stop: entry(scene("rig"), stop, lambda part: reached.set() if part > 0.0 else None), reached)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, State, attractors, basins, scene
-from granchain_core.steady.settling.alone import steady_state
+from granchain_core.steady.settling.single_chain import steady_state
 from granchain_core.stop import Stop
 
 #: Two attractors with shares near a half (docs/diagram.md).

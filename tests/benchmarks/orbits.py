@@ -8,7 +8,7 @@ import numpy as np
 
 from granchain_core import scene
 from granchain_core.orbits import periodic_orbit
-from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.steady.settling.settling import run_until_settled
 
 from . import problem

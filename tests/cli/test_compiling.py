@@ -15,10 +15,10 @@ from pathlib import Path
 
 import pytest
 
-from app.cli import compiling
 from app.cli.common import in_background
 from app.cli.compiling import WORDS, compiling_beside
-from granchain_core import scene, warm
+from granchain_core import scene
+from granchain_core.pieces import FIXED_STEP_KERNELS
 
 #: Compiles two functions, as a first run does.
 PROGRAM = """
@@ -91,7 +91,7 @@ def compilers() -> list[BaseProcess]:
 def test_a_second_process_compiles_only_where_numba_does_and_ends_with_the_block(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     event = importlib.import_module("numba.core.event")
-    with compiling_beside(scene("sec2"), "fixed step"):
+    with compiling_beside(scene("sec2"), FIXED_STEP_KERNELS):
         assert compilers() == [], "nothing has been compiled yet"
         with event.trigger_event("numba:compile"), event.trigger_event("numba:compile"):
             (process,) = compilers()  # one, however much is compiled
@@ -101,17 +101,14 @@ def test_a_second_process_compiles_only_where_numba_does_and_ends_with_the_block
         assert compilers() == [], "the block has ended"
 
 
-def test_the_pieces_have_the_names_of_their_table() -> None:
-    assert (compiling.FIXED_STEP, compiling.ORBIT) == (warm.FIXED_STEP, warm.ORBIT)
-
-
 def test_what_cannot_be_compiled_beside_leaves_no_word() -> None:
     """The tangent flow refuses a chain that cuts tension; the command says so, and this process nothing."""
     done = subprocess.run([sys.executable, "-c", f"""
 import os
-from app.cli.compiling import ORBIT, _compile
+from app.cli.compiling import _compile
 from granchain_core import scene
-_compile({os.getpid()}, scene("sec2").evolve(tension="cut"), (ORBIT,))
+from granchain_core.pieces import ORBIT_KERNELS
+_compile({os.getpid()}, scene("sec2").evolve(tension="cut"), (ORBIT_KERNELS,))
 """], cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "")
 
@@ -119,5 +116,5 @@ _compile({os.getpid()}, scene("sec2").evolve(tension="cut"), (ORBIT,))
 def test_with_one_core_nothing_compiles_beside(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("os.cpu_count", lambda: 1)
     event = importlib.import_module("numba.core.event")
-    with compiling_beside(scene("sec2"), "fixed step"), event.trigger_event("numba:compile"):
+    with compiling_beside(scene("sec2"), FIXED_STEP_KERNELS), event.trigger_event("numba:compile"):
         assert compilers() == []

@@ -29,6 +29,7 @@ from app.session.live import LiveRun
 from app.session.message_checks import listed, whole
 from granchain_core import BadInput, run, scene, settle
 from granchain_core.experiment.measured import MOST_BYTES
+from granchain_core.result import GIVEN_STATE
 
 
 @pytest.mark.parametrize("wrong", [True, False, None, "3", 2.5, 0, 9, float("nan"), [1]])
@@ -133,7 +134,7 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
     chain = scene("sec2").evolve(N=2, f=2000.0)
     dashboard.session.scene = chain
     found = settle(chain, samples=8)
-    for picture in (replace(found, start="previous state"), found):
+    for picture in (replace(found, run=replace(found.run, start=GIVEN_STATE)), found):
         dashboard._arrived(picture)
         state = dashboard.views.header.state
         assert (state["origin"], state["start"]) == (picture.start, "rest")

@@ -20,7 +20,7 @@ from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.checkpoints import folder_of
 from granchain_core.diagram import Axis, Diagram, Grid, diagram
 from granchain_core.diagram.blocks import Blocks
-from granchain_core.diagram.cells import REGIMES, empty_cells
+from granchain_core.diagram.cells import CELL_REGIMES, empty_cells
 from granchain_core.diagram.scheduled import describe, work_on
 from granchain_core.scheduler import dealt
 from granchain_core.stop import Stop
@@ -74,7 +74,7 @@ def test_an_axis_that_reaches_zero_switches_its_effect_off_there() -> None:
 
 def test_scenes_that_batches_cannot_run_are_settled_one_by_one() -> None:
     found = diagram(scene("sec2").evolve(tension="cut"), ("f", [340.0]), ("A0", [5e-7, 6e-7]))
-    assert [REGIMES[code] for code in found.cells["regime"]] == ["periodic", "periodic"]
+    assert [CELL_REGIMES[code] for code in found.cells["regime"]] == ["periodic", "periodic"]
 
 
 def test_the_first_cells_are_spread_over_the_whole_diagram() -> None:
@@ -126,7 +126,7 @@ def test_a_map_comes_back_and_xarray_labels_it(found: Diagram, tmp_path: Path) -
     with xarray.open_dataset(file, engine="h5netcdf", group="map") as data:
         assert data.max_output_force.dims == ("A0", "f") and data.max_output_force.attrs["units"] == "N"
         assert data.f.attrs == {"units": "Hz", "long_name": "drive frequency"} and data.A0.attrs["units"] == "m"
-        assert data.regime.attrs["flag_meanings"].split()[1:] == list(REGIMES)
+        assert data.regime.attrs["flag_meanings"].split()[1:] == list(CELL_REGIMES)
         at = data.sel(f=FREQUENCIES[2], A0=AMPLITUDES[1])
         assert float(at.max_output_force) == found.column("max_output_force")[1, 2]
 

@@ -58,6 +58,7 @@ print(explanation(one, None, 96))
      "ThreeQuarters (granchain_core.kernels.effects.dissipation) has no `exponent`"),
     ("kernels/effects/dissipation.py", "return r * root(r)", "return root(r)", "damping law ThreeQuarters: `power` is not δ^0.75"),
     ("laws.py", '    Law("three-quarters"', '    # Law("three-quarters"', "damping law ThreeQuarters has no line in laws.py"),
+    ("laws.py", 'δ^(3/4)", source=""', 'δ^(3/4)"', "Law.__init__() missing 1 required positional argument: 'source'"),
 ])
 def test_what_the_law_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
     file = tree / "granchain_core" / path

@@ -11,9 +11,11 @@ import pytest
 from documents import ROOT
 
 from granchain_core import orbit, scene
+from granchain_core.integrate import methods
+from granchain_core.kernels.batch import period_end
 from granchain_core.regime import Regime
-from granchain_core.steady import regime
-from granchain_core.steady.settling import nearby_orbit, regime_decisions
+from granchain_core.steady import regime_criteria
+from granchain_core.steady.settling import nearby_orbit, refine_orbit, regime_decisions
 
 MODEL, OBSERVERS, DESIGN, REGIMES = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
                                      for name in ("model", "observers", "design", "regimes"))
@@ -36,9 +38,13 @@ def test_a_threshold_of_the_page_is_that_of_the_code(printed: str, name: str, fi
 def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
     assert len(ROWS) == REGIMES.count(".py` |") > 20
     assert {file for _, _, file in ROWS} == {
-        "kernels/strobes/periodicity", "kernels/batch/period_end", "steady/regime", "steady/lyapunov",
-        "steady/settling/regime_decisions",
+        "kernels/strobes/periodicity", "kernels/batch/period_end", "steady/regime_criteria", "steady/lyapunov",
+        "steady/settling/regime_decisions", "steady/steady_state", "regime",
         "steady/settling/nearby_orbit", "steady/batch/settle"}
+
+
+def test_a_batch_keeps_the_strobes_on_which_a_decision_is_based() -> None:
+    assert period_end.STROBES_KEPT >= regime_decisions.REMEMBERED
 
 
 def test_the_caps_of_the_contraction_are_the_pages() -> None:
@@ -55,22 +61,28 @@ def test_two_measurements_agree_as_the_page_says() -> None:
         return Regime("chaotic", None, None, None, 1, (mean, error))
 
     assert "three combined standard errors or 1e-3, whichever is larger" in REGIMES
-    assert regime.agree(measured(0.1, 0.0), measured(0.1009, 0.0))
-    assert not regime.agree(measured(0.1, 0.0), measured(0.1011, 0.0))
-    assert regime.agree(measured(0.1, 0.03), measured(0.1 + 2.9 * 0.05, 0.04))
-    assert not regime.agree(measured(0.1, 0.03), measured(0.1 + 3.1 * 0.05, 0.04))
+    assert regime_criteria.agree(measured(0.1, 0.0), measured(0.1009, 0.0))
+    assert not regime_criteria.agree(measured(0.1, 0.0), measured(0.1011, 0.0))
+    assert regime_criteria.agree(measured(0.1, 0.03), measured(0.1 + 2.9 * 0.05, 0.04))
+    assert not regime_criteria.agree(measured(0.1, 0.03), measured(0.1 + 3.1 * 0.05, 0.04))
 
 
 def test_the_limit_of_the_return_distance_is_the_pages() -> None:
     """20π/P for P states: five times 2π over half of them."""
     limit = 20 * math.pi / regime_decisions.REMEMBERED
     assert f"below 20π/P ({limit:.2f} for {regime_decisions.REMEMBERED})" in REGIMES
-    assert regime.return_limit(np.zeros((420, 2, 1))) == pytest.approx(20 * math.pi / 420)
+    assert regime_criteria.return_limit(np.zeros((420, 2, 1))) == pytest.approx(20 * math.pi / 420)
 
 
 def test_the_decisions_the_design_page_names_are_the_codes() -> None:
-    assert f"a growth of {regime.CLEAR_GROWTH:g}," in DESIGN and f"the last {regime_decisions.REMEMBERED} strobes" in DESIGN
+    assert f"a growth of {regime_criteria.CLEAR_GROWTH:g}," in DESIGN and f"the last {regime_decisions.REMEMBERED} strobes" in DESIGN
     assert f"give |μ| to about {number(nearby_orbit.UNSURE)}" in DESIGN
+
+
+def test_the_setting_of_a_refined_orbit_is_the_design_pages() -> None:
+    part, most = refine_orbit.INTEGRATION_PART, refine_orbit.LEAST_ACCURATE
+    assert (f"{part:g} · accuracy · (1 − r), with the accuracy at most {number(most)} and the contraction factor r, "
+            f"is below {number(methods.FIXED_STEP_IS_CHEAPER)}") in DESIGN
 
 
 @pytest.mark.parametrize(("name", "f", "leading", "pages"), [

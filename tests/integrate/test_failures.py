@@ -11,7 +11,7 @@ from granchain_core.integrate.failure import Failure
 from granchain_core.kernels.flow import run as flow
 from granchain_core.kernels.flow.attempt import Course
 from granchain_core.kernels.status import CHATTER, DONE, TOO_MANY_STEPS
-from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
 
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])

@@ -34,7 +34,7 @@ from granchain_core.kernels.flow.run import run_flow
 from granchain_core.kernels.flow.tangent import new_tangent
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
 from granchain_core.kernels.samples import Output
-from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.stop import Stop
 
 # A loop is read once: how many of its first rounds the compiler writes out is its own choice, case by case.

@@ -44,10 +44,10 @@ def hits_and_misses(cache: Path | None, tree: Path, does: str) -> tuple[int, int
 MARK = """
 import sys
 from granchain_core import scene, warm
-warm.PIECES[warm.FIXED_STEP] = lambda short: None
+warm.PIECES[warm.FIXED_STEP_KERNELS] = lambda short: None
 if sys.argv[1] == "compile":
-    warm.compile_piece(scene("sec2"), warm.FIXED_STEP)
-print(warm.is_warm(scene("sec2"), [warm.FIXED_STEP]))
+    warm.compile_piece(scene("sec2"), warm.FIXED_STEP_KERNELS)
+print(warm.is_warm(scene("sec2"), [warm.FIXED_STEP_KERNELS]))
 """
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4])

@@ -11,9 +11,9 @@ from scipy.optimize import linear_sum_assignment
 
 from app.cli import main
 from granchain_core import Orbit, Scene, orbit, scene
-from granchain_core.orbits.flow import StroboscopicMap
 from granchain_core.orbits.multiplier_errors import derivative_change, errors_of
 from granchain_core.orbits.orbit import sorted_multipliers
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
 CHAINS = {"sec2": scene("sec2"), "1:2": scene("sec2").evolve(f=615.0), "fig12-90": scene("fig12-90"),
           "fig12-60": scene("fig12-60"), "one bead": scene("sec2").evolve(N=1, f=900.0)}

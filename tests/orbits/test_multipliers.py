@@ -22,7 +22,7 @@ from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.dissipation import LinearDashpot
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.preload import Preload
-from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
 _STORED = np.load(Path(__file__).parents[1] / "reference" / "monodromy.npz")
 CASES = ("founded", "kuwabara-kono", "preload", "rig-60", "sec2-340", "sec2-615", "tsuji")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core.orbits import orbit
-from granchain_core.orbits.flow import Flow
+from granchain_core.orbits.stroboscopic_map import Flow
 from granchain_core.steady.returns import relative_change
 
 

@@ -8,7 +8,7 @@ from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, NumbersFailed, scene
 from granchain_core.orbits import periodic_orbit
-from granchain_core.orbits.flow import StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])

@@ -13,7 +13,7 @@ from granchain_core.orbits.branch import point as points
 from granchain_core.orbits.branch import quick
 from granchain_core.orbits.branch.equations import BranchEquations
 from granchain_core.orbits.branch.steps import LONGEST, next_step, predicted
-from granchain_core.orbits.flow import TOLERANCE, Flow, StroboscopicMap
+from granchain_core.orbits.stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 from granchain_core.scaling import scale_chain
 from granchain_core.steady.returns import relative_change
 
@@ -57,7 +57,7 @@ def test_equal_calls_of_the_quick_map_give_equal_bits() -> None:
 def test_where_fixed_steps_would_be_slow_the_flow_takes_their_place(whole: Branch,
                                                                   monkeypatch: pytest.MonkeyPatch) -> None:
     assert quick.quick_steps(scale_chain(scene("sec2").evolve(f=0.1))) == 0 < quick.quick_steps(scale_chain(scene("sec2")))
-    monkeypatch.setattr(quick, "_MOST_STEPS", 0)
+    monkeypatch.setattr(quick, "_MOST_QUICK_STEPS", 0)
     monkeypatch.setattr(quick.QuickMap, "end", None)
     slow = followed()
     assert [one.kind for one in slow.special] == [one.kind for one in whole.special] != []

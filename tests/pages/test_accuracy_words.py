@@ -17,22 +17,22 @@ from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, compared_methods
 from granchain_core.accuracy.naive import lesson
 from granchain_core.integrate import METHODS, Setting
-from granchain_core.steady.settling import recorded, relax
+from granchain_core.steady.settling import pictures, refine_orbit
 from granchain_core.steady.settling import settling as settling_module
 from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rule in app/session/active_setting.py is the one of steady/settling/relax.py: the finest engine of a final picture."""
+    """The rule in app/session/active_setting.py is the one of steady/settling/refine_orbit.py: the finest engine of a final picture."""
     used: list[Setting] = []
-    engine = recorded.Engine
+    engine = pictures.Engine
 
     def noting(shown: Any, setting: Setting, *rest: Any, **options: Any) -> Any:
         used.append(setting)
         return engine(shown, setting, *rest, **options)
 
-    for module in (settling_module, relax, recorded):
+    for module in (settling_module, refine_orbit, pictures):
         monkeypatch.setattr(module, "Engine", noting)
     shown = scene("sec2").evolve(accuracy=accuracy)
     picture = settled(shown)

@@ -8,7 +8,7 @@ import pytest
 
 from app.parts.status_line import accuracy_words, multiplier_words, regime_hint, settled_entries
 from granchain_core import Settled, scene, settle
-from granchain_core.result import ForceErrors
+from granchain_core.result import GIVEN_STATE, ForceErrors
 from granchain_core.steady.curve.resonance import Place
 
 
@@ -50,6 +50,7 @@ def test_an_anti_resonance_says_that_its_ratio_is_no_place_among_the_peaks(pictu
 
 def test_where_the_motion_started(picture: Settled) -> None:
     assert settled_entries(picture, None, "1 N")["start"] == "from rest"
-    assert settled_entries(replace(picture, start="previous state"), None, "1 N")["start"] == "from previous state"
+    carried = replace(picture, run=replace(picture.run, start=GIVEN_STATE))
+    assert settled_entries(carried, None, "1 N")["start"] == "from previous state"
     struck = settle(scene("impact"), samples=8)
     assert settled_entries(struck, None, "1 N")["start"] == "from its initial velocities"

@@ -6,10 +6,11 @@ from typing import Any
 
 import pytest
 
-from app.pictures.branches import BranchRows, branches, drawn_orbits, special_words
+from app.pictures.branches import _STYLES, SPECIAL, BranchRows, branches, drawn_orbits, special_words
 from app.pictures.theme import THEMES
 from granchain_core import resonance_curve, scene
 from granchain_core.orbits import Branch, continue_branch
+from granchain_core.orbits.branch.special import SPECIAL_KINDS
 
 
 @pytest.fixture(scope="module")
@@ -21,6 +22,10 @@ def branch() -> Branch:
 def data(plot: Any, name: str) -> dict[str, list[Any]]:
     """The columns of a source."""
     return {column: list(values) for column, values in plot.select_one({"name": name}).data.items()}
+
+
+def test_every_kind_of_special_point_has_words_and_a_mark() -> None:
+    assert tuple(SPECIAL) == tuple(_STYLES) == SPECIAL_KINDS
 
 
 def test_orbits_around_special_points_are_drawn_in_their_places(branch: Branch) -> None:

@@ -12,7 +12,7 @@ from app.pictures.diagram import CATEGORIES, category, cell_rows, cell_words, di
 from app.pictures.theme import THEMES
 from granchain_core import scene
 from granchain_core.diagram import Axis, Diagram, Grid
-from granchain_core.diagram.cells import REGIMES, empty_cells
+from granchain_core.diagram.cells import CELL_REGIMES, empty_cells
 
 GRID = Grid(scene("sec2").evolve(N=2), Axis.of("f", [1900.0, 2000.0, 2100.0]), Axis.of("A0", [1e-7, 1e-6, 1e-5]))
 
@@ -21,7 +21,7 @@ def filled(*numbers: int, regime: str = "periodic", period: int = 2, force: floa
     """A diagram of which some cells are computed."""
     found = nothing(GRID)
     for number in numbers:
-        found.cells[number]["regime"], found.cells[number]["period"] = REGIMES.index(regime), period
+        found.cells[number]["regime"], found.cells[number]["period"] = CELL_REGIMES.index(regime), period
         found.cells[number]["max_output_force"] = force * (1 + number)
     return found
 
@@ -67,7 +67,7 @@ def test_a_cell_is_told_with_its_error_or_without_a_claim() -> None:
     assert cell_words(GRID, cell) == "2000 Hz, 1 µm: period 2, largest output force 2.5 N, largest observed, no error stated"
     cell["error_estimate"] = 3e-5
     assert cell_words(GRID, cell).endswith("2.5 N, relative error 3e-5")
-    cell["regime"], cell["period"], cell["lyapunov"], cell["lyapunov_error"] = REGIMES.index("chaotic"), 0, 0.21, 0.02
+    cell["regime"], cell["period"], cell["lyapunov"], cell["lyapunov_error"] = CELL_REGIMES.index("chaotic"), 0, 0.21, 0.02
     assert cell_words(GRID, cell).endswith("Lyapunov exponent 0.210 ± 0.020") and ": chaotic," in cell_words(GRID, cell)
 
 
@@ -76,7 +76,7 @@ def test_every_regime_and_period_has_its_category() -> None:
     told = {}
     for name, period in (("periodic", 1), ("periodic", 4), ("periodic", 5), ("periodic", 16), ("chaotic", 0),
                          ("quasi-periodic", 0), ("unsettled", 0), ("failed", 0)):
-        cell["regime"], cell["period"] = REGIMES.index(name), period
+        cell["regime"], cell["period"] = CELL_REGIMES.index(name), period
         told[name, period] = category(cell)
     assert told["periodic", 1] == "period 1" and told["periodic", 4] == "period 4"
     assert told["periodic", 5] == told["periodic", 16] == "period 5+"

@@ -6,16 +6,16 @@ from dataclasses import replace
 
 from granchain_core import State, scene
 from granchain_core.regime import Regime
-from granchain_core.run.run import _origin
+from granchain_core.result import start_words
 from granchain_core.state import rest
 
 
 def test_a_run_says_where_it_began() -> None:
     chain = scene("sec2")
-    assert _origin(chain, None) == "rest"
-    assert _origin(replace(chain, start_velocity=((1, 0.01),)), None) == "initial velocity"
+    assert start_words(chain, None) == "rest"
+    assert start_words(replace(chain, start_velocity=((1, 0.01),)), None) == "initial velocity"
     given: State = rest(chain)
-    assert _origin(chain, given) == "given state"
+    assert start_words(chain, given) == "given state"
 
 
 def test_the_sentence_claims_no_more_than_the_periods_show() -> None:

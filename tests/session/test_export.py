@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import json
 import os
 import re
@@ -71,6 +73,15 @@ def test_the_curve_can_be_read_again(screen: Screen) -> None:
     points = screen.curves["rest"]
     assert list(found.frequency) == [point.frequency for point in points]
     assert list(found.force) == [point.max_output_force for point in points]
+
+
+def test_the_curve_has_the_evidence_for_its_regimes(screen: Screen) -> None:
+    rows = list(csv.DictReader(io.StringIO(curve_csv(screen.curves))))
+    for row, point in zip(rows, screen.curves["rest"], strict=True):
+        assert int(row["periods_run"]) == point.regime.periods_run
+        for name in ("decay", "multiplier", "distance", "return_distance", "return_limit"):
+            assert (float(row[name]) if row[name] else None) == getattr(point.regime, name)
+    assert curve_csv({}).splitlines()[0].endswith("largest_window_ratio")
 
 
 def test_the_trains_have_every_sample_and_every_jump(screen: Screen) -> None:

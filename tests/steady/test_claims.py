@@ -9,9 +9,9 @@ import pytest
 
 from granchain_core import State, resonance_curve, run, scene, settled
 from granchain_core.integrate import Engine, Setting, adaptive_setting
-from granchain_core.kernels.strobes import periodicity as section
-from granchain_core.steady import regime
-from granchain_core.steady.settling import alone, recorded, relax
+from granchain_core.kernels.strobes import periodicity
+from granchain_core.steady import regime_criteria
+from granchain_core.steady.settling import pictures, refine_orbit, single_chain
 from granchain_core.steady.settling.regime_decisions import Decisions
 from granchain_core.steady.settling.settling import run_until_settled
 
@@ -25,20 +25,20 @@ def turning(rate: float, count: int = 420) -> np.ndarray:
 def test_of_two_halves_the_slower_one_tells_the_rate() -> None:
     """Nine changes that fall by 0.8 and then by 0.95 fall by 0.95: what is slow stays."""
     changes = np.cumprod([1.0, *[0.8] * 4, *[0.95] * 4])
-    assert section.decay_rate(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
+    assert periodicity.decay_rate(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
 
 
 def test_the_shortest_period_is_told() -> None:
     """States that alternate repeat after four periods too; their period is two."""
     states = np.zeros((9, 2, 1))
     states[1::2] = 1.0
-    assert section.shortest(states, np.ones(2), 4, 1e-9) == 2
+    assert periodicity.shortest(states, np.ones(2), 4, 1e-9) == 2
 
 
 def test_changes_lost_in_rounding_leave_a_distance() -> None:
     """A decay by 0.97 that went below a rounding of 1e-7: what is left to go may be 1e-7·0.97/0.03, and is told."""
     states = 1.0 + 0.97 ** np.arange(600)[:, None, None] * np.ones((1, 2, 3))
-    found = regime.find_period(states, rounding=1e-7)
+    found = regime_criteria.find_period(states, rounding=1e-7)
     assert found.name == "periodic" and found.decay == pytest.approx(0.97, abs=0.01)
     assert found.distance is not None and found.distance >= 1e-7 * 0.96 / 0.04
 
@@ -46,7 +46,7 @@ def test_changes_lost_in_rounding_leave_a_distance() -> None:
 def test_growth_within_its_error_is_no_chaos() -> None:
     """A mean exponent of 0.004 ± 0.006 on a closed curve is no evidence of chaos."""
     exponents = np.array([0.03, -0.02, 0.01, -0.01, 0.02, -0.006])
-    assert regime.regime_from_exponents(exponents, turning(1.0), 420).name == "quasi-periodic"
+    assert regime_criteria.regime_from_exponents(exponents, turning(1.0), 420).name == "quasi-periodic"
 
 
 @pytest.mark.parametrize(("mean", "error", "neutral"), [
@@ -56,29 +56,29 @@ def test_growth_within_its_error_is_no_chaos() -> None:
 ])
 def test_a_bad_measurement_is_no_easier(mean: float, error: float, neutral: bool) -> None:
     """Zero within three standard errors counts only while these exclude a growth of 0.05 a period."""
-    assert regime.is_neutral(mean, error) is neutral
+    assert regime_criteria.is_neutral(mean, error) is neutral
 
 
 def test_an_uncertain_exponent_is_measured_further() -> None:
     """0.02 ± 0.01 on a perfect closed curve is unsettled, and asks for more blocks; 0.02 ± 0.001 is chaos."""
     swing = np.tile([1.0, -1.0], 5)
     uncertain, sure = 0.02 + 0.03 * swing, 0.02 + 0.003 * swing
-    assert regime.undecided(uncertain) and not regime.undecided(sure) and not regime.undecided(-sure)
-    found = regime.regime_from_exponents(uncertain, turning(1.0), 420)
+    assert regime_criteria.undecided(uncertain) and not regime_criteria.undecided(sure) and not regime_criteria.undecided(-sure)
+    found = regime_criteria.regime_from_exponents(uncertain, turning(1.0), 420)
     assert found.name == "unsettled" and found.lyapunov == (pytest.approx(0.02), pytest.approx(0.01, rel=1e-12))
-    assert regime.regime_from_exponents(sure, turning(1.0), 420).name == "chaotic"
+    assert regime_criteria.regime_from_exponents(sure, turning(1.0), 420).name == "chaotic"
 
 
 def test_the_evidence_for_a_closed_curve_is_kept() -> None:
     """The golden rotation: 420 states come back within 2π/210 of their circle, and no window differs from the next."""
-    found = regime.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), turning(1.0), 420)
+    found = regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), turning(1.0), 420)
     assert found.return_limit == pytest.approx(10.0 * np.pi / 210.0)
     assert found.return_distance is not None and 0.0 < found.return_distance < 2.0 * np.pi / 210.0
     assert found.window_ratios is not None and found.window_ratios == pytest.approx((1.0, 1.0), abs=2e-3)
-    creeping = regime.regime_from_exponents(np.array([-2e-4, -4e-4, -3e-4, -3e-4]), turning(0.9997), 420)
+    creeping = regime_criteria.regime_from_exponents(np.array([-2e-4, -4e-4, -3e-4, -3e-4]), turning(0.9997), 420)
     # the largest change of a window may come some ten periods sooner or later in it: 0.9997^10
     assert creeping.name == "unsettled" and creeping.window_ratios == pytest.approx((0.9997**100,) * 2, abs=5e-3)
-    short = regime.regime_from_exponents(np.array([1e-4, -1e-4]), turning(1.0, 40), 40)
+    short = regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4]), turning(1.0, 40), 40)
     assert short.name == "unsettled" and short.window_ratios is None
 
 
@@ -96,14 +96,14 @@ def test_one_chain_and_a_batch_have_the_same_evidence() -> None:
 def test_a_spiral_that_creeps_inwards_is_no_closed_curve() -> None:
     """0.03 % a period: neighbours hardly approach, and yet it is on its way."""
     exponents = np.array([-2e-4, -4e-4, -3e-4, -3e-4])
-    assert regime.regime_from_exponents(exponents, turning(0.9997), 420).name == "unsettled"
-    assert regime.regime_from_exponents(exponents, turning(1.0), 420).name == "quasi-periodic"
+    assert regime_criteria.regime_from_exponents(exponents, turning(0.9997), 420).name == "unsettled"
+    assert regime_criteria.regime_from_exponents(exponents, turning(1.0), 420).name == "quasi-periodic"
 
 
 def test_a_drift_is_no_closed_curve() -> None:
     """A section that goes on and on never comes back near itself, whatever its exponent."""
     drifting = turning(1.0) + 0.05 * np.arange(421)[:, None, None]
-    assert regime.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), drifting, 420).name == "unsettled"
+    assert regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), drifting, 420).name == "unsettled"
 
 
 def test_largest_forces_are_those_of_the_recorded_periods() -> None:
@@ -128,35 +128,35 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     settling = run_until_settled(scene("sec2"), None, None)
     engine = Engine(settling.scene, Setting("rk4-split"), 16)
     engine.start(settling.engine.state)
-    monkeypatch.setattr(recorded, "relax", lambda *words: (engine, 0.0))
+    monkeypatch.setattr(pictures, "refined_orbit", lambda *words: (engine, 0.0))
     stated = []
     for decay in (0.1, 0.9):
-        monkeypatch.setattr(regime.Regime, "contraction", decay)
-        stated.append(recorded.orbit_picture(settling, 16, 0.0, "rest").run.error_estimate)
+        monkeypatch.setattr(regime_criteria.Regime, "contraction", decay)
+        stated.append(pictures.orbit_picture(settling, 16, 0.0, "rest").run.error_estimate)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
 def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same factor 1/(1 − |μ|) for a point of a curve that was settled by itself."""
     settling = run_until_settled(scene("sec2"), None, None)
-    monkeypatch.setattr(alone, "run_until_settled", lambda *words: settling)
+    monkeypatch.setattr(single_chain, "run_until_settled", lambda *words: settling)
     stated = []
     for modulus in (0.1, 0.9):
         engine = Engine(settling.scene, adaptive_setting(1e-6), 1)
         engine.start(settling.engine.state)
-        monkeypatch.setattr(alone, "relax", lambda *words, engine=engine: (engine, 0.0))
+        monkeypatch.setattr(single_chain, "refined_orbit", lambda *words, engine=engine: (engine, 0.0))
         settling.regime = replace(settling.regime, multiplier=modulus)
-        stated.append(alone.steady_state(settling.scene, None, settling.stop).errors)
+        stated.append(single_chain.steady_state(settling.scene, None, settling.stop).errors)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
 def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
     settling, seen = run_until_settled(scene("sec2"), None, None), []
-    real = relax.changes
-    monkeypatch.setattr(regime.Regime, "contraction", 0.99)
-    monkeypatch.setattr(relax, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
-    _, bound = relax.relax(settling, 1e-6)
+    real = refine_orbit.changes
+    monkeypatch.setattr(regime_criteria.Regime, "contraction", 0.99)
+    monkeypatch.setattr(refine_orbit, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
+    _, bound = refine_orbit.refined_orbit(settling, 1e-6)
     assert bound <= 0.3e-6
     assert bound == pytest.approx(99.0 * float(seen[-1][0]), rel=1e-12)
 
@@ -175,7 +175,7 @@ def test_a_motion_that_settles_alternating_has_the_period_of_its_orbit() -> None
     engine = Engine(shown, Setting("rk4-split"), 1)
     engine.start_scaled(np.zeros(2 * shown.N))
     strobes = engine.periods(150)[0]
-    claimed = replace(regime.find_period(strobes), name="periodic", period=2, decay=0.92**2)
+    claimed = replace(regime_criteria.find_period(strobes), name="periodic", period=2, decay=0.92**2)
     decided = Decisions(shown, False).next(engine, strobes, claimed).regime
     assert decided is not None and (decided.name, decided.period) == ("periodic", 1)
     assert decided.multiplier == pytest.approx(0.92, abs=0.01)

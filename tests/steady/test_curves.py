@@ -71,7 +71,7 @@ def test_up_and_down_sweeps_differ_where_there_is_hysteresis():
 
 def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
     """Its point carries the sentence and NaN; the others are there, in every start."""
-    from granchain_core.steady.settling import alone as module
+    from granchain_core.steady.settling import single_chain as module
 
     true = module.steady_state
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import run, scene, settled
-from granchain_core.steady import regime as regimes
+from granchain_core.steady import regime_criteria
 
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
@@ -53,8 +53,8 @@ def test_the_rig_without_its_foundation_is_not_periodic(f):
 
 def test_windows_hold_the_largest_changes_oldest_first() -> None:
     """Found in one pass over the record, they are those of every change by itself; a short record has none."""
-    strobes = np.random.default_rng(3).standard_normal((regimes.SLOW_RECORD, 2, 3))
-    seen = regimes._windows(strobes)
+    strobes = np.random.default_rng(3).standard_normal((regime_criteria.SLOW_RECORD, 2, 3))
+    seen = regime_criteria._windows(strobes)
     for n, found in enumerate(seen, 1):
-        assert np.array_equal(found, regimes.changes(strobes, n, 3 * regimes._SLOW_WINDOW).reshape(3, -1).max(axis=1))
-    assert len(seen) == regimes.LONGEST_PERIOD and len(regimes._windows(strobes[1:])) == 0
+        assert np.array_equal(found, regime_criteria.changes(strobes, n, 3 * regime_criteria._SLOW_WINDOW).reshape(3, -1).max(axis=1))
+    assert len(seen) == regime_criteria.LONGEST_PERIOD and len(regime_criteria._windows(strobes[1:])) == 0

@@ -20,7 +20,7 @@ from granchain_core.stop import Stop
 @pytest.mark.parametrize("start", ["up", "down"])
 def test_a_stop_ends_a_carried_point_that_would_run_for_ever(start: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten seconds of drive a period and no budget of steps: one point is hours of work. It is given up, without a result."""
-    monkeypatch.setattr(settling_module, "MOST_STEPS", 10**15)
+    monkeypatch.setattr(settling_module, "MOST_SETTLING_STEPS", 10**15)
     stop, begun, points = Stop(), threading.Event(), list[CurvePoint]()
     real = Engine.periods
 

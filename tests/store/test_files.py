@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray
 
-from granchain_core import BadInput, resonance_curve, run, scene
+from granchain_core import BadInput, resonance_curve, run, scene, settle
 from granchain_core.store import load, save, save_curve
 
 
@@ -85,3 +85,26 @@ def test_overlap_follows_from_what_is_stored(result) -> None:  # type: ignore[no
     # the elastic wall force is K [δ_N]^{3/2} of the stored overlap: the same numbers by two ways
     elastic = result.scene.contact_stiffness()[-1] * np.maximum(result.overlap[:, -1], 0.0) ** 1.5
     assert elastic == pytest.approx(result.output_force_elastic, rel=1e-12)
+
+
+def test_a_steady_state_from_a_given_state_comes_back_with_its_start(tmp_path: Path) -> None:
+    """Also where an older file says "previous state" for it."""
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    first = settle(chain, samples=8)
+    carried = settle(chain, start=first.state, samples=8)
+    assert (first.start, first.run.start) == ("rest", "rest")
+    assert (carried.start, carried.run.start) == ("previous state", "given state")
+    for found in (first, carried):
+        back = load(save(found, tmp_path / "s.h5"))
+        assert (back.start, back.regime) == (found.run.start, found.regime)
+    old = {**carried.attributes(), "start": "previous state"}
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(type(carried), "attributes", lambda self: old)
+        file = save(carried, tmp_path / "old.h5")
+    assert load(file).start == "given state"
+
+
+def test_a_steady_state_without_a_drive_says_that_it_began_with_velocities(tmp_path: Path) -> None:
+    found = settle(scene("impact").evolve(N=5), samples=8)
+    assert found.start == "rest"
+    assert load(save(found, tmp_path / "i.h5")).start == "initial velocity"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime.py", "steady/settling/recorded.py"
+_SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime_criteria.py", "steady/settling/pictures.py"
 _RUN, _STATED, _METHODS = "run/run.py", "integrate/stated.py", "integrate/methods.py"
 
 STEADY = (
@@ -18,7 +18,7 @@ STEADY = (
     Mutant("longest-period-told", _SECTION, "if n % q == 0 and largest <= nothing:\n            return q",
            "if n % q == 0 and largest <= nothing:\n            return n", "an orbit of period 1 is told as one of period 2",
            k.CLAIMS),
-    Mutant("any-growth-is-chaos", _REGIME, "return mean > max(3.0 * error, _CHAOTIC)", "return mean > 0.0",
+    Mutant("any-growth-is-chaos", _REGIME, "return mean > max(STANDARD_ERRORS * error, _CHAOTIC)", "return mean > 0.0",
            "an exponent within its error is called chaos", k.CLAIMS),
     Mutant("creeping-is-quasi-periodic", _REGIME, "if _neither_converges_nor_departs(windows) and", "if",
            "a slow approach with an exponent near zero is called quasi-periodic", k.CLAIMS),
@@ -28,7 +28,7 @@ STEADY = (
            "a settled picture states no error of its integration", k.SETTLED),
     Mutant("settled-error-not-amplified", _PICTURES, "    integration /= 1.0 - motion.regime.contraction\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
-    Mutant("relaxed-by-change", "steady/settling/relax.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
+    Mutant("relaxed-by-change", "steady/settling/refine_orbit.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
            "the converged orbit is left too early", k.CLAIMS_SETTLED),
     Mutant("shadow-not-pulled-back", "steady/lyapunov.py", "offset *= _DISTANCE / distance", "offset *= 1.0",
            "the exponent is that of a distance long since large", k.LYAPUNOV),
@@ -43,8 +43,8 @@ STATED = (
            "two computations by the same steps are compared", k.SAME_STEPS),
     Mutant("error-without-floor", _STATED, "np.maximum(least, self.rounding))", "self.rounding)",
            "an error of exactly nothing is stated", k.SAME_STEPS),
-    Mutant("error-of-last-sample", _RUN, "np.abs(now.samples.displacement - before.samples.displacement).max()) / largest",
-           "np.abs(now.samples.displacement - before.samples.displacement)[0].max()) / largest",
+    Mutant("error-of-last-sample", _STATED, "np.abs(one - other).max()) / largest",
+           "np.abs(one - other)[0].max()) / largest",
            "the first sample's difference is stated for all", k.HONESTY),
     Mutant("done-too-early", _RUN, "if error <= scene.accuracy:\n", "if error <= 1e4 * scene.accuracy:\n",
            "a run is called done that is not as accurate as asked for",
@@ -86,7 +86,7 @@ OBSERVED = (
            "between samples a measured force is above both, or below 0", k.SAMPLING),
     Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.rate ** np.arange(4)", "/ scales.rate ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observe/observation.py", "=IRREGULAR * _difference(", "=1e-3 * IRREGULAR * _difference(",
+    Mutant("loss-between-samples", "observe/observation.py", "=IRREGULAR * relative_difference(", "=1e-3 * IRREGULAR * relative_difference(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 

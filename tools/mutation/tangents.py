@@ -7,7 +7,7 @@ from .mutant import Mutant
 
 _TIME, _STEP, _LANDING = "kernels/flow/event_time.py", "kernels/flow/attempt.py", "kernels/flow/events.py"
 _FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", "kernels/flow/saltation.py"
-_MAP, _ORBIT = "orbits/flow.py", "orbits/orbit.py"
+_MAP, _ORBIT = "orbits/stroboscopic_map.py", "orbits/orbit.py"
 
 #: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.
 _WITHOUT_SALTATION = """from ..effects.dissipation import damping

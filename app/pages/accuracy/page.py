@@ -11,7 +11,7 @@ from panel.io import unlocked
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.kernels.width import machine
-from granchain_core.warm import ACCURACY, ADAPTIVE, FIXED_STEP
+from granchain_core.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
 
 from ...format import duration, short_error
 from ...pictures.accuracy import Annotations
@@ -115,7 +115,7 @@ class AccuracyPage(Page):
         def report(found: WorkPrecision) -> None:
             job.next_tick(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
 
-        job.compile(scene, FIXED_STEP, ADAPTIVE, ACCURACY)
+        job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, ACCURACY_KERNELS)
         job.say("measuring")
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.next_tick(self._progress, done))

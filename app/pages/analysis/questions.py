@@ -14,10 +14,10 @@ from bokeh.models import LayoutDOM
 from granchain_core import BadInput, Scene, Stop, basins, lyapunov_spectrum, run, settle, spectrum, strobe_diagram
 from granchain_core.analysis.spectrum import FORCES
 from granchain_core.errors import check_range, unknown_name
+from granchain_core.pieces import ADAPTIVE_KERNELS, CURVE_KERNELS, FIXED_STEP_KERNELS, ORBIT_KERNELS
 from granchain_core.quantities import QUANTITIES
-from granchain_core.steady.curve.order import STARTS
+from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.text import number_in, whole_in
-from granchain_core.warm import ADAPTIVE, CURVE, FIXED_STEP, ORBIT
 
 from ...pictures.basins import basins as draw_basins
 from ...pictures.lyapunov import lyapunov as draw_lyapunov
@@ -30,7 +30,7 @@ from ...pictures.theme import Theme
 MOST_BEADS, MOST_VALUES, MOST_STARTS, MOST_PERIODS, MOST_STROBES = 300, 200, 40, 2000, 500
 #: Periods recorded of a motion without a period, and samples a period, as of `granchain spectrum`.
 _RECORD, _SAMPLES = 64, 256
-_MOTION = (FIXED_STEP, ADAPTIVE)
+_MOTION = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)
 
 Progress = Callable[[float], None]
 
@@ -186,7 +186,7 @@ def _lyapunov_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
         return lyapunov_spectrum(chain, periods, stop=stop, progress=progress)
 
     return Plan(f"Lyapunov exponents, {_about(chain)}", _command("lyapunov", chain, f"--periods {periods}"),
-                ((chain, (*_MOTION, ORBIT)),), compute, draw_lyapunov)
+                ((chain, (*_MOTION, ORBIT_KERNELS)),), compute, draw_lyapunov)
 
 
 # Strobes over a knob
@@ -195,7 +195,7 @@ def _strobe_fields(chain: Scene) -> tuple[Field, ...]:
     knobs = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
     return (Field("knob", "knob", "f", knobs), Field("from", "from (SI)", f"{0.95 * chain.f:.6g}"),
             Field("to", "to (SI)", f"{1.05 * chain.f:.6g}"), Field("values", "values", "61"),
-            Field("start", "start", "up", tuple(STARTS)), Field("keep", "strobes at each value", "40"),
+            Field("start", "start", "up", tuple(CURVE_STARTS)), Field("keep", "strobes at each value", "40"),
             Field("bead", "bead", "1"))
 
 
@@ -239,7 +239,7 @@ def _basin_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
 
     words = f"--x {_axis(x, x_ends, count)} --y {_axis(y, y_ends, count)}"
     return Plan(f"Basins over {x} and {y}, {_about(chain)}", _command("basins", chain, words),
-                ((chain, (*_MOTION, CURVE, ORBIT)),), compute, draw_basins)
+                ((chain, (*_MOTION, CURVE_KERNELS, ORBIT_KERNELS)),), compute, draw_basins)
 
 
 QUESTIONS = {one.name: one for one in (

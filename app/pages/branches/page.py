@@ -11,8 +11,8 @@ from panel.io import unlocked
 
 from granchain_core import Scene, Settled
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
+from granchain_core.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
 from granchain_core.stop import Stop
-from granchain_core.warm import ADAPTIVE, BRANCH, FIXED_STEP
 
 from ...pictures.branches import BranchRows
 from ...serve.delays import BRANCH_EVERY
@@ -164,7 +164,7 @@ class BranchesPage(Page):
         self._task.start(lambda job: self._follow(begin, scene, job))
 
     def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
-        job.compile(scene, FIXED_STEP, ADAPTIVE, BRANCH)
+        job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, BRANCH_KERNELS)
         job.say("settling")
         for branch in begin(job.stop):
             continuation = Continuation(branch, job.stop)

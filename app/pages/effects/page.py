@@ -7,9 +7,10 @@ from typing import Any
 
 from granchain_core import BadInput, Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
+from granchain_core.pieces import COST_ACCOUNT_KERNELS, COST_KERNELS
 from granchain_core.scaling import slots_of
 from granchain_core.scene.effects import ALWAYS
-from granchain_core.warm import COST, COST_ACCOUNT, structure
+from granchain_core.warm import structure
 
 from ...parts.component import Component
 from ...serve.compiler import COMPILER, PICTURE_PIECES
@@ -119,7 +120,7 @@ class EffectsPage(Page):
     def _compiled(self, name: str, pair: tuple[Variant, Variant]) -> bool:
         """Whether both kernels are compiled; if one is not, another process begins to compile it."""
         for variant in pair:
-            piece = COST_ACCOUNT if variant.balance else COST
+            piece = COST_ACCOUNT_KERNELS if variant.balance else COST_KERNELS
             if COMPILER.has(variant.scene, piece):
                 continue
             self._compiling = name

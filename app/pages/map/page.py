@@ -13,8 +13,8 @@ from panel.io import unlocked
 from granchain_core import Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
 from granchain_core.diagram.cells import cell_of, empty_cells
+from granchain_core.pieces import ORBIT_KERNELS
 from granchain_core.stop import Stop
-from granchain_core.warm import ORBIT
 
 from ...parts.component import Component
 from ...pictures.diagram import now_row
@@ -200,7 +200,7 @@ class MapPage(Page):
         self._search.start(partial(self._search_work, self._host.session.scene))
 
     def _search_work(self, scene: Scene, job: Job) -> None:
-        job.compile(scene, *PICTURE_PIECES, *(() if scene.cuts_tension else (ORBIT,)))
+        job.compile(scene, *PICTURE_PIECES, *(() if scene.cuts_tension else (ORBIT_KERNELS,)))
         job.say("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
         found = attractors(scene, starts, stop=job.stop)

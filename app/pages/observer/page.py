@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from granchain_core import Scene, Settled
-from granchain_core.warm import ADAPTIVE, OBSERVER
+from granchain_core.pieces import ADAPTIVE_KERNELS, OBSERVER_KERNELS
 
 from ...serve.queues import PICTURES
 from ...session.hooks import Actions, Page
@@ -77,7 +77,7 @@ class ObserverPage(Page):
 
     def _work(self, scene: Scene, picture: Settled | None, job: Job) -> None:
         """In a worker thread: compute one more period of this scene's run."""
-        job.compile(scene, ADAPTIVE, OBSERVER)
+        job.compile(scene, ADAPTIVE_KERNELS, OBSERVER_KERNELS)
         mine = picture if picture is not None and picture.run.scene.digest == scene.digest else None
         run, began = self._run, False
         wishes, self._wishes = self._wishes, []

@@ -6,7 +6,7 @@ from typing import Any
 
 from granchain_core import scene
 from granchain_core.paper import PaperFigure, Result, compute, figure_of
-from granchain_core.warm import ADAPTIVE, CURVE, FIXED_STEP, OBSERVER, ORBIT
+from granchain_core.pieces import ADAPTIVE_KERNELS, CURVE_KERNELS, FIXED_STEP_KERNELS, OBSERVER_KERNELS, ORBIT_KERNELS
 
 from ...serve.queues import LONG
 from ...session.hooks import Actions, Page
@@ -15,14 +15,14 @@ from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .view import Paper
 
-_MOTION = (FIXED_STEP, ADAPTIVE)
+_MOTION = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)
 _TRAINS = (("rig", _MOTION),)
-_FED = (("rig", (*_MOTION, CURVE, ORBIT, OBSERVER)),)
+_FED = (("rig", (*_MOTION, CURVE_KERNELS, ORBIT_KERNELS, OBSERVER_KERNELS)),)
 #: The kernels of each figure: presets, and pieces of their structures. Figures without an entry need none.
 _KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
-    "2": (("sec2", (*_MOTION, CURVE)),), **dict.fromkeys(("3", "3a", "3b"), (("sec2", _MOTION),)),
-    "6": (("rig", (*_MOTION, CURVE)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
-    "11": tuple((name, (*_MOTION, ORBIT, OBSERVER)) for name in ("fig11-free", "fig11-founded")),
+    "2": (("sec2", (*_MOTION, CURVE_KERNELS)),), **dict.fromkeys(("3", "3a", "3b"), (("sec2", _MOTION),)),
+    "6": (("rig", (*_MOTION, CURVE_KERNELS)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
+    "11": tuple((name, (*_MOTION, ORBIT_KERNELS, OBSERVER_KERNELS)) for name in ("fig11-free", "fig11-founded")),
 }
 #: The figure that the page begins with: the resonance curve of section 2, which takes a second.
 _FIRST = "2"

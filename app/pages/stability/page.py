@@ -8,10 +8,10 @@ from typing import Any
 from panel.io import unlocked
 
 from granchain_core import BadInput, Scene, Settled, State
-from granchain_core.orbits.flow import refuse_cut
+from granchain_core.orbits.stroboscopic_map import refuse_cut
+from granchain_core.pieces import ORBIT_KERNELS
 from granchain_core.steady.poincare import Section
-from granchain_core.steady.regime import LONGEST_PERIOD
-from granchain_core.warm import ORBIT
+from granchain_core.steady.regime_criteria import LONGEST_PERIOD
 
 from ...pictures.multipliers import plane_state
 from ...serve.delays import ANALYSIS_QUIET
@@ -157,7 +157,7 @@ class StabilityPage(Page):
     @staticmethod
     def _compile(scene: Scene, job: Job) -> None:
         refuse_cut(scene)  # before anything is compiled for it
-        job.compile(scene, ORBIT)
+        job.compile(scene, ORBIT_KERNELS)
 
     # What comes back
 

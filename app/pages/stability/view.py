@@ -15,7 +15,7 @@ from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
 from granchain_core.regime import modulus_words
 from granchain_core.steady.poincare import Section
-from granchain_core.steady.regime import LONGEST_PERIOD
+from granchain_core.steady.regime_criteria import LONGEST_PERIOD
 
 from ...format import duration, prefixed, short_error
 from ...parts.chain import drawn_chain

@@ -15,7 +15,7 @@ import numpy as np
 from ...scaling import scale_chain, scale_like
 from ...steady.returns import least_period
 from ...stop import Stop
-from ..flow import BACK, TOLERANCE, Flow, StroboscopicMap
+from ..stroboscopic_map import BACK, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
 from .newton import ROUGH, Near, Newton
 from .quick import QuickMap, quick_steps

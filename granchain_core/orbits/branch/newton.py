@@ -20,7 +20,7 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...steady.returns import relative_change
-from ..flow import TOLERANCE, Flow, StroboscopicMap
+from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
 #: Tolerance of the rough map, the flow where exactness is not needed.
 ROUGH = 1e-10
@@ -46,9 +46,9 @@ _MOST = 6
 #: Each step of `follow` that began above this residual is followed by one that reuses its derivative,
 _LAST = 1e-6
 #: which is taken if it begins below this residual.
-_NEAR = 1e-4
+_REUSED_BELOW = 1e-4
 #: Most steps of `follow`.
-_MOST_STEPS = 8
+_MOST_FOLLOWED = 8
 #: Most steps by the corrected map.
 _MOST_CORRECTED = 6
 
@@ -147,7 +147,7 @@ class Newton:
         the last is followed by one that reuses its derivative. The first map is a rough one, the last never.
         """
         rough = slope is not None
-        for _ in range(_MOST_STEPS):
+        for _ in range(_MOST_FOLLOWED):
             flow = self.flow(ROUGH if rough else TOLERANCE)
             residual = self.residuals[-1]
             if not rough and (residual <= GOOD or (len(self.residuals) > 2 and residual > 0.3 * self.residuals[-2])):
@@ -157,7 +157,7 @@ class Newton:
             self.step(flow.end)
             if rough or residual > _LAST:
                 again = self._end(TOLERANCE)
-                if self.residuals.pop() < _NEAR:
+                if self.residuals.pop() < _REUSED_BELOW:
                     self._move(again)
             rough = False
         if not self.residuals[-1] <= ACCEPTED:

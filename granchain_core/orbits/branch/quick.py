@@ -19,7 +19,7 @@ from ...stop import Stop
 #: Steps in place of one default step.
 _REFINE = 8.0
 #: Where a period takes more steps the flow is faster, since its steps are long while contacts are open.
-_MOST_STEPS = 30_000
+_MOST_QUICK_STEPS = 30_000
 #: Numbers of steps have so many binary digits, so that orbits nearby share the table of the driver's motion.
 _DIGITS = 4
 
@@ -56,7 +56,7 @@ def quick_steps(scaled: ScaledChain) -> int:
     The map would jump if they changed with the knob, so those of one scene serve for all that are compared.
     """
     least = int(_REFINE * max(16.0, scaled.period / scaled.step)) + 1
-    if least > _MOST_STEPS or not all_in_simd_kernels(scaled.slots):
+    if least > _MOST_QUICK_STEPS or not all_in_simd_kernels(scaled.slots):
         return 0
     unit = 2 ** max(0, least.bit_length() - _DIGITS)
     return -(-least // unit) * unit

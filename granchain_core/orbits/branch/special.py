@@ -22,6 +22,9 @@ from .axis import KnobAxis
 from .between import Between
 from .point import BranchPoint
 
+#: Where stability changes, and all kinds of special points; results, files and JSON spell them so.
+BIFURCATIONS = ("fold", "period_doubling", "neimark_sacker")
+SPECIAL_KINDS = (*BIFURCATIONS, "grazing")
 #: An interval is narrow enough at this width relative to the knob, or to a thousandth of the range's larger end.
 WIDTH = 1e-5
 #: The tangents at both ends of a bracket meet within this factor times its length, because the branch turns by at most
@@ -41,6 +44,7 @@ _DEEPEST = 60
 class SpecialPoint:
     """A special point: its kind, the knob there, the interval that holds it, and the two orbits around it.
 
+    `kind` is one of `SPECIAL_KINDS`.
     `contact` and `event` ("touch" or "separation") belong to a grazing; `multiplier` is the one that passes the unit
     circle.
     """

@@ -11,11 +11,11 @@ from ...tables import MAXIMA, Column, Table, axis, contact_axis, force_columns
 from ...tables.words import multiplier_columns
 from .axis import KnobAxis
 from .point import BranchPoint
-from .special import SpecialPoint
+from .special import BIFURCATIONS, SpecialPoint
 from .walk import Arm
 
-_NONE = -1
-"""The contact of a special point that is no grazing."""
+#: The contact of a special point that is no grazing.
+NO_CONTACT = -1
 
 
 def branch_tables(over: KnobAxis, arms: Sequence[Arm]) -> tuple[Table, ...]:
@@ -70,7 +70,7 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequ
 def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int]) -> Table:
     along, unit = ("special",), QUANTITIES[over.knob].unit
     multipliers = np.array([np.nan if s.multiplier is None else s.multiplier for s in special], dtype=complex)
-    contacts = np.array([_NONE if s.contact is None else s.contact for s in special], dtype=np.int64)
+    contacts = np.array([NO_CONTACT if s.contact is None else s.contact for s in special], dtype=np.int64)
 
     def words(values: list[str]) -> np.ndarray:
         return np.array(values, dtype=object)
@@ -80,7 +80,7 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
 
     return Table("special", axis("special", np.arange(len(special)), "1", "special point along the branch"), {
         "kind": Column(words([s.kind for s in special]), along, "",
-                       "fold, period_doubling, neimark_sacker or grazing"),
+                       f"{', '.join(BIFURCATIONS)} or grazing"),
         "knob": Column(number([s.knob for s in special]), along, unit, "knob at the special point"),
         "knob_low": Column(number([s.interval[0] for s in special]), along, unit,
                            "lower end of the interval that holds it"),

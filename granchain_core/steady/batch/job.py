@@ -18,10 +18,10 @@ from ...scene import Scene
 from ...state import rest
 from ...stop import Stop
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
-from ..regime import SLOW_RECORD, some_changes_shrink
+from ..regime_criteria import SLOW_RECORD, some_changes_shrink
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
-from ..settling.settling import MOST_STEPS
-from ..steady_state import SteadyState
+from ..settling.settling import MOST_SETTLING_STEPS
+from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
 #: Steps of the finer run of a batch for one of the coarse run.
 FINER = 3
@@ -29,8 +29,6 @@ FINER = 3
 _LOCATED = fixed_step_setting(8)
 #: Typical relative error of the finer run.
 _FINER_ERROR = typical_error(fixed_step_setting(FINER))
-#: Periods over which the largest force of an irregular motion is taken.
-_IRREGULAR_PERIODS = 100
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +68,7 @@ class Job:
     @property
     def affordable_periods(self) -> int:
         """Periods of the coarse run that the budget of steps allows."""
-        return max(2, MOST_STEPS // self.steps)
+        return max(2, MOST_SETTLING_STEPS // self.steps)
 
     @property
     def affordable(self) -> bool:
@@ -154,14 +152,14 @@ def _periodic(batch: Batch, member: int, run: int) -> Regime:
 
 def _in_doubt(job: Job, batch: Batch, member: int, run: int, record: np.ndarray) -> Job:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
-    maxima = batch.maxima(member, _IRREGULAR_PERIODS)[0] * job.scaled.scales.force
+    maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
     return Job(job.scene, job.scaled, y, run, in_doubt=True, record=record, maxima=maxima, number=job.number)
 
 
 def unsettled(job: Job, batch: Batch, member: int, run: int) -> SteadyState:
     """The result of a member whose budget of steps is spent."""
-    maxima = batch.maxima(member, _IRREGULAR_PERIODS)[0] * job.scaled.scales.force
+    maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     state = job.scaled.to_si(batch.state.y[:, member])
     return SteadyState(job.scene, maxima, Regime.unsettled(run), None, state,
                       number=job.number)

@@ -7,7 +7,7 @@ extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Fin
 `check_fine`, until that bound is small or six extrapolations are spent; what is left goes into the stated error, with
 the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, measured twice
 beside a neighbouring trajectory in another lane. What is still undecided is marked `doubtful` and settled alone
-(settling/alone.py).
+(settling/single_chain.py).
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
 from ..lyapunov import exponents_of, put_with_shadow
-from ..regime import agree, clearly_chaotic, find_period, regime_from_exponents, undecided
-from ..settling.nearby_orbit import MOST_BEADS, seen_modulus
+from ..regime_criteria import agree, clearly_chaotic, find_period, regime_from_exponents, undecided
+from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK, REMEMBERED
 from ..steady_state import SteadyState
 from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
@@ -210,7 +210,8 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
 def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
     """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
-    if regime.period is None or not regime.followed or (regime.decay or 0.0) <= _SLOW_DECAY or scene.N > MOST_BEADS:
+    slow = regime.followed and (regime.decay or 0.0) > _SLOW_DECAY
+    if regime.period is None or not slow or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
         return result
     y = scale_chain(scene).from_si(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)

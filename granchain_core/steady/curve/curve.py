@@ -93,7 +93,7 @@ class Curve(Labelled):
     scene : Scene
         The chain.
     start : str
-        One of `STARTS` (order.py).
+        One of `CURVE_STARTS` (order.py).
     points : list of CurvePoint
         One for each frequency.
     wall_s : float

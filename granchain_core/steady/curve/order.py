@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from ...errors import unknown_name
 
 #: Ways to start the points of a curve: each from rest, or each from the state of the one before, upwards or downwards.
-STARTS = ("rest", "up", "down")
+CURVE_STARTS = ("rest", "up", "down")
 
 
 def coarse_first(count: int) -> list[int]:
@@ -30,8 +30,8 @@ def used_and_missing(known: Sequence[float], frequencies: Sequence[float], start
     From rest every known point is used. Where the state is carried along, only those up to the first that is missing.
     Raises `BadInput` for an unknown start.
     """
-    if start not in STARTS:
-        raise unknown_name("start", start, STARTS)
+    if start not in CURVE_STARTS:
+        raise unknown_name("start", start, CURVE_STARTS)
     count = range(len(frequencies))
     order = (coarse_first(len(frequencies)) if start == "rest"
              else sorted(count, key=lambda i: frequencies[i], reverse=start == "down"))

@@ -13,7 +13,7 @@ from ...checkpoints import Kept, digest_of
 from ...integrate import State
 from ...result import ForceErrors
 from ...scene import Amplitude, Scene
-from ..regime import Regime
+from ..regime_criteria import Regime
 from .curve import CurvePoint
 
 _NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_input_force")

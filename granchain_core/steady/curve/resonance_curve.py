@@ -18,7 +18,7 @@ from ...scheduler import dealt, results
 from ...stop import Stop
 from ..batch.settle import batch_results
 from ..batch.threads import on_all_cores
-from ..settling.alone import safe_state, settled_alone
+from ..settling.single_chain import safe_state, settled_alone
 from .curve import Curve, CurvePoint
 from .order import used_and_missing
 
@@ -65,7 +65,8 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     Raises
     ------
     BadInput
-        No frequency, too many, one out of range, or another word for `start`.
+        When the first point is asked for: no frequency, too many, one out of range, another word for `start`, or a
+        scene without a drive.
 
     Examples
     --------
@@ -193,7 +194,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
     Raises
     ------
     BadInput
-        No frequency, too many, one out of range, or another word for `start`.
+        No frequency, too many, one out of range, another word for `start`, a scene without a drive, or a scheduler for
+        a sweep.
 
     Examples
     --------

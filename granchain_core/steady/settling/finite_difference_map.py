@@ -1,8 +1,8 @@
 """The n-period stroboscopic map by the fixed-step method, its derivative by finite differences, and its fixed points.
 
 While a chain settles, claims near |μ| = 1 are tested with this map: its kernels are already compiled, and it allows cut
-tension. `StroboscopicMap` (`granchain_core/orbits/flow.py`), whose derivative is the tangent flow, is for orbits that
-are asked for. Both agree on |μ| to 1e-5 (tests/numerics/test_regime_labels.py).
+tension. `StroboscopicMap` (orbits/stroboscopic_map.py), whose derivative is the tangent flow, is for orbits that are
+asked for. Both agree on |μ| to 1e-5 (tests/numerics/test_regime_labels.py).
 """
 
 from __future__ import annotations

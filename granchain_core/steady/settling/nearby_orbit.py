@@ -17,17 +17,17 @@ from ...errors import NumbersFailed
 from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
 from ...stop import Stop
-from ..regime import changes
+from ..regime_criteria import changes
 from ..returns import shorter_periods, sizes
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
 #: Beads up to which the derivative of the map is computed.
-MOST_BEADS = 100
+MOST_BEADS_WITH_MULTIPLIERS = 100
 #: |μ| is not known better than this.
 UNSURE = 1e-5
 #: Largest relative change over n periods with which a motion may be near an orbit of period n, and its largest distance
 #: from the orbit that is then found.
-NEAR = 0.1
+NEAR_AN_ORBIT = 0.1
 #: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _AS_SMALL = 3.0
 #: Factor between the tested distances. Near an orbit that has just become stable there may be a closed curve on which
@@ -48,7 +48,7 @@ _SLOW_DIRECTION = 0.3
 #: Length to which a departure is enlarged along the growing directions, relative to the motion.
 _ENLARGED_TO = 3e-3
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period. The fixed-step map
-#: is known less well than the one of `granchain_core/orbits/flow.py`.
+#: is known less well than the one of `granchain_core/orbits/stroboscopic_map.py`.
 _BACK = 1e-6
 
 
@@ -88,7 +88,7 @@ class NearbyOrbit:
 
     def approached(self) -> bool:
         """Whether the motion goes to this orbit: from where it is and from all shorter distances it comes nearer."""
-        if not self.stable or self.away > NEAR:
+        if not self.stable or self.away > NEAR_AN_ORBIT:
             return False
         rows = _slow_coordinates(self.point.derivative, max(_SLOW_DIRECTION, _SLOW_DIRECTION * self.modulus))
         orbits = min(_MOST_ORBITS, int(_TAKEN / (1.0 - self.modulus)))
@@ -159,11 +159,11 @@ def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: f
 def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) -> Iterator[NearbyOrbit]:
     """Orbits near a motion with these last strobes (P, 2, N) that is at x now, one for each period tried."""
     moved = [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]
-    if not moved or min(moved) > NEAR:
+    if not moved or min(moved) > NEAR_AN_ORBIT:
         return
     tried = {next(n for n, change in enumerate(moved, 1) if change <= _AS_SMALL * min(moved)),
              1 + int(np.argmin(moved))}
     for n in sorted(tried):
         found = orbit_of(scene, n, x, stop)
-        if found is not None and found.away <= NEAR:
+        if found is not None and found.away <= NEAR_AN_ORBIT:
             yield found

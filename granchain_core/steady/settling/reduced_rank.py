@@ -10,14 +10,14 @@ from __future__ import annotations
 import numpy as np
 
 from ...kernels.batch.period_end import FARTHEST_EXTRAPOLATION
-from ...kernels.strobes import extrapolation as approach
+from ...kernels.strobes import extrapolation
 
 
 def reduced_rank(states: np.ndarray) -> np.ndarray:
     """The limit of the states x_0..x_k (k + 1, 2, N) as reduced rank extrapolation sees it."""
     k, size = len(states) - 1, states[0].size
     limit = np.zeros_like(states[0])
-    approach.reduced_rank(np.ascontiguousarray(states), np.zeros((k, size)), np.zeros((k, k)), limit)
+    extrapolation.reduced_rank(np.ascontiguousarray(states), np.zeros((k, size)), np.zeros((k, k)), limit)
     return limit
 
 

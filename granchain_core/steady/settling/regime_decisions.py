@@ -15,8 +15,8 @@ from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
 from ..lyapunov import exponents
-from ..regime import agree, changes, clearly_chaotic, converging, departing, regime_from_exponents, undecided
-from .nearby_orbit import MOST_BEADS, NEAR, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
+from ..regime_criteria import agree, changes, clearly_chaotic, converging, departing, regime_from_exponents, undecided
+from .nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, NEAR_AN_ORBIT, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
 EXAMINED_AFTER = 400
@@ -26,7 +26,7 @@ MOST_PERIODS = 4000
 EXPONENT_BLOCKS = 10
 #: Drive periods in a block.
 PERIODS_IN_BLOCK = 20
-#: Strobes on which a decision is based.
+#: Strobes on which a decision is based. A batch keeps a few more (`STROBES_KEPT` in kernels/batch/period_end.py).
 REMEMBERED = 420
 #: Measurements of the Lyapunov exponent for a motion that is not followed any further.
 _MEASUREMENTS = 3
@@ -66,7 +66,7 @@ class Decisions:
         """The next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
         if regime.name == "periodic":
             return self._confirmed(engine, strobes, regime)
-        if self.scene.N <= MOST_BEADS:
+        if self.scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
             for orbit in orbits_beside(self.scene, strobes, scaled(engine), engine.stop):
                 found = self._beside(orbit, regime)
                 if found is not None:
@@ -88,7 +88,7 @@ class Decisions:
         """
         assert regime.period is not None
         doubtful = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
-        if (MOST_BEADS if doubtful else _ALWAYS) < self.scene.N:
+        if (MOST_BEADS_WITH_MULTIPLIERS if doubtful else _ALWAYS) < self.scene.N:
             return Decision(regime)
         seen = seen_modulus(self.scene, regime.period, scaled(engine), engine.stop, refine=4.0)
         if seen <= _CLEAR and not _may_repeat_sooner(strobes, regime.period):
@@ -143,7 +143,7 @@ class Decisions:
 
 def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
     """Whether a part of the period almost repeats the state."""
-    return any(period % n == 0 and float(changes(strobes, n, n).max()) <= NEAR for n in range(1, period))
+    return any(period % n == 0 and float(changes(strobes, n, n).max()) <= NEAR_AN_ORBIT for n in range(1, period))
 
 
 def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
@@ -153,13 +153,13 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
     """
     scene, stop = engine.scaled.scene, engine.stop
     if regime.period is not None:
-        if (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY or scene.N > MOST_BEADS:
+        if (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
             return regime
         orbit = orbit_of(scene, regime.period, scaled(engine), stop)
         if orbit is None or not orbit.stable:
             return Regime.unsettled(regime.periods_run)
         return replace(regime, period=orbit.period, multiplier=orbit.modulus)
-    if scene.N <= MOST_BEADS:
+    if scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
         for orbit in orbits_beside(scene, strobes, scaled(engine), stop):
             if orbit.approached():
                 return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)

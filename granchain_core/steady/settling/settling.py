@@ -1,8 +1,8 @@
 """Running a chain to its steady state until its regime is decided.
 
-The fixed-step method runs from the start until the distance bound is small (regime.py) or the regime is decided
-otherwise (regime_decisions.py). A periodic orbit is then computed again with finer steps (relax.py); recorded.py
-records what was reached.
+The fixed-step method runs from the start until the distance bound is small (steady/regime_criteria.py) or the regime
+is decided otherwise (regime_decisions.py). A periodic orbit is then computed again with finer steps (refine_orbit.py);
+pictures.py records what was reached.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
-from ..regime import find_period
+from ..regime_criteria import find_period
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
 #: Most steps of the fixed-step method while settling: about half a minute.
-MOST_STEPS = 100_000_000
+MOST_SETTLING_STEPS = 100_000_000
 #: Periods until the motion is first looked at for a period, and at least between two looks.
 _FIRST_LOOK, _BETWEEN_LOOKS = 2, 8
 
@@ -65,7 +65,7 @@ class Settling:
             left = end - time.perf_counter()
             if per_period and left < per_period:
                 return False
-            chunk = _FIRST_LOOK if per_period == 0.0 else max(1, int(min(left / per_period, MOST_STEPS)))
+            chunk = _FIRST_LOOK if per_period == 0.0 else max(1, int(min(left / per_period, MOST_SETTLING_STEPS)))
             chunk = min(chunk, self._look_at - self._here, self._stop_at - self._here,
                         max(1, self._steps_left() // self._steps))
             began = time.perf_counter()
@@ -89,7 +89,7 @@ class Settling:
         self.regime = replace(self.regime, periods_run=self._run + self._here)
 
     def _steps_left(self) -> int:
-        return MOST_STEPS - self.engine.counts.steps
+        return MOST_SETTLING_STEPS - self.engine.counts.steps
 
     @property
     def _finished(self) -> bool:

@@ -66,7 +66,7 @@ def test_a_law_needs_its_coefficient_and_to_be_there_when_it_is_named() -> None:
     with pytest.raises(TypeError, match=r"Bare has the fields .*needs `coefficient`"):
         loss.checked(Bare)
     with pytest.raises(TypeError, match="damping law 'bare': Bare has no `exponent` and no `power`"):
-        Law("bare", "Bare", "bare damping").slot  # noqa: B018
+        Law("bare", "Bare", "bare damping", source="").slot  # noqa: B018
 
 
 def test_a_slot_without_code_is_named_in_python_and_by_the_compiler() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core.kernels.strobes.extrapolation import ORBITS, reduced_rank
-from granchain_core.steady import regime as regimes
+from granchain_core.steady import regime_criteria
 
 
 def strobes(multipliers: list[complex], amplitudes: list[float], count: int, seed: int = 1) -> np.ndarray:
@@ -23,11 +23,11 @@ def test_the_distance_bound_holds_for_a_linear_map(rate: float) -> None:
     """Settled is said only where the true distance is below the bound, and the rate is found."""
     for count in range(20, 2000, 40):
         states = strobes([rate], [1.0], count)
-        found = regimes.find_period(states)
+        found = regime_criteria.find_period(states)
         if found.name == "periodic":
             true = np.abs(states[-1] - strobes([rate], [0.0], 0)[0]).max()
             largest = np.abs(states).max()
-            assert true < 20 * regimes.SETTLED_DISTANCE * largest  # states are scaled row by row, within a factor of ten
+            assert true < 20 * regime_criteria.SETTLED_DISTANCE * largest  # states are scaled row by row, within a factor of ten
             assert found.period == 1
             return
     pytest.fail("never settled")
@@ -35,22 +35,22 @@ def test_the_distance_bound_holds_for_a_linear_map(rate: float) -> None:
 
 def test_a_slow_approach_is_not_called_settled_by_a_small_change() -> None:
     """|μ| = 0.9999: a change of 1e-8 a period is a distance of 1e-4 (docs/model.md, Steady states)."""
-    assert regimes.find_period(strobes([0.9999], [1e-4], 400)).name == "unsettled"
+    assert regime_criteria.find_period(strobes([0.9999], [1e-4], 400)).name == "unsettled"
 
 
 @pytest.mark.parametrize("period", [2, 3, 4, 7])
 def test_roots_of_one_give_their_period(period: int) -> None:
     """A multiplier e^{2πi/n} that does not decay is an orbit of period n."""
-    found = regimes.find_period(strobes([np.exp(2j * np.pi / period), 0.3], [1.0, 1.0], 200))
+    found = regime_criteria.find_period(strobes([np.exp(2j * np.pi / period), 0.3], [1.0, 1.0], 200))
     assert (found.name, found.period) == ("periodic", period)
 
 
 def test_a_closed_curve_is_not_periodic() -> None:
     """An irrational rotation is quasi-periodic: no period is found, and with a zero exponent it is called that."""
     states = strobes([np.exp(2j * np.pi * (np.sqrt(5) - 1) / 2)], [1.0], 420)
-    assert regimes.find_period(states).name == "unsettled"
-    assert regimes.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), states, 420).name == "quasi-periodic"
-    assert regimes.regime_from_exponents(np.array([0.1, 0.11, 0.09, 0.1]), states, 420).name == "chaotic"
+    assert regime_criteria.find_period(states).name == "unsettled"
+    assert regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), states, 420).name == "quasi-periodic"
+    assert regime_criteria.regime_from_exponents(np.array([0.1, 0.11, 0.09, 0.1]), states, 420).name == "chaotic"
 
 
 @pytest.mark.parametrize("modes", [1, 3, ORBITS - 2])

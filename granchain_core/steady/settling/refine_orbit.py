@@ -7,10 +7,18 @@ import numpy as np
 from ...integrate import Engine, Setting, State, method_for
 from ...kernels.strobes.extrapolation import ORBITS
 from ...scene import Scene
-from ..regime import changes
+from ..regime_criteria import changes
 from .reduced_rank import reduced_rank, within_reach
 from .settling import Settling
 
+#: Parts of the error asked for: of the integration over an orbit, and of the distance left to the orbit.
+INTEGRATION_PART, _DISTANCE_PART = 0.1, 0.3
+#: An orbit is computed to this relative accuracy at worst, even if the scene asks for less.
+LEAST_ACCURATE = 1e-4
+#: Smallest error of one period that is asked of a method: below it is rounding.
+_LEAST_ERROR = 1e-13
+#: The method is too coarse if a round leaves more than this part of the distance.
+_STALLED = 0.3
 #: Most rounds; each has as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 
@@ -18,13 +26,14 @@ _MOST_ROUNDS = 12
 def orbit_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
     """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − rate).
 
-    It is rk4-split with finer steps; dop853 where 0.1 · min(accuracy, 1e-4) · (1 − rate) is below 1e-10, or
-    tension is cut.
+    It is rk4-split with finer steps; dop853 if tension is cut, or if one period's error must be below
+    `FIXED_STEP_IS_CHEAPER` (integrate/methods.py).
     """
-    return method_for(max(1e-13, 0.1 * min(accuracy, 1e-4) * (1.0 - rate)), scene.cuts_tension)
+    one_period = INTEGRATION_PART * min(accuracy, LEAST_ACCURATE) * (1.0 - rate)
+    return method_for(max(_LEAST_ERROR, one_period), scene.cuts_tension)
 
 
-def relax(settling: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
+def refined_orbit(settling: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
     """The finer method on its own orbit, and the bound on the distance left.
 
     The orbit of the fixed-step method differs from the true one by its error; a few more periods remove it. With r the
@@ -49,12 +58,12 @@ def relax(settling: Settling, accuracy: float, samples: int = 1) -> tuple[Engine
             if unproved is not None and change >= unproved[1]:
                 break
             unproved, bound = None, change * rate / (1.0 - rate)
-            if bound <= 0.3 * accuracy:
+            if bound <= _DISTANCE_PART * accuracy:
                 return engine, bound
         if unproved is not None:  # the extrapolation did not lead nearer: back to where it began
             engine.start(unproved[0])
             unproved, bound = None, np.inf
-        elif bound > 0.3 * before and not setting.finest:
+        elif bound > _STALLED * before and not setting.finest:
             # the changes are the method's own: it has to be finer before it can come nearer
             setting, state = setting.finer(), engine.state
             engine = Engine(scene, setting, samples, stop=settling.stop)

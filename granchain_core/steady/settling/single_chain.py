@@ -12,8 +12,8 @@ from ...regime import Regime
 from ...scene import Scene
 from ...stop import Stop
 from ..orbit_errors import errors_between
-from ..steady_state import SteadyState
-from .relax import relax
+from ..steady_state import IRREGULAR_PERIODS, SteadyState
+from .refine_orbit import refined_orbit
 from .settling import Settling, run_until_settled
 
 #: Points of a curve are computed to this relative accuracy at best, even if the scene asks for more.
@@ -25,13 +25,13 @@ def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
     settling = run_until_settled(scene, start, stop)
     if settling.regime.name == "periodic":
         return _on_its_orbit(settling)
-    maxima = settling.maxima[-min(len(settling.maxima), 100) :].max(axis=0) * settling.engine.scaled.scales.force
+    maxima = settling.maxima[-IRREGULAR_PERIODS:].max(axis=0) * settling.engine.scaled.scales.force
     return SteadyState(scene, maxima, settling.regime, None, settling.engine.state)
 
 
 def _on_its_orbit(settling: Settling) -> SteadyState:
     """Largest forces on the refined orbit, and their errors from a finer computation of it."""
-    engine, distance = relax(settling, max(settling.scene.accuracy, CURVE_ACCURACY))
+    engine, distance = refined_orbit(settling, max(settling.scene.accuracy, CURVE_ACCURACY))
     n = settling.regime.period
     assert n is not None
     before = engine.largest_forces(n)

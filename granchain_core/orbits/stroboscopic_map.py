@@ -22,7 +22,8 @@ from ..scene import Scene
 from ..scene.driven import refuse_undriven
 from ..stop import Stop
 
-#: Tolerance of one step. The map is then accurate enough for Newton's method to converge to `CONVERGED` (orbit.py).
+#: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
+#: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.
 TOLERANCE = 1e-13
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
 BACK = 1e-8

@@ -14,23 +14,19 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import Setting, State, fixed_step_setting
-from ..integrate.methods import FIXED_STEP, jump_errors, typical_error
-from ..integrate.stated import Computations, force_differences
-from ..motion import Motion, motion_columns
-from ..result import ERRORS, Cost, ForceErrors, residual, said_forces
+from ..integrate import State, fixed_step_setting
+from ..integrate.chain_in_pieces import MOST_HALVINGS
+from ..integrate.methods import FIXED_STEP
+from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
+from ..motion import MOST_RECORDED, Motion, motion_columns
+from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
 from ..state import rest
 from ..stop import Stop
 from ..tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
-from .pushed_chain import MovedChain
+from .moved_chain import MovedChain
 from .signal import Signal
-
-#: Most values recorded of one kind: knots times beads.
-MOST_VALUES = 50_000_000
-#: Most halvings of the steps.
-_MOST_HALVINGS = 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +102,7 @@ class Driven(Motion):
         return {**provenance(self.scene, self.cost.method, self.error_estimate), "status": self.status,
                 "drive": self.signal.words, "energy_residual": self.energy_residual,
                 "cost": json.dumps(asdict(self.cost)), **{name: getattr(self, name) for name in MAXIMA},
-                **dict(zip(ERRORS, self.force_errors.row, strict=True))}
+                **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 
     def summary(self) -> list[str]:
         """The signal, largest forces and errors."""
@@ -154,22 +150,22 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     >>> found.displacement.shape[1], found.error_estimate <= chain.accuracy
     (3, True)
     """
-    if len(signal.time) * scene.N > MOST_VALUES:
-        raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_VALUES:.0e} values; give a "
+    if len(signal.time) * scene.N > MOST_RECORDED:
+        raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_RECORDED:.0e} values; give a "
                        "shorter signal or fewer beads.")
     began, begin = clock.perf_counter(), rest(scene) if start is None else start
     chain = MovedChain(scene, signal, Stop() if stop is None else stop)
     before, first, shown = chain.run(begin, 0), chain.maxima, Computations(scene.cuts_tension)
     shown.begin(fixed_step_setting())
-    for halvings in range(1, _MOST_HALVINGS + 1):
+    for halvings in range(1, MOST_HALVINGS + 1):
         setting = fixed_step_setting(2**halvings)
         now, maxima = chain.run(begin, halvings), chain.maxima
-        largest = float(np.abs(now.displacement).max())
-        change = float(np.abs(now.displacement - before.displacement).max())
-        differences = [change / largest if largest > 0.0 else 0.0, *force_differences(maxima, first, scene.forces_jump)]
-        shown.add(setting, chain.steps(halvings), np.array(differences), _least(chain, setting, halvings))
+        differences = [relative_difference(now.displacement, before.displacement),
+                       *force_differences(maxima, first, scene.forces_jump)]
+        least = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
+        shown.add(setting, chain.steps(halvings), np.array(differences), least)
         if progress is not None:
-            progress(halvings / _MOST_HALVINGS)
+            progress(halvings / MOST_HALVINGS)
         if shown.stated[0] <= scene.accuracy or shown.rounded:
             break
         before, first = now, maxima
@@ -184,9 +180,3 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
                   force_errors=ForceErrors.of(np.array(errors)), error_estimate=float(error),
                   energy_residual=balance, status="done" if done else "accuracy-not-reached",
                   cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP))
-
-
-def _least(chain: MovedChain, setting: Setting, halvings: int) -> np.ndarray:
-    """Lower limits of the stated errors (4,), as for a run: typical for this step, and for forces at jumps."""
-    jumps = jump_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, chain.maxima)
-    return np.array([typical_error(setting), *np.maximum(typical_error(setting), jumps)])

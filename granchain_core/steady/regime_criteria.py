@@ -17,6 +17,8 @@ from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 from ..regime import Regime
 
+#: Standard errors within which a mean exponent counts as not known.
+STANDARD_ERRORS = 3.0
 #: Mean exponents per period above which a motion may be chaotic, and within which it may be quasi-periodic, however
 #: small the standard error: the error that a finite record leaves falls as 1/periods.
 _CHAOTIC, _NEUTRAL = 0.01, 5e-4
@@ -88,7 +90,7 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: fl
 
 def grows(mean: float, error: float) -> bool:
     """Whether neighbours part, by a mean exponent per period and its standard error."""
-    return mean > max(3.0 * error, _CHAOTIC)
+    return mean > max(STANDARD_ERRORS * error, _CHAOTIC)
 
 
 def is_neutral(mean: float, error: float) -> bool:
@@ -97,7 +99,8 @@ def is_neutral(mean: float, error: float) -> bool:
     A large error must not make this easier: three standard errors below `CLEAR_GROWTH` exclude strong chaos, and a mean
     above the limit of chaos is never neutral. Otherwise the measurement is undecided.
     """
-    return abs(mean) <= max(3.0 * error, _NEUTRAL) and 3.0 * error < CLEAR_GROWTH and mean <= _CHAOTIC
+    uncertain = STANDARD_ERRORS * error
+    return abs(mean) <= max(uncertain, _NEUTRAL) and uncertain < CLEAR_GROWTH and mean <= _CHAOTIC
 
 
 def _mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
@@ -110,7 +113,7 @@ def undecided(exponents: np.ndarray) -> bool:
     The mean is neither clearly positive nor clearly negative, and `is_neutral` does not hold.
     """
     mean, error = _mean_and_error(exponents)
-    return mean >= -3.0 * error and not grows(mean, error) and not is_neutral(mean, error)
+    return mean >= -STANDARD_ERRORS * error and not grows(mean, error) and not is_neutral(mean, error)
 
 
 def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
@@ -138,16 +141,18 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
     After 400 periods a growth of 0.05 a period has multiplied a distance by 5e8.
     """
     halves = exponents[: len(exponents) // 2], exponents[len(exponents) // 2 :]
-    return all(half.mean() > max(3.0 * half.std(ddof=1) / math.sqrt(len(half)), CLEAR_GROWTH) for half in halves)
+    return all(mean > max(STANDARD_ERRORS * error, CLEAR_GROWTH) for mean, error in map(_mean_and_error, halves))
 
 
 def agree(one: Regime, other: Regime) -> bool:
-    """Whether two Lyapunov measurements give the same regime and agree within 3 combined standard errors
-    or `_SAME_EXPONENT`."""
+    """Whether two Lyapunov measurements give the same regime, and means within the larger of two limits.
+
+    These are `STANDARD_ERRORS` combined standard errors and `_SAME_EXPONENT`.
+    """
     if one.name != other.name or one.name == "unsettled" or one.lyapunov is None or other.lyapunov is None:
         return False
     (a, error_a), (b, error_b) = one.lyapunov, other.lyapunov
-    return abs(a - b) <= max(3.0 * math.hypot(error_a, error_b), _SAME_EXPONENT)
+    return abs(a - b) <= max(STANDARD_ERRORS * math.hypot(error_a, error_b), _SAME_EXPONENT)
 
 
 def _windows(strobes: np.ndarray) -> np.ndarray:

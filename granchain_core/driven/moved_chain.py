@@ -1,0 +1,25 @@
+"""A chain whose driver moves as a signal says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..integrate.chain_in_pieces import ChainInPieces
+from ..kernels.effects.driver import Moved
+from ..scaling import scale_chain
+from ..scene import Scene
+from ..stop import Stop
+from .signal import Signal
+
+
+class MovedChain(ChainInPieces):
+    """A scene's chain whose driver moves as a signal says, with the energy account."""
+
+    def __init__(self, scene: Scene, signal: Signal, stop: Stop) -> None:
+        driven = scale_chain(scene, balance=True)
+        scaled = replace(driven, slots=driven.slots._replace(driver=Moved(np.zeros(3))))
+        pieces = signal.quadratics() / driven.scales.length / driven.scales.rate ** np.arange(3)
+        overlap = float(np.ptp(signal.displacement)) / driven.scales.length
+        super().__init__(scaled, signal.time, pieces, overlap, stop)

@@ -1,0 +1,96 @@
+"""A scaled chain whose driver has a force or a motion in pieces, one polynomial between two samples.
+
+A measured force pushes it (observe/pushed_chain.py), or its driver moves as a signal says (driven/moved_chain.py).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..errors import BadInput, Cancelled, NumbersFailed
+from ..kernels.contact_cubic import ENDS
+from ..kernels.equations.motion import Trajectory, place
+from ..kernels.forces.largest import new_log
+from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
+from ..kernels.rk4.piecewise import DrivePieces, run_pieces
+from ..kernels.rk4.step import DriveTable, Rk4Split, Rk4Workspace
+from ..kernels.samples import Output, Samples, first_not_finite
+from ..kernels.status import CANCELLED, NOT_FINITE
+from ..scaling import ScaledChain
+from ..state import State
+from ..stop import Stop
+from .counts import Counts
+from .stepper import empty_samples
+
+#: More steps than this are refused: minutes of computing.
+MOST_RECORD_STEPS = 200_000_000
+#: Most halvings of the steps: beyond it rounding and the error of the events dominate.
+MOST_HALVINGS = 7
+
+
+class ChainInPieces:
+    """A scaled chain whose driver has one polynomial (T − 1, k) between two times [s]; `counts` adds up over its runs.
+
+    `pieces` are scaled, constant term first. `overlap` is the expected size of overlaps in scaled units: the default
+    step of the fixed-step method is for 1, and larger overlaps make contacts stiffer.
+    """
+
+    def __init__(self, scaled: ScaledChain, time: np.ndarray, pieces: np.ndarray, overlap: float, stop: Stop,
+                 counts: Counts | None = None) -> None:
+        self.scaled = scaled
+        self.counts = Counts() if counts is None else counts
+        self._time = time
+        self._stop = stop
+        self._log = new_log()
+        self._spans = np.diff(time) * scaled.scales.rate
+        self._pieces = pieces
+        self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / scaled.step).astype(np.int64)
+
+    @property
+    def maxima(self) -> np.ndarray:
+        """Largest input, output and elastic output force of the last run, in scaled units."""
+        return largest_forces(self._log.peaks).copy()
+
+    @property
+    def jumps(self) -> np.ndarray:
+        """The largest jumps of input and output force (2,) in the same time, in scaled units."""
+        return largest_jumps(self._log.peaks).copy()
+
+    def steps(self, halvings: int) -> int:
+        """Steps of a run whose steps are halved `halvings` times."""
+        return int(self._substeps.sum()) * 2**halvings
+
+    def longest_step(self, halvings: int) -> float:
+        """The longest of them, in scaled units."""
+        return float((self._spans / self._substeps).max()) / 2**halvings
+
+    def run(self, start: State, halvings: int) -> Samples:
+        """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
+        scaled, n, row = self.scaled, self.scaled.beads, self.scaled.bodies
+        if len(start.displacement) != n:
+            raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
+        if self.steps(halvings) > MOST_RECORD_STEPS:
+            raise BadInput(f"The record needs {self.steps(halvings):.1e} steps; at most {MOST_RECORD_STEPS:.0e} are "
+                           "allowed: give a shorter record or ask for less accuracy.")
+        y = np.zeros(scaled.size)
+        displacement, velocity = scaled.rows(y)
+        displacement[:] = start.displacement / scaled.scales.length
+        velocity[:] = start.velocity / scaled.scales.velocity
+        workspace = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
+                                 np.zeros((ENDS, row - 1)), scaled.forces(), None)
+        scaled.slots.driver.piece[:] = self._pieces[0]
+        place(scaled.slots, 0.0, y, workspace.k[0], workspace.forces, True)
+        reset_peaks(self._log.peaks)
+        samples = empty_samples(scaled, len(self._spans) + 1)
+        nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)
+        status, done = run_pieces(Rk4Split(0), Trajectory(scaled.slots, nothing, y, workspace),
+                                  DrivePieces(self._spans, self._pieces, self._substeps * 2**halvings), samples,
+                                  Output(self._log, self.counts.array, self._stop.flag))
+        if status == CANCELLED:
+            raise Cancelled
+        if status == NOT_FINITE:
+            bead = max(1, first_not_finite(y, row))
+            raise NumbersFailed(f"The motion of bead {bead} stopped being a finite number at about "
+                                f"{self._time[done - 1]:.6g} s; look at the force there, or lower the damping.",
+                                "not-finite")
+        return samples

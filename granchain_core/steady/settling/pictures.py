@@ -1,0 +1,59 @@
+"""Pictures of a settling chain: the motion so far, or its refined periodic orbit with an error.
+
+Motions that are not periodic are recorded by the fixed-step method, without a claim on their error. `origin` is where
+the motion began, in the words of a run's `start`.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+
+from ...integrate import Engine
+from ...integrate.stated import relative_difference
+from ...result import Cost, run_from
+from ..orbit_errors import errors_between
+from .refine_orbit import refined_orbit
+from .settled import Settled
+from .settling import Settling
+
+#: Periods shown of a motion that is not periodic.
+_SHOWN = 4
+
+
+def live_picture(motion: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
+    """The present motion by fixed steps, over one orbit or a few periods; the settling itself is not advanced."""
+    engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
+    state = motion.engine.state
+    engine.start(state)
+    shown = motion.regime.period or _SHOWN
+    record = engine.record(shown * samples)
+    engine.counts.array += motion.engine.counts.array
+    cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)
+    run = run_from(engine, record, 0, motion.regime, None, cost, start=origin)
+    return Settled(run, motion.regime, state, preview=not final, final=final)
+
+
+def orbit_picture(motion: Settling, samples: int, began: float, origin: str) -> Settled:
+    """The periodic orbit by the finer method, with its error: integration plus distance from the orbit.
+
+    An error e of the n-period map moves its fixed point by e/(1 − |μ|).
+    """
+    n = motion.regime.period
+    assert n is not None
+    engine, distance = refined_orbit(motion, motion.scene.accuracy, samples)
+    start = engine.state
+    fine = Engine(motion.scene, engine.setting.finer(), samples, stop=motion.stop)
+    fine.start(start)
+    record = fine.record(n * samples)
+    coarse = Engine(motion.scene, engine.setting, samples, stop=motion.stop)
+    coarse.start(start)
+    other = coarse.record(n * samples)
+    integration = relative_difference(record.displacement, other.displacement)
+    fine.counts.array += motion.engine.counts.array + engine.counts.array + coarse.counts.array
+    cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
+    regime = replace(motion.regime, distance=distance)
+    integration /= 1.0 - motion.regime.contraction
+    forces = errors_between(fine, coarse.maxima, motion.regime.contraction, distance)
+    run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces, start=origin)
+    return Settled(run, regime, start, preview=False, final=True)

@@ -1,0 +1,123 @@
+"""`settle` and `settling`: the steady state of a chain, at once or with pictures on the way."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+from ...integrate import State
+from ...result import start_words
+from ...scene import Scene
+from ...stop import Stop
+from .pictures import live_picture, orbit_picture
+from .settled import Settled
+from .settling import Settling, run_until_settled
+from .undriven import undriven_motion
+
+#: Samples a period of a picture.
+PICTURE_SAMPLES = 96
+#: Time after which a first picture is shown although nothing is decided yet [s].
+_PREVIEW_AFTER = 0.012
+
+
+def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
+             stop: Stop | None = None) -> Iterator[Settled]:
+    """Successive pictures of a settling chain: a quick preview first, the refined steady state last.
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    start : State, optional
+        Where the motion begins; at rest if not given.
+    samples : int
+        Samples a drive period of each picture.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+
+    Yields
+    ------
+    Settled
+        About ten a second; `final` is set on the last.
+
+    Raises
+    ------
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settling
+    >>> [picture.final for picture in settling(scene("sec2").evolve(N=2, f=2000.0))][-1]
+    True
+    """
+    began = time.perf_counter()
+    if not scene.is_driven:
+        yield undriven_motion(scene, start, samples, began, stop)
+        return
+    origin = start_words(scene, start)
+    motion = Settling(scene, start, stop)
+    motion.run(_PREVIEW_AFTER)
+    while not motion.decided:
+        yield live_picture(motion, samples, began, origin, final=False)
+        motion.go_on(0.1)
+    if motion.regime.name == "periodic":
+        yield orbit_picture(motion, samples, began, origin)
+    else:
+        yield live_picture(motion, samples, began, origin, final=True)
+
+
+def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
+           stop: Stop | None = None) -> Settled:
+    """The steady state of a chain; `settle` and `settled` are the same function.
+
+    The fixed-step method runs until the distance to the orbit is bounded or the regime is decided otherwise; a periodic
+    orbit is then computed again with a setting fine enough for the accuracy asked for (docs/design.md, "Settled is a
+    bound").
+
+    Parameters
+    ----------
+    scene : Scene
+        The chain.
+    start : State, optional
+        Where the motion begins; at rest if not given.
+    samples : int
+        Samples a drive period of the recorded orbit.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+
+    Returns
+    -------
+    Settled
+        One orbit where the motion is periodic, else a few periods of it.
+
+    Raises
+    ------
+    NumbersFailed
+        The motion is no longer finite.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> found = settle(scene("sec2").evolve(N=2, f=2000.0))
+    >>> found.regime.name, found.regime.period
+    ('periodic', 1)
+    >>> f"{found.run.max_output_force_elastic:.3f} N"
+    '2.260 N'
+    """
+    began = time.perf_counter()
+    if not scene.is_driven:
+        return undriven_motion(scene, start, samples, began, stop)
+    motion = run_until_settled(scene, start, stop)
+    origin = start_words(scene, start)
+    if motion.regime.name == "periodic":
+        return orbit_picture(motion, samples, began, origin)
+    return live_picture(motion, samples, began, origin, final=True)
+
+
+#: The longer name of `settle`.
+settled = settle

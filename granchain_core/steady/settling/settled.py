@@ -1,0 +1,72 @@
+"""A settled chain: its steady state as a recorded motion, its regime, and where it came from."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+
+from ...regime import Regime
+from ...result import GIVEN_STATE, Run
+from ...scene import Scene
+from ...state import State
+from ...tables import Labelled, Table, bead_axis
+from ...tables.provenance import Attribute
+from ...tables.words import state_columns
+
+
+@dataclass(frozen=True, eq=False)
+class Settled(Labelled):
+    """A steady state, or the motion when settling ended.
+
+    Attributes
+    ----------
+    run : Run
+        The recorded orbit, or a few periods where the motion is not periodic.
+    regime : Regime
+        What kind of motion it is.
+    state : State
+        Where the chain is at drive phase 0.
+    start : str
+        Where the motion came from: "rest" or "previous state"; `run.start` has a run's words for it.
+    preview : bool
+        Whether this is a first picture by the fixed-step method.
+    final : bool
+        Whether it is the last and best.
+
+    Examples
+    --------
+    >>> from granchain_core import scene, settle
+    >>> found = settle(scene("sec2").evolve(N=2, f=2000.0), samples=16)
+    >>> found.run.time.shape, found.state.displacement.shape
+    ((17,), (2,))
+    """
+
+    run: Run
+    regime: Regime
+    state: State
+    preview: bool
+    final: bool
+
+    @property
+    def scene(self) -> Scene:
+        """The chain."""
+        return self.run.scene
+
+    @property
+    def start(self) -> str:
+        """Where the motion came from: "rest", also with initial velocities of the scene, or "previous state"."""
+        return "previous state" if self.run.start == GIVEN_STATE else "rest"
+
+    def tables(self) -> tuple[Table, ...]:
+        """The tables of its run, and `state`, where the chain is at drive phase 0."""
+        state = Table("state", bead_axis(self.scene.N),
+                      state_columns(self.state.displacement, self.state.velocity, ("bead",)))
+        return (*self.run.tables(), state)
+
+    def attributes(self) -> dict[str, Attribute]:
+        """The attributes of its run, with the regime of the steady state."""
+        return {**self.run.attributes(), "regime": json.dumps(asdict(self.regime))}
+
+    def summary(self) -> list[str]:
+        """Regime, largest forces and errors."""
+        return [self.regime.sentence, *self.run.summary()[1:]]

@@ -1,0 +1,46 @@
+"""The motion of a chain without a drive, which has no steady state: from its start, to the accuracy asked for."""
+
+from __future__ import annotations
+
+import time
+
+from ...integrate import Counts, Engine, Setting, State, fixed_step_setting
+from ...integrate.methods import typical_error
+from ...integrate.stated import relative_difference
+from ...kernels.samples import Samples
+from ...regime import Regime
+from ...result import Cost, run_from, start_words
+from ...scene import Scene
+from ...state import rest
+from ...stop import Stop
+from ..orbit_errors import errors_between
+from .settled import Settled
+
+#: Finest steps: how many of them take the place of one default step.
+_MOST_REFINED = 64
+
+
+def undriven_motion(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
+    """The motion of a chain without a drive from its start, over the time 1/f, to the accuracy asked for."""
+    begin, setting, total = rest(scene) if start is None else start, fixed_step_setting(), Counts()
+
+    def recorded(chosen: Setting) -> tuple[Engine, Samples]:
+        engine = Engine(scene, chosen, samples, stop=stop)
+        engine.start(begin)
+        rows = engine.record(samples)
+        total.array += engine.counts.array
+        return engine, rows
+
+    coarse, before = recorded(setting)
+    while True:
+        setting = setting.finer_than(coarse.scaled, samples)
+        fine, rows = recorded(setting)
+        change = relative_difference(rows.displacement, before.displacement)
+        if change <= scene.accuracy or setting.refine >= _MOST_REFINED:
+            break
+        coarse, before = fine, rows
+    regime, cost = Regime.undriven(1), Cost.of(time.perf_counter() - began, total, setting.method)
+    forces = errors_between(fine, coarse.maxima, 0.0, 0.0)
+    run = run_from(fine, rows, 0, regime, max(change, typical_error(setting)), cost, force_errors=forces,
+                   start=start_words(scene, start))
+    return Settled(run, regime, begin, preview=False, final=True)
