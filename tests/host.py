@@ -20,6 +20,7 @@ class FakeHost:
     def __init__(self) -> None:
         self.callbacks: list[Callable[[], None]] = []
         self.failures: list[Exception] = []
+        self.closing: list[Callable[[], object]] = []
 
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """From any thread."""
@@ -28,6 +29,15 @@ class FakeHost:
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
         """The time passes when the callbacks are worked off."""
         self.next_tick(action, *arguments)
+
+    def on_close(self, action: Callable[[], object]) -> None:
+        """What is called when the visitor leaves."""
+        self.closing.append(action)
+
+    def leave(self) -> None:
+        """The visitor leaves."""
+        for action in self.closing:
+            action()
 
     def failed(self, error: Exception) -> None:
         """What has no place on a page."""

@@ -116,7 +116,3 @@ class Chapters:
             job.next_tick(self._show, sorted(found, key=lambda one: float(one["f"])))
 
         self._task.start(work)
-
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()

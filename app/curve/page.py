@@ -64,6 +64,7 @@ class CurveController:
         self._remaining: list[str] = []
         self._done = -1.0
         self._chapters = Chapters(host, self._show_chapters)
+        host.on_close(self._drafts.close)
 
     def selection(self, scene: Scene) -> str:
         """What is drawn, as a link has it; "auto" for what the scene shows by itself."""
@@ -203,12 +204,6 @@ class CurveController:
             else:
                 found.append((title, OFF, "waits until the knobs rest, or was stopped"))
         return found
-
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-        self._chapters.close()
-        self._drafts.close()
 
     def measured(self, measured: Measured | None) -> Difference | None:
         """Show the visitor's own data, or none; returns them beside the curve from rest, once that is there."""

@@ -40,11 +40,6 @@ class LinksAndFiles:
         self._measurement = Measurement(host, views, curves)
         self.actions: Actions = {"share": self._share, "save": self._save, **self._measurement.actions}
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._saving.cancel()
-        self._measurement.close()
-
     def picture_ready(self, picture: Settled) -> None:
         """Another picture for a measured series."""
         self._measurement.picture_ready(picture)

@@ -80,13 +80,14 @@ class Pictures:
         self._settled_arrived = arrived
         self._jobs = LatestWins(self._found, partial(host.next_tick, self._failed), self._session.cpu_time)
         self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
-        self.live: LiveRun | None = None
+        self._live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LivePicture | None = None
         self._shown: Settled | LivePicture | None = None
         self._asked: float | None = None
         #: Frames of the last pictures, so that they are prepared once.
         self._frames: deque[Frames] = deque(maxlen=2)
+        host.on_close(self._close)
 
     @property
     def busy(self) -> bool:
@@ -98,7 +99,20 @@ class Pictures:
         """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
         return self._jobs.busy and self.live is None
 
-    def close(self) -> None:
+    @property
+    def live(self) -> LiveRun | None:
+        """The live run; None while a settled motion is shown."""
+        return self._live
+
+    def begin_live(self, start: State | None = None) -> None:
+        """Begin a live run of the session's scene, from `start` or from rest, in place of the one before."""
+        self._live = LiveRun(self._session.scene, self._session.cpu_time, start)
+
+    def end_live(self) -> None:
+        """From now on settled motions are shown."""
+        self._live = None
+
+    def _close(self) -> None:
         """The visitor left."""
         self._jobs.close()
         if self.live is not None:

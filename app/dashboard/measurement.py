@@ -77,12 +77,6 @@ class Measurement:
                                  "csv-remove": self._remove, "csv-sample": self._sample,
                                  "csv-virtual": self._virtual}
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-        self._moving.cancel()
-        self._curves.compared = lambda _: None
-
     def picture_ready(self, picture: Settled) -> None:
         """Move the series to another picture; the difference from the last one is not that of a preview."""
         if self._series is None:

@@ -39,11 +39,6 @@ class Pinned:
         self._curve_task = Task(host, CURVES, say_nothing, "The curve of a pinned picture", host.failed)
         self.actions: Actions = {"pin": lambda _: self._add(), "unpin": self._remove, "pin-open": self._open}
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-        self._curve_task.cancel()
-
     def show(self) -> None:
         """Draw the session's pins, and compute what is missing of them."""
         pins = self._session.pins

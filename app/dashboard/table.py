@@ -99,12 +99,12 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
 #: What the resonance curve, which is no page, is called in the message `visible`.
-CURVE = "curve"
+CURVE_NAME = "curve"
 
 
 def check_names(rows: Sequence[PageSpec | TabSpec]) -> None:
     """Raise `ValueError` for two tabs of one name, or a page that is called like the curve."""
-    names = [CURVE, *(row.name for row in rows)]
+    names = [CURVE_NAME, *(row.name for row in rows)]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"{name!r} in app/dashboard/table.py is taken; give the page another name.")

@@ -40,6 +40,9 @@ class Host(Protocol):
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
         """Call `action` with the document locked, so many seconds from now."""
 
+    def on_close(self, action: Callable[[], object]) -> None:
+        """Call `action` when the visitor leaves; nothing is called by `next_tick` or `call_later` from then on."""
+
     def failed(self, error: Exception) -> None:
         """Tell the visitor about a failure that has no place on its own page."""
 

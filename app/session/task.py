@@ -66,7 +66,7 @@ class Job:
 
 
 class Task:
-    """One kind of background work of a page; a new start replaces the last.
+    """One kind of background work of a page; a new start replaces the last, and it ends when the visitor leaves.
 
     `say` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the work
     reports. `title` begins the sentence about a fault. `failed` takes errors that the page itself does not show.
@@ -80,6 +80,7 @@ class Task:
         self._title = title
         self._failed = failed
         self._job: Job | None = None
+        host.on_close(self.cancel)
 
     @property
     def running(self) -> bool:

@@ -25,7 +25,6 @@ from app.serve.compiler import COMPILER, Compiler
 from app.serve.meters import METERS
 from app.session.budget import RefusedPicture
 from app.session.hooks import all_actions
-from app.session.live import LiveRun
 from app.session.message_checks import listed, whole
 from granchain_core import BadInput, run, scene, settle
 from granchain_core.experiment.measured import MOST_BYTES
@@ -112,7 +111,7 @@ def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, m
     session, pictures = dashboard.session, dashboard.pictures
     session.set_mode("live")
     session.playing = False
-    pictures.live = LiveRun(session.scene, session.cpu_time)
+    pictures.begin_live()
     pictures._arrived(pictures.live.advance(7))
     dashboard.received({"do": "scale", "value": "fit"})
     dashboard.run_callbacks_until(lambda: not pictures.busy)
@@ -134,7 +133,7 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
     dashboard.session.scene = chain
     found = settle(chain, samples=8)
     for picture in (replace(found, start="previous state"), found):
-        dashboard._arrived(picture)
+        dashboard.picture_ready(picture)
         state = dashboard.views.header.state
         assert (state["origin"], state["start"]) == (picture.start, "rest")
 
@@ -244,14 +243,20 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
     assert given["http_server_kwargs"]["idle_connection_timeout"] == 60 and given["http_server_kwargs"]["body_timeout"] == 30
 
 
-def test_a_busy_server_says_so(dashboard: Dashboard) -> None:
+def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """And stops saying so with the first picture that comes in time."""
+    clock = [5.0]
+    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0], thread_time=time.thread_time))
     try:
-        for late, said in ((1.5, True), (0.0, False)):
-            METERS._late.extend([late] * 40)
-            dashboard.pictures._asked = time.monotonic() - 1.2
-            dashboard.pictures._answered()
+        for late, wait, said in ((0.4, 0.0, True), (0.0, 0.1, False), (0.0, 0.4, True)):
+            for _ in range(40):
+                METERS.loop_late(late)
+            monkeypatch.setattr(METERS, "turn_wait", lambda wait=wait: wait)
+            dashboard.pictures.compute()
+            clock[0] += 1.2
+            dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
             words = dashboard.views.status_line.state["busy"]
             assert words == ("The server is busy: pictures follow every 1.2 s." if said else "")
     finally:
-        METERS._late.clear()
+        for _ in range(40):
+            METERS.loop_late(0.0)

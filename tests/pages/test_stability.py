@@ -214,7 +214,7 @@ def test_a_picture_that_stays_is_analysed(page: Page) -> None:
     view.picture_ready(replace(picture()))
     page.work(lambda: not page.callbacks)
     assert len(page.told) == count
-    view.close()
+    page.leave()
 
 
 def test_a_moved_knob_gives_up_and_greys(page: Page) -> None:
@@ -226,7 +226,7 @@ def test_a_moved_knob_gives_up_and_greys(page: Page) -> None:
     assert page.state["stale"]
     page.work(lambda: not page.callbacks)
     assert page.state["stale"], "what was asked for before the knob moved is not computed"
-    view.close()
+    page.leave()
 
 
 def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
@@ -237,7 +237,7 @@ def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
     page.work(lambda: page.marks("observer within") + page.marks("observer outside") == 22)
     view.actions["stability-mode"]({"value": 2})
     page.work(lambda: page.state.get("rank") == 2)
-    view.close()
+    page.leave()
 
 
 def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
@@ -251,7 +251,7 @@ def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
     view.actions["stability-back"]({})
     page.work(lambda: not page.state["searched"])
     assert page.state["period"] == 4
-    view.close()
+    page.leave()
 
 
 def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> None:
@@ -260,7 +260,7 @@ def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> 
     view.picture_ready(picture(tension="cut"))
     page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.told))
     assert "multipliers are not computed" in page.state["sentence"] and page.marks("within") == 0
-    view.close()
+    page.leave()
 
 
 def test_the_followed_orbit_is_not_called_another_one() -> None:

@@ -52,6 +52,24 @@ def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) ->
     assert host.said == [("measuring", ""), ("done", "")]
 
 
+def test_a_task_ends_when_the_visitor_leaves(host: Dashboard, task: Task) -> None:
+    """A page need not remember it, and nothing is computed for nobody."""
+    begun, ended = threading.Event(), threading.Event()
+
+    def work(job: Job) -> None:
+        begun.set()
+        while not job.stop:
+            time.sleep(0.001)
+        ended.set()
+
+    task.start(work)
+    assert begun.wait(20.0)
+    host.leave()
+    assert ended.wait(20.0) and not task.running
+    host.call_waiting()
+    assert host.said == []
+
+
 @pytest.mark.parametrize(("error", "sentence", "told"), [
     (NumbersFailed("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
     (BadInput("f must be positive."), "f must be positive.", False),

@@ -51,10 +51,6 @@ class AnalysisPage(Page):
             "analysis-ask": self._ask, "analysis-compute": self._begin, "analysis-stop": lambda _: self._stop()}
         self.address_taken()
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     def scene_changed(self) -> None:
         """The knobs have moved: what is under way is about another scene, and so are the values in the fields."""
         self._stop()

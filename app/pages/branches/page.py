@@ -87,10 +87,6 @@ class BranchesPage(Page):
         if self._task.cancel():
             self._say("stopped")
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     # What the visitor does
 
     def _opened(self) -> None:

@@ -75,11 +75,6 @@ class EffectsPage(Page):
         if visible:
             self._poll(self._round)
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._visible = False
-        self._task.cancel()
-
     def _switch(self, message: dict[str, Any]) -> None:
         name, on = message.get("name"), message.get("value")
         if not isinstance(name, str) or name not in EFFECTS or not isinstance(on, bool):

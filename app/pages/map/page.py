@@ -73,12 +73,6 @@ class MapPage(Page):
             "map-attractors": lambda _: self._find(), "map-load": self._load,
         }
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._visible = False
-        self._diagram.cancel()
-        self._search.cancel()
-
     def scene_changed(self) -> None:
         """A knob has moved: any but f and A0 changes the diagram, and any at all changes the attractors."""
         if not self._visible:

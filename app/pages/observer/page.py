@@ -51,10 +51,6 @@ class ObserverPage(Page):
         if self._run is not None and self._run.scene.digest != scene.digest:
             self._view.update_state(sentence="", predicted=None, measured=None)
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     def _wish(self, name: str) -> None:
         self._wishes.append(name)
         self._more()

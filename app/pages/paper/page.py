@@ -47,10 +47,6 @@ class PaperPage(Page):
         if visible and not self._chosen:
             self._show({"figure": _FIRST})
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     def _stop(self) -> None:
         if self._task.cancel():
             self._say("stopped")

@@ -108,11 +108,6 @@ class StabilityPage(Page):
         else:
             self._begin()
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._visible = False
-        self._give_up()
-
     def _give_up(self) -> None:
         self._orbits.cancel()
         self._sections.cancel()

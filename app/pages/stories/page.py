@@ -63,10 +63,6 @@ class StoriesPage(Page):
         name, _, number = self._host.session.story.partition(".")
         self._view.update_state(story=self._words(self._stories[name], int(number)) if name else None)
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     def _close(self) -> None:
         self._host.session.story = ""
         self.address_taken()
