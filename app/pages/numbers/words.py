@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from granchain_core import Run
+from granchain_core.scene.effects import effects_of
 
 from ...format import in_words
 
@@ -12,6 +13,8 @@ from ...format import in_words
 _INSTANTS = 25
 #: A value below this part of the largest of its series is what rounding left of zero, as of the sine of a full turn.
 _ROUNDING = 1e-12
+#: Effects with which contacts alone lose energy: the others store it, or cut the damped force.
+_ONLY_CONTACTS_LOSE = {"dashpot", "tension", "foundation", "preload"}
 #: Most beads of a table; the file has all.
 _BEADS = 200
 
@@ -45,8 +48,12 @@ def _travel(run: Run) -> str:
 
 
 def _where_energy_goes(run: Run) -> str:
-    """What becomes of the driver's work in a steady motion: contacts alone lose energy, and the wall does not move."""
-    if not (run.scene.is_driven and run.scene.has_dissipation):
+    """What becomes of the driver's work in a steady motion, where no effect but the damping of contacts can lose energy.
+
+    The wall takes none, because it does not move.
+    """
+    effects = {effect.name for effect in effects_of(run.scene)}
+    if not run.scene.is_driven or "dashpot" not in effects or effects - _ONLY_CONTACTS_LOSE:
         return ""
     return " On average, the damping of the contacts takes all the energy from the driver; the wall takes none."
 
