@@ -48,7 +48,7 @@ def _travel(run: Run) -> str:
 
 
 def _where_energy_goes(run: Run) -> str:
-    """What becomes of the driver's work in a steady motion, where no effect but the damping of contacts can lose energy.
+    """What becomes of the work of the driver in a steady motion, if only the damping of contacts can lose energy.
 
     The wall takes none, because it does not move.
     """
