@@ -20,6 +20,7 @@ class FakeHost:
     def __init__(self) -> None:
         self.callbacks: list[Callable[[], None]] = []
         self.failures: list[Exception] = []
+        self.faults: list[tuple[Exception, str]] = []
         self.closing: list[Callable[[], object]] = []
 
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
@@ -42,6 +43,10 @@ class FakeHost:
     def failed(self, error: Exception) -> None:
         """What has no place on a page."""
         self.failures.append(error)
+
+    def fault(self, error: Exception, sentence: str) -> None:
+        """An error of granchain itself, and what is said of it beside the page."""
+        self.faults.append((error, sentence))
 
     def call_waiting(self) -> None:
         """Call what waits now; what that asks for waits."""

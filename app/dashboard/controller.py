@@ -124,6 +124,10 @@ class Controller:
         """Say in one sentence what happened; the last good picture stays."""
         self.sentences.failed(error)
 
+    def fault(self, error: Exception, sentence: str) -> None:
+        """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
+        self.sentences.fault(error, sentence)
+
     def close(self, session_context: object) -> None:
         """The visitor left: everything that is computed for this page ends, and nothing is called any more."""
         self._calls.close()

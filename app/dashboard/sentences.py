@@ -51,10 +51,15 @@ class Sentences:
         elif isinstance(error, NumbersFailed):
             self.note(error.sentence)
         else:
-            METERS.errors += 1
-            log.error("unexpected failure", exc_info=error)
-            self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
-                     "stays. Move the knob back or reset, and please report it.")
+            self.fault(error, f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
+                              "stays. Move the knob back or reset, and please report it.")
+
+    def fault(self, error: Exception, sentence: str) -> None:
+        """Log and count an error of granchain itself, and show `sentence`, unless it is empty."""
+        METERS.errors += 1
+        log.error("unexpected failure", exc_info=error)
+        if sentence:
+            self.say(sentence)
 
     def _show(self) -> None:
         self._line.update_state(sentence=f"{self._session.sentence} {self._session.notice}".strip(),

@@ -46,6 +46,9 @@ class Host(Protocol):
     def failed(self, error: Exception) -> None:
         """Tell the visitor about a failure that has no place on its own page."""
 
+    def fault(self, error: Exception, sentence: str) -> None:
+        """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
+
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.
 

@@ -111,8 +111,10 @@ class Task:
         except (NumbersFailed, BadInput) as problem:
             job.next_tick(self._end, "failed", str(problem), problem)
         except Exception as error:
-            job.next_tick(self._end, "failed", f"{self._title} failed because of an error in granchain.")
-            self._host.next_tick(self._host.failed, error)
+            sentence = (f"{self._title} failed because of an error in granchain ({type(error).__name__}); "
+                        "please report it.")
+            job.next_tick(self._end, "failed", sentence)
+            self._host.next_tick(self._host.fault, error, "" if self._failed is None else sentence)
         else:
             job.next_tick(self._end, "done")
 

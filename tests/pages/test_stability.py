@@ -167,7 +167,7 @@ class Page(FakeHost):
     def work(self, until: Any, seconds: float = 60.0) -> None:
         """Work off until something holds; nothing may fail."""
         self.run_callbacks_until(until, seconds)
-        assert self.failures == []
+        assert self.failures == [] and self.faults == []
 
     def marks(self, name: str) -> int:
         """How many multipliers are in a set of the plane."""
