@@ -1,6 +1,6 @@
 """Buttons for the peaks, valleys and the stop band of the curve from rest.
 
-A name rests on what is computed there. The extrema are those that stand out from both neighbours by 20 %
+Each name follows from a computation at its place. The extrema are those that stand out from both neighbours by 20 %
 (`steady/curve/resonance.py`). At each the chain is settled once more and its driver's pushes are counted. A peak is
 named after them, 1:3 for one strong push in three periods; a valley is an anti-resonance if every period has one push.
 The stop band begins after the last peak, where less than 15 % of the input force arrives from there on.
@@ -95,7 +95,7 @@ class Chapters:
         self._task = Task(host, ANALYSES, lambda *_: None, "Naming the peaks of the curve", host.failed)
 
     def forget(self) -> None:
-        """The curve is another one."""
+        """Forget the names: the curve is another one."""
         self._task.cancel()
         self._show([])
 

@@ -89,7 +89,7 @@ class CurveController:
         return self.selection(scene)
 
     def moved(self, scene: Scene) -> None:
-        """A knob moved. Any but f changes the curve: a draft comes at once, the curve when the knobs rest."""
+        """A knob moved. Any knob but f changes the curve: a draft comes at once, the curve when the knobs rest."""
         if without_frequency(scene) == self._asked:
             return
         self._chapters.forget()
@@ -105,7 +105,7 @@ class CurveController:
 
     def _draw_draft(self, drafted: tuple[int, list[CurvePoint]]) -> None:
         begun, points = drafted
-        if points and begun == self._begun:  # else the curve itself is on its way
+        if points and begun == self._begun:  # otherwise the curve itself is on its way
             with unlocked():
                 self._figure.redraw("rest", points)
 
@@ -253,7 +253,7 @@ class CurveController:
             self._host.next_tick(self._draw)
 
     def _draw(self) -> None:
-        """Draw what has come, and wait with what comes soon after: the loop would draw for a whole class else."""
+        """Draw what has come, and let what comes soon after wait: otherwise the loop would draw for a whole class."""
         rest = self._drawn + CURVE_EVERY - time.monotonic()
         if rest > 0.0:
             self._host.call_later(rest, self._draw)

@@ -25,7 +25,7 @@ def cards() -> list[dict[str, str]]:
 
 
 def first_sentence(text: str) -> str:
-    """What stands up to the first full stop that ends a word."""
+    """The text up to the first full stop that ends a word."""
     return text.partition(". ")[0].rstrip(".") + "."
 
 

@@ -36,7 +36,8 @@ def size_of(picture: Settled) -> int:
     return 4096 + sum(one.nbytes for one in arrays if isinstance(one, np.ndarray))
 
 
-#: Pictures of all visitors: the last of each stays for the next who asks, in at most so many bytes.
+#: Pictures of all visitors. The last picture of each scene is kept for the next visitor who asks, in at most so many
+#: bytes.
 PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of,
                                           lambda pictures: pictures[-1:])
 
@@ -138,7 +139,7 @@ class Pictures:
         self._jobs.submit(partial(self._live_step, samples))
 
     def run(self) -> Run | None:
-        """What is on the screen, as a run."""
+        """The motion on the screen as a run."""
         if self.live is not None:
             return self.live.window_run()
         return None if self._session.picture is None else self._session.picture.run
@@ -169,7 +170,7 @@ class Pictures:
             yield picture
 
     def _begun_from(self, origin: State | None) -> None:
-        """With the document locked, before the first picture arrives: where the motion begins."""
+        """Remember where the motion begins; called with the document locked, before the first picture arrives."""
         if origin is not self._session.started_from:
             self._session.started_from = origin
             self._host.address_changed()
@@ -228,12 +229,12 @@ class Pictures:
         self._pacer.offer(picture)
 
     def _failed(self, error: Exception) -> None:
-        """There is no picture, and the next one is timed from its own request."""
+        """There is no picture to time; the next one is timed from its own request."""
         self._asked = None
         self._host.failed(error)
 
     def _answered(self) -> None:
-        """Count how long the first picture took, and say so where the server is busy with many visitors."""
+        """Count how long the first picture took, and say so if the server is busy with many visitors."""
         if self._asked is None:
             return
         seconds, self._asked = time.monotonic() - self._asked, None
@@ -252,7 +253,7 @@ class Pictures:
         self._pacer.painted(number)
 
     def redraw(self) -> None:
-        """Send the picture on the screen again, to be drawn otherwise; a running chain sends by itself."""
+        """Send the picture on the screen again, to be drawn in another way; a running chain sends pictures anyway."""
         shown, live = self._shown, self.live is not None
         if shown is None or isinstance(shown, LivePicture) != live or (live and self._session.playing):
             return

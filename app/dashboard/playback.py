@@ -53,7 +53,7 @@ class Playback:
         self._pictures.idle()
 
     def _reconnected(self, message: dict[str, Any]) -> None:
-        """The browser lost its server and has loaded the page again from its share link, which has all but this."""
+        """The browser lost its server and reloaded the page from its share link, which does not contain the pause."""
         if not message.get("playing"):
             self._playing({"value": False})
             self._header.show_session(self._session)

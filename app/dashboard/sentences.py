@@ -18,7 +18,7 @@ log = logging.getLogger("granchain")
 
 
 class Sentences:
-    """The sentence over the status line. `compute` asks for the picture of the knobs as they are."""
+    """The sentence over the status line. `compute` requests a picture of the present knobs."""
 
     def __init__(self, session: Session, line: StatusLine, compute: Callable[[], None]) -> None:
         self._session = session
@@ -42,7 +42,7 @@ class Sentences:
         """Say in one sentence what happened; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METERS.refused_pictures += 1
-            if error.scene == self._session.scene:  # else a knob has moved since, and asked for another picture
+            if error.scene == self._session.scene:  # otherwise a knob has moved since and requested another picture
                 self.say(str(error))
                 self._refused = error.scene
                 self._show()

@@ -55,5 +55,5 @@ def quiet_axis(axis: Any, colour: str | None = None) -> None:
 
 
 def together(plot: Plot) -> AbstractContextManager[None]:
-    """What is added to a plot on the page inside: the document's models are collected once, not for each change."""
+    """Collect the document's models once for all that is added to a plot inside, not for each change."""
     return plot.document.models.freeze() if plot.document is not None else nullcontext()

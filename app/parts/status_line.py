@@ -88,7 +88,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
 
 
 def multiplier_words(modulus: float, period: int) -> str:
-    """What |μ| says of a small disturbance of an orbit of `period` drive periods."""
+    """What |μ| says about a small disturbance of an orbit of `period` drive periods."""
     orbit = "drive period" if period == 1 else f"{period} drive periods"
     return (f"|μ| {modulus_words(modulus)}: after every {orbit} {100.0 * modulus:.3g} % of a small disturbance is "
             "left; below 1 the orbit is stable.")

@@ -95,7 +95,7 @@ class BranchRows:
         self._knob = self._knob or knob_scale(knob, (high,))
 
     def _fresh(self, models: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-        """Those of the changed properties, and of the axes' labels, that were not sent before."""
+        """Those properties, with the labels of the axes, that have not been sent yet."""
         assert self._knob is not None and self._force is not None
         models = {**models, "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
         fresh = {name: properties for name, properties in models.items() if name not in self._models}

@@ -1,8 +1,8 @@
-"""Where computations of the dashboard run: named queues shared by all visitors, and latest-wins jobs, of which each
-visitor has one for the picture and one for drafts of the curve.
+"""Where computations of the dashboard run.
 
-Kernels release the GIL, so threads are enough; fair turns of those that compute pictures are in turns.py. Long work has
-queues of its own, because a picture must never wait for it.
+All visitors share named queues. Each visitor has two latest-wins jobs, one for the picture and one for drafts of the
+curve. Kernels release the GIL, so threads are enough; those that compute pictures take fair turns (turns.py). Long work
+has queues of its own, because a picture must never wait for it.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ log = logging.getLogger("granchain")
 
 
 class Queue:
-    """Work of one kind, first come, first served, on at most so many threads, which begin when they are needed.
+    """Work of one kind, first come, first served, on at most `workers` threads, each started when it is needed.
 
     The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
     `patient` queue give way to others (priorities.py).
 
-    Each piece of work has its thread from the beginning, or waits because there is none: a thread that has been given
-    something and has not begun yet must not count as free, or what comes then waits for as long as that takes.
+    A thread counts as busy from the moment it is given work, before it has begun it: otherwise the next piece of work
+    would be given to the same thread, and wait although another thread could begin it.
     """
 
     def __init__(self, name: str, workers: int, patient: bool = False) -> None:
@@ -45,7 +45,7 @@ class Queue:
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._numbers = count()
-        self._free = 0  # threads that nothing has been given to
+        self._free = 0  # threads without work
         self.waiting = 0  # work that waits for a thread
         self._lock = threading.Lock()
 
@@ -75,7 +75,7 @@ class Queue:
         return future
 
     def _begin(self) -> None:
-        """With the lock held: one thread more."""
+        """Start one more thread; called with the lock held."""
         thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {next(self._numbers)}")
         self._threads.append(thread)
         begin(thread)
@@ -86,9 +86,9 @@ class Queue:
         while True:
             work = self._given.get()
             work()
-            del work  # a thread that waits keeps nothing of the visitor it served last
+            del work  # or a waiting thread would keep objects of the visitor it served last
             with self._lock:
-                if gives_way() and not self._patient:  # the next work has one that does not
+                if gives_way() and not self._patient:  # this thread ends; the next work gets a new one
                     self._threads.remove(threading.current_thread())
                     if self.waiting:
                         self.waiting -= 1
@@ -102,8 +102,8 @@ class Queue:
 
 #: One thread for each visitor whose picture is awaited; default steps, energy accounts and drafts are computed in it.
 VISITORS = Queue("visitors", 1000)
-#: Pictures. More threads than cores: who computes is decided by turns (turns.py), and one that waits for the compiler
-#: keeps its thread.
+#: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
+#: for the compiler keeps its thread.
 PICTURES = Queue("pictures", 200)
 #: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
 ANALYSES = Queue("analyses", 8, patient=True)
@@ -114,7 +114,7 @@ LOADING = Queue("loading", 1)
 #: Visitors who wait for their resonance curves. Maps and branches wait for a curve that is under way, so curves cannot
 #: share their queue.
 CURVES = Queue("curves", 200)
-#: What computes them. Each uses all cores; the system shares these among them.
+#: The computations of these curves. Each uses all cores, which the system divides among them.
 SWEEPS = Queue("sweeps", 8, patient=True)
 #: Work that takes minutes: maps, searches for attractors, branches.
 LONG = Queue("long", 8, patient=True)
@@ -130,7 +130,7 @@ _PATIENCE = 1.0
 
 
 class _Alarms:
-    """One thread that calls what is due later."""
+    """One thread that calls actions when they are due."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()

@@ -18,12 +18,12 @@ from .turns import CpuTime, Flag, SchedulerSlot, SharedCpuTime
 
 Item = TypeVar("Item")
 
-#: Between two looks of a visitor who waits [s]; new items wake it at once.
+#: Between two checks of a visitor's stop flag while it waits [s]; new items wake it at once.
 _LOOK = 0.5
 
 
 class _Computation(Generic[Item]):
-    """What is found so far, by whom it is awaited, and how it ended."""
+    """One computation: what it has found so far, who waits for it, and how it ended."""
 
     def __init__(self) -> None:
         self.changed = threading.Condition()
@@ -35,10 +35,10 @@ class _Computation(Generic[Item]):
 
 
 class Shared(Generic[Item]):
-    """Computations by their keys. `kept` chooses what is kept of the items of a finished one, `size` is their memory.
+    """Computations by their keys. Of a finished one, `kept` selects the items that are kept; `size` is their memory.
 
-    The finished ones take at most `memory` bytes; the one that has not been asked for longest goes first. With `turns`
-    the computations take turns (turns.py).
+    Finished ones take at most `memory` bytes; the least recently used is dropped first. With `turns` the computations
+    take turns (turns.py).
     """
 
     def __init__(self, queue: Queue, memory: int, size: Callable[[Item], int],

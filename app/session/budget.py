@@ -10,11 +10,11 @@ from granchain_core.run.budget import check_picture, picture_seconds
 from ..frames import PERIODS, samples_for
 from .session import slider_range
 
-#: Most that a first picture may take unless the visitor insists [s].
+#: The longest that a first picture may take unless the visitor insists [s].
 FIRST_PICTURE = 5.0
 #: Processor time after which the search for the steady state of one picture is given up [s].
 WHOLE_PICTURE = 120.0
-#: Most that a resonance curve may take that nobody asked for [s].
+#: The longest that a resonance curve may take if nobody asked for it [s].
 CURVE = 120.0
 
 #: Drive periods before the first picture, and in it.
@@ -29,7 +29,7 @@ def check_first_picture(scene: Scene) -> None:
 
 
 class RefusedPicture(BadInput):
-    """The picture of a scene that would take too long, or has; the visitor may insist on this scene."""
+    """The picture of a scene would take too long, or took too long; the visitor may insist on it."""
 
     def __init__(self, scene: Scene, sentence: str) -> None:
         super().__init__(sentence)

@@ -29,10 +29,10 @@ class LivePicture:
 
 
 class LiveRun:
-    """One chain that keeps running, from rest or from `start`; `step` and `advance` are for a worker thread, the rest
-    for the page.
+    """One chain that keeps running, from rest or from `start`.
 
-    While it computes it holds its `slot`.
+    `step` and `advance` are called in a worker thread, everything else by the page. The run holds its `slot` while it
+    computes.
     """
 
     def __init__(self, scene: Scene, cpu_time: CpuTime, start: State | None = None) -> None:
@@ -64,7 +64,7 @@ class LiveRun:
         self._last = None
 
     def close(self) -> None:
-        """The visitor left: what is being computed ends."""
+        """End the computation under way: the visitor left."""
         self.slot.set()
 
     def step(self, periods_per_second: float) -> LivePicture:

@@ -57,7 +57,7 @@ class Job:
     def give_way(self, to: Callable[[], bool] | None = None) -> None:
         """Wait while the picture for a moved knob is being computed, or while `to` returns True.
 
-        It looks the more rarely, the longer this takes: a thread that looks takes the interpreter from all others.
+        The longer this takes, the less often it checks: each check takes the interpreter from all other threads.
         """
         waits, pause = to or (lambda: self._host.awaiting_picture), PICTURE_POLL
         while waits() and not self.stop:

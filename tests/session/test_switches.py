@@ -78,8 +78,9 @@ def test_the_two_kernels_differ_in_that_effect_only(name: str) -> None:
 
 def test_slots_name_types_and_absences() -> None:
     found = {name: kind for name, _, kind in slots_of(scene("sec2"), balance=False)}
-    assert found == {"chain": "Chain", "dissipation": "LinearDashpot", "tension": None, "foundation": None,
-                     "preload": None, "driver": "Harmonic", "balance": None}
+    assert {name: kind for name, kind in found.items() if kind is not None} == {
+        "chain": "Chain", "dissipation": "LinearDashpot", "driver": "Harmonic"}
+    assert {"tension", "foundation", "preload", "balance"} <= set(found)
     assert {name: kind for name, _, kind in slots_of(scene("rig"), balance=True)}["balance"] == "Balance"
 
 

@@ -73,12 +73,12 @@ class BranchesPage(Page):
             self._view.update_state(now=now.f, stale=stale)
 
     def picture_ready(self, picture: Settled) -> None:
-        """Begin by itself where the page was opened before the motion had settled."""
+        """Follow the orbit if the page was opened before the motion had settled."""
         if self._waits and picture.final:
             self._begin()
 
     def curve_ready(self) -> None:
-        """Draw the curve behind the branches, where somebody has opened the page."""
+        """Draw the curve behind the branches, if the page has been opened."""
         if self._begun or self._waits:
             self._draw_curve()
 
@@ -90,7 +90,7 @@ class BranchesPage(Page):
     # What the visitor does
 
     def _opened(self) -> None:
-        """The first time, follow the orbit on the screen without being asked."""
+        """Follow the orbit on the screen when the page is opened for the first time."""
         self._draw_curve()
         if self._begun:
             return

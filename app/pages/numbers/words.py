@@ -11,7 +11,7 @@ from ...format import in_words
 
 #: Instants of a table over time; the file has all.
 _INSTANTS = 25
-#: A value below this part of the largest of its series is what rounding left of zero, as of the sine of a full turn.
+#: A value below this part of the largest of its series is a rounded zero, such as the sine of a full turn.
 _ROUNDING = 1e-12
 #: Effects with which contacts alone lose energy: the others store it, or cut the damped force.
 _ONLY_CONTACTS_LOSE = {"dashpot", "tension", "foundation", "preload"}
@@ -30,7 +30,7 @@ def summary(run: Run) -> str:
 
 
 def _forces(run: Run) -> str:
-    """The motion, and the largest forces at both ends with their ratio, which is none of energies."""
+    """The motion, and the largest forces at both ends with their ratio, which is not a ratio of energies."""
     pushed, arrived = (in_words(force, "N", 3) for force in (run.max_input_force, run.max_output_force))
     if not run.scene.is_driven:
         return (f"Nothing drives the chain; {_time(run, -1)} from its start are shown. The force on bead 1 from the "
@@ -66,13 +66,13 @@ def forces_over_time(run: Run) -> list[list[str]]:
 
 
 def _value(values: np.ndarray, row: int, unit: str) -> str:
-    """A value of a series; what rounding left of a zero is a zero."""
+    """A value of a series; a rounded zero is shown as zero."""
     value = float(values[row])
     return f"0 {unit}" if abs(value) <= _ROUNDING * float(np.abs(values).max()) else in_words(value, unit, 3)
 
 
 def beads(run: Run) -> list[list[str]]:
-    """Of each bead the largest displacement, speed and kinetic energy, as sampled, and when it has that energy."""
+    """For each bead the largest displacement, speed and kinetic energy, as sampled, and when it has that energy."""
     energy = run.kinetic_energy
     return [[str(bead + 1), in_words(float(np.abs(run.displacement[:, bead]).max()), "m", 3),
              in_words(float(np.abs(run.velocity[:, bead]).max()), "m/s", 3),

@@ -15,7 +15,7 @@ from .view import Probe
 
 
 class ProbePage(Page):
-    """It follows the settled picture while it is on the screen, so that it costs nothing otherwise."""
+    """Follows the settled picture while it is on the screen; at other times it costs nothing."""
 
     def __init__(self, host: Host, view: Probe) -> None:
         self._host = host
@@ -29,7 +29,7 @@ class ProbePage(Page):
         self._draw(picture)
 
     def visibility_changed(self, visible: bool) -> None:
-        """Draw the present motion for who begins to look."""
+        """Draw the present motion when somebody begins to look."""
         self._visible = visible
         self._draw(self._host.session.picture)
 

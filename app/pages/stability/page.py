@@ -41,7 +41,7 @@ WORDS = StatusWords("the tangent flow", 20)
 
 
 class StabilityPage(Page):
-    """While it is on the screen, it analyses every picture that stays; a moving knob cancels the analysis."""
+    """Analyses every picture that stays, while it is on the screen; a moving knob cancels the analysis."""
 
     def __init__(self, host: Host, view: Stability) -> None:
         self._host = host
@@ -178,7 +178,7 @@ class StabilityPage(Page):
                 self._show_evidence()
 
     def _section_ended(self, status: Status, sentence: str) -> None:
-        """Report a failure; how the analysis stands is another matter."""
+        """Report a failure; it says nothing about the analysis."""
         if status == "failed":
             with unlocked():
                 self._view.update_state(failure=sentence)

@@ -61,7 +61,7 @@ def period_words(orbit: Orbit) -> str:
 
 
 def verdict(orbit: Orbit) -> str:
-    """Whether a disturbance of the orbit dies out and, if it does not, which way it leaves."""
+    """Whether a disturbance of the orbit dies out and, if not, in which way it grows."""
     leading = complex(orbit.multipliers[0])
     size = abs(leading)
     if orbit.multiplier_errors is not None and not orbit.stability_certain:
@@ -79,7 +79,7 @@ def verdict(orbit: Orbit) -> str:
 
 
 def _observed(orbit: Orbit) -> str:
-    """The observer's stability, where it was asked for."""
+    """The observer's stability, if it was asked for."""
     if orbit.observer_multipliers is None:
         return ""
     size = float(np.abs(orbit.observer_multipliers).max())
