@@ -23,7 +23,7 @@ from granchain_core.stop import Stop
 from ..frames import samples_for
 from ..serve.queues import ANALYSES, SWEEPS
 from ..serve.shared import Shared
-from ..serve.turns import CpuTime, SchedulerSlot
+from ..serve.turns import CpuTime, TurnFlag
 from ..session.host import Host
 from ..session.session import without_frequency
 from ..session.task import Job, Task
@@ -76,7 +76,7 @@ def stated_name(feature: Feature) -> dict[str, Any]:
 
 
 def _extreme_chapters(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
-                      stop: SchedulerSlot) -> Iterator[dict[str, Any] | None]:
+                      stop: TurnFlag) -> Iterator[dict[str, Any] | None]:
     """The chapter of one extremum after the other. Raises `Cancelled`."""
     for kind, point in extremes:
         yield extreme_chapter(kind, point, scene, stop)

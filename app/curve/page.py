@@ -20,7 +20,7 @@ from ..pictures.curve import WORDS
 from ..serve.compiler import COMPILER, PICTURE_PIECES
 from ..serve.delays import CURVE_EVERY, CURVE_QUIET
 from ..serve.queues import CURVES, LatestWins
-from ..serve.turns import SchedulerSlot
+from ..serve.turns import TurnFlag
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
@@ -32,7 +32,7 @@ from ..session.task import Task
 from .bar import CHOICES, CurveBar
 from .chapters import Chapters, stated_name
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
-from .view import Curve
+from .view import CurveFigure
 
 
 class CurveController:
@@ -42,7 +42,7 @@ class CurveController:
     where on the curve the present motion lies. `compared` is called with the visitor's data beside a complete curve.
     """
 
-    def __init__(self, host: Host, figure: Curve, bar: CurveBar, placed: Callable[[], None]) -> None:
+    def __init__(self, host: Host, figure: CurveFigure, bar: CurveBar, placed: Callable[[], None]) -> None:
         self._host = host
         self._figure = figure
         self._bar = bar
@@ -98,7 +98,7 @@ class CurveController:
             self._drafts.submit(partial(self._draft, scene, self._begun))
 
     @staticmethod
-    def _draft(scene: Scene, begun: int, stop: SchedulerSlot) -> Iterator[tuple[int, list[CurvePoint]]]:
+    def _draft(scene: Scene, begun: int, stop: TurnFlag) -> Iterator[tuple[int, list[CurvePoint]]]:
         with stop.held():
             points = draft_curve(scene, grid(scene, COARSE), stop)
         yield begun, points

@@ -22,7 +22,7 @@ from ..serve.changes import change
 from .pinned_curves import PinnedCurves
 
 
-class Curve:
+class CurveFigure:
     """The figure with, for every direction, the curve being computed and the one before it in grey.
 
     Lines and marks that most visitors never see are made when they are first needed.

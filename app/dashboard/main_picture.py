@@ -21,7 +21,7 @@ from ..serve.meters import METERS
 from ..serve.pacing import FramePacer
 from ..serve.queues import PICTURES, LatestWins
 from ..serve.shared import Shared
-from ..serve.turns import SchedulerSlot
+from ..serve.turns import TurnFlag
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_residual import with_account
 from ..session.host import Host
@@ -42,7 +42,7 @@ PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of,
                                           lambda pictures: pictures[-1:])
 
 
-def _computed(scene: Scene, start: State | None, most: float, stop: SchedulerSlot) -> Iterator[Settled]:
+def _computed(scene: Scene, start: State | None, most: float, stop: TurnFlag) -> Iterator[Settled]:
     """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
     began = time.thread_time()
     pictures = settling(scene, start=start, samples=samples_for(scene), stop=stop)
@@ -146,12 +146,12 @@ class Pictures:
 
     # In a worker thread
 
-    def _settled(self, scene: Scene, start: State | None, stop: SchedulerSlot) -> Iterator[Settled]:
+    def _settled(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
         with _refusing(scene):
             yield from self._pictures_of(scene, start, stop)
 
-    def _pictures_of(self, scene: Scene, start: State | None, stop: SchedulerSlot) -> Iterator[Settled]:
+    def _pictures_of(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
         if scene != self._session.insisted:
             check_first_picture(scene)
         self._await_live_kernels(scene, stop)
@@ -175,7 +175,7 @@ class Pictures:
             self._session.started_from = origin
             self._host.address_changed()
 
-    def _await_live_kernels(self, scene: Scene, stop: SchedulerSlot) -> None:
+    def _await_live_kernels(self, scene: Scene, stop: TurnFlag) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
         if not COMPILER.has(scene, FIXED_STEP):
             words = compiling_words("the kernels for this set of effects", 10).capitalize()
@@ -185,14 +185,14 @@ class Pictures:
             if not COMPILER.await_piece(scene, FIXED_STEP, stop):
                 raise Cancelled
 
-    def _live_step(self, samples: int | None, stop: SchedulerSlot) -> Iterator[LivePicture]:
+    def _live_step(self, samples: int | None, stop: TurnFlag) -> Iterator[LivePicture]:
         live, scene = self.live, self._session.scene
         if live is not None:
             with _refusing(scene):
                 if scene != self._session.insisted:
                     check_first_picture(scene)
             self._await_live_kernels(scene, stop)
-            with live.slot.held(anew=True):
+            with live.flag.held(anew=True):
                 picture = live.advance(samples) if samples else live.step(self._session.speed)
             yield picture
 

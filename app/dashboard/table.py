@@ -33,7 +33,7 @@ from ..session.host import Host
 
 @dataclass(frozen=True)
 class TabSpec:
-    """A tab that belongs to no page; the fields mean what they mean in a `PageSpec`."""
+    """A tab that belongs to no page; the fields are those of a `PageSpec`, but it is not `taller` by default."""
 
     name: str
     group: str

@@ -25,7 +25,7 @@ _SCALES = {
 SCALES = [(scale, *_SCALES[scale]) for scale in EXTRAS["scale"]]
 
 
-class Chain(Component):
+class ChainPart(Component):
     """Beads, contacts, driver and wall; the frames come as single-precision arrays."""
 
     _esm = module("chain.js")

@@ -15,7 +15,7 @@ from granchain_core.regime import Regime
 
 from ..format import in_words, short_error
 from .axes import force_scale, knob_scale
-from .regimes import REGIMES, regime_key
+from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme, apply_theme, frame, themed
 
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
@@ -65,7 +65,7 @@ def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
     The force `drawn` is drawn over `factor` [N], marks `larger` px larger.
     """
     keys = [regime_key(p.regime.name, p.regime.period) for p in points]
-    styles = [REGIMES[key] for key in keys]
+    styles = [REGIME_MARKS[key] for key in keys]
     return {
         "frequency": [p.frequency for p in points], "force": [getattr(p, drawn) / factor for p in points],
         "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],

@@ -30,12 +30,12 @@ from granchain_core.diagram.cells import empty_cells
 
 from ..format import in_words, short_error
 from .axes import Scale, knob_scale
-from .regimes import REGIMES, regime_key
+from .regimes import REGIME_MARKS, regime_key
 from .theme import BROWN, Theme, apply_theme, frame, themed
 
-CATEGORIES = (*REGIMES, "failed")
+CATEGORIES = (*REGIME_MARKS, "failed")
 """What a cell may be, in the curve's colours, each with a hatch of its own."""
-COLOURS = [REGIMES[name][1] if name in REGIMES else BROWN for name in CATEGORIES]
+COLOURS = [REGIME_MARKS[name][1] if name in REGIME_MARKS else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
 MOST_DRAWN_CELLS = 40_000
 """Most cells that a browser shows smoothly."""

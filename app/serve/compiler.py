@@ -24,8 +24,9 @@ from .queues import COMPILATIONS, LOADING
 
 log = logging.getLogger("granchain")
 
-#: The kernels of the main picture and of its curve.
-PICTURE_PIECES = (FIXED_STEP, ADAPTIVE, CURVE)
+#: The kernels of a run, and those of the main picture and its curve.
+MOTION_PIECES = (FIXED_STEP, ADAPTIVE)
+PICTURE_PIECES = (*MOTION_PIECES, CURVE)
 _ROOT = Path(__file__).resolve().parents[2]
 
 

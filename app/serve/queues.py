@@ -21,7 +21,7 @@ from granchain_core import Cancelled
 
 from .meters import METERS
 from .priorities import begin, give_way, gives_way
-from .turns import CpuTime, SchedulerSlot
+from .turns import CpuTime, TurnFlag
 
 Result = TypeVar("Result")
 
@@ -123,7 +123,7 @@ MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
 COMPILATIONS = Queue("compilations", 2)
 
-Work = Callable[[SchedulerSlot], Iterator[object]]
+TurnWork = Callable[[TurnFlag], Iterator[object]]
 
 #: How long a first picture is computed before a newer request stops it [s].
 _PATIENCE = 1.0
@@ -175,19 +175,19 @@ class LatestWins:
         self._fail = fail
         self.cpu_time = CpuTime() if cpu_time is None else cpu_time
         self._lock = threading.Lock()
-        self._waiting: Work | None = None
+        self._waiting: TurnWork | None = None
         self._running = False
         self._refining = False
         self._closed = False
         self._began = 0.0
-        self._stop = SchedulerSlot(self.cpu_time)
+        self._stop = TurnFlag(self.cpu_time)
 
     @property
     def busy(self) -> bool:
         """Whether something is being computed or waits to be."""
         return self._running
 
-    def submit(self, work: Work) -> None:
+    def submit(self, work: TurnWork) -> None:
         """Compute `work` next, in place of anything that has not started."""
         with self._lock:
             if self._closed:
@@ -204,7 +204,7 @@ class LatestWins:
             self._began = time.monotonic()
         VISITORS.submit(self._drain)
 
-    def _give_up(self, stop: SchedulerSlot) -> None:
+    def _give_up(self, stop: TurnFlag) -> None:
         """The first result has not come for a second: begin with what waits."""
         with self._lock:
             if self._stop is stop and self._waiting is not None:
@@ -217,13 +217,13 @@ class LatestWins:
             self._waiting = None
             self._stop.set()
 
-    def _next(self) -> Work | None:
+    def _next(self) -> TurnWork | None:
         with self._lock:
             work, self._waiting = self._waiting, None
             self._running = work is not None
             self._refining = False
             self._began = time.monotonic()
-            self._stop = SchedulerSlot(self.cpu_time)
+            self._stop = TurnFlag(self.cpu_time)
             if self._closed:
                 self._stop.set()
             return work
@@ -235,7 +235,7 @@ class LatestWins:
                 VISITORS.submit(self._drain)
                 return
 
-    def _do(self, work: Work) -> None:
+    def _do(self, work: TurnWork) -> None:
         try:
             for result in work(self._stop):
                 if self._closed:

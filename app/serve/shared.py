@@ -14,7 +14,7 @@ from typing import Generic, TypeVar
 from granchain_core.stop import Stop
 
 from .queues import Queue
-from .turns import CpuTime, Flag, SchedulerSlot, SharedCpuTime
+from .turns import CpuTime, Flag, SharedCpuTime, TurnFlag
 
 Item = TypeVar("Item")
 
@@ -31,7 +31,7 @@ class _Computation(Generic[Item]):
         self.done = False
         self.error: Exception | None = None
         self.cpu_time = SharedCpuTime()
-        self.stop = SchedulerSlot(self.cpu_time)
+        self.stop = TurnFlag(self.cpu_time)
 
 
 class Shared(Generic[Item]):
@@ -50,7 +50,7 @@ class Shared(Generic[Item]):
         self.used = 0
         self.hits, self.misses = 0, 0
 
-    def follow(self, key: Hashable, compute: Callable[[SchedulerSlot], Iterator[Item]], stop: Stop,
+    def follow(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]], stop: Stop,
                cpu_time: CpuTime) -> Generator[Item, None, None]:
         """The items of `compute`, or of the computation with the same key that is under way or finished.
 
@@ -72,7 +72,7 @@ class Shared(Generic[Item]):
         finally:
             self._leave(key, one, cpu_time)
 
-    def _joined(self, key: Hashable, compute: Callable[[SchedulerSlot], Iterator[Item]],
+    def _joined(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
         """With the lock held: the computation under way, or a new one."""
         found = None if key is None else self._under_way.get(key)
@@ -122,7 +122,7 @@ class Shared(Generic[Item]):
                 return
 
     def _compute(self, key: Hashable, one: _Computation[Item],
-                 compute: Callable[[SchedulerSlot], Iterator[Item]]) -> None:
+                 compute: Callable[[TurnFlag], Iterator[Item]]) -> None:
         """In a thread of the queue."""
         error: Exception | None = None
         try:

@@ -208,7 +208,7 @@ class Flag(Stop):
             self.on_set()
 
 
-class SchedulerSlot(Flag):
+class TurnFlag(Flag):
     """The stop flag of a picture's computation, which takes turns with others while it computes."""
 
     __slots__ = ("_began", "_scheduler", "_spent", "_turn", "cpu_time")

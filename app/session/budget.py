@@ -15,7 +15,7 @@ FIRST_PICTURE = 5.0
 #: Processor time after which the search for the steady state of one picture is given up [s].
 WHOLE_PICTURE = 120.0
 #: The longest that a resonance curve may take if nobody asked for it [s].
-CURVE = 120.0
+LONGEST_CURVE = 120.0
 
 #: Drive periods before the first picture, and in it.
 _PERIODS = 2 + PERIODS
@@ -48,4 +48,4 @@ class TooLong(BadInput):
 def curve_affordable(scene: Scene) -> bool:
     """Whether the page computes the curve by itself; it is judged by the frequency in the middle of its range."""
     low, high = slider_range(scene, "f")
-    return picture_seconds(scene.evolve(f=0.5 * (low + high)), _CURVE_PERIODS, 1) <= CURVE
+    return picture_seconds(scene.evolve(f=0.5 * (low + high)), _CURVE_PERIODS, 1) <= LONGEST_CURVE

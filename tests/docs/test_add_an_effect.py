@@ -102,14 +102,14 @@ def test_the_new_effect_has_a_switch_in_the_panel_a_slider_a_cost_and_axes(tree:
     """Off and on again by its switch, with its own kernel each time; the knob is under "more", and can be followed."""
     told = follow(tree, "-c", """
 from app.session.session import Session
-from app.session.switches import EFFECTS, present, variants
+from app.session.switches import SWITCHES, present, variants
 from app.parts.knobs import knob_state
 from granchain_core import scene
 from granchain_core.diagram.grid import KNOBS
 from granchain_core.orbits import CONTINUOUS
 from granchain_core.warm import structure
 session = Session(scene=scene("drag"))
-print(EFFECTS["drag"].title, "|", present("drag", session.scene, False))
+print(SWITCHES["drag"].title, "|", present("drag", session.scene, False))
 for on in (False, True):
     session.switch("drag", on)
     print(session.scene.c, structure(session.scene))

@@ -24,7 +24,7 @@ from app.pages.stability.view import (
     section_points,
     verdict,
 )
-from app.pages.stability.work import Analysis, Target, analyse, search, section_of, transient
+from app.pages.stability.work import OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
 from granchain_core.regime import Regime, modulus_words
 from granchain_core.stop import Stop
@@ -37,11 +37,11 @@ def picture(name: str = "sec2", **knobs: Any) -> Settled:
 
 
 @cache
-def analysis(**knobs: Any) -> Analysis:
+def analysis(**knobs: Any) -> OrbitAnalysis:
     """The analysis of a settled picture of sec2."""
     found = picture(**knobs)
     assert found.regime.period is not None
-    return analyse(Target(found.run.scene, found.regime.period, found.state, True), False, 0, Stop())
+    return analyse(OrbitTarget(found.run.scene, found.regime.period, found.state, True), False, 0, Stop())
 
 
 def with_leading(*leading: complex) -> Any:
@@ -148,7 +148,7 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
     shown = picture()
     far = replace(shown.state, displacement=1.01 * shown.state.displacement)
     with pytest.raises(NumbersFailed, match="ended 1e-02 away"):
-        analyse(Target(shown.run.scene, 1, far, True), False, 0, Stop())
+        analyse(OrbitTarget(shown.run.scene, 1, far, True), False, 0, Stop())
 
 
 class Page(FakeHost):

@@ -24,7 +24,7 @@ from ...session.message_checks import listed, whole
 from ...session.progress import Status, StatusWords
 from ...session.session import slider_range, without_frequency
 from ...session.task import Job, Task
-from .view import LONGEST_PERIOD, Branches
+from .view import LONGEST_BRANCH_PERIOD, Branches
 
 WORDS = StatusWords("the kernels for branches", 40, kept="the orbits found so far")
 NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no branch. Choose a period, and an orbit of "
@@ -113,7 +113,7 @@ class BranchesPage(Page):
     def _start(self, message: dict[str, Any]) -> None:
         period = message.get("period")
         if period is not None:
-            period = whole("period of a branch", period, 1, LONGEST_PERIOD)
+            period = whole("period of a branch", period, 1, LONGEST_BRANCH_PERIOD)
         scene, picture = self._host.session.scene, self._host.session.picture
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)

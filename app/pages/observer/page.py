@@ -14,7 +14,7 @@ from ...session.host import Host
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .view import Observer
-from .work import ObserverRun, Step
+from .work import ObserverRun, ObserverStep
 
 WORDS = StatusWords("the observer's kernels", 10)
 
@@ -24,7 +24,7 @@ class _Moved:
     """A step of a run, and whether the run began with it."""
 
     run: ObserverRun
-    step: Step
+    step: ObserverStep
     began: bool
 
 

@@ -6,8 +6,9 @@ from typing import Any
 
 from granchain_core import scene
 from granchain_core.paper import PaperFigure, Result, compute, figure_of
-from granchain_core.warm import ADAPTIVE, CURVE, FIXED_STEP, OBSERVER, ORBIT
+from granchain_core.warm import CURVE, OBSERVER, ORBIT
 
+from ...serve.compiler import MOTION_PIECES
 from ...serve.queues import LONG
 from ...session.hooks import Actions, Page
 from ...session.host import Host
@@ -15,14 +16,13 @@ from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .view import Paper
 
-_MOTION = (FIXED_STEP, ADAPTIVE)
-_TRAINS = (("rig", _MOTION),)
-_FED = (("rig", (*_MOTION, CURVE, ORBIT, OBSERVER)),)
+_TRAINS = (("rig", MOTION_PIECES),)
+_FED = (("rig", (*MOTION_PIECES, CURVE, ORBIT, OBSERVER)),)
 #: The kernels of each figure: presets, and pieces of their structures. Figures without an entry need none.
 _KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
-    "2": (("sec2", (*_MOTION, CURVE)),), **dict.fromkeys(("3", "3a", "3b"), (("sec2", _MOTION),)),
-    "6": (("rig", (*_MOTION, CURVE)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
-    "11": tuple((name, (*_MOTION, ORBIT, OBSERVER)) for name in ("fig11-free", "fig11-founded")),
+    "2": (("sec2", (*MOTION_PIECES, CURVE)),), **dict.fromkeys(("3", "3a", "3b"), (("sec2", MOTION_PIECES),)),
+    "6": (("rig", (*MOTION_PIECES, CURVE)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
+    "11": tuple((name, (*MOTION_PIECES, ORBIT, OBSERVER)) for name in ("fig11-free", "fig11-founded")),
 }
 #: The figure that the page begins with: the resonance curve of section 2, which takes a second.
 _FIRST = "2"

@@ -26,7 +26,7 @@ from ...pictures.multipliers import multiplier_words, plane, plane_state
 from ...pictures.section import SectionPoints, close_up, section, section_state
 from ...pictures.theme import Theme
 from ...scripts import module
-from .work import PHASES, Analysis
+from .work import PHASES, OrbitAnalysis
 
 
 @cache
@@ -117,7 +117,7 @@ def multiplier_sentence(orbit: Orbit, rank: int) -> str:
     return f"ringed: μ = {value}, |μ| {modulus}"
 
 
-def evidence(picture: Settled, analysis: Analysis | None, section: Section | None) -> list[dict[str, str]]:
+def evidence(picture: Settled, analysis: OrbitAnalysis | None, section: Section | None) -> list[dict[str, str]]:
     """Name, value and meaning of everything on which the verdict rests; what was not computed has no row."""
     regime, rows = picture.regime, []
 
@@ -153,7 +153,7 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
     return rows
 
 
-def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
+def _orbit_rows(row: Any, picture: Settled, analysis: OrbitAnalysis) -> None:
     orbit = analysis.orbit
     size = abs(orbit.multipliers[0])
     seen = picture.regime.decay
