@@ -17,7 +17,7 @@ settings.register_profile("granchain", deadline=None, derandomize=True, max_exam
 settings.load_profile("granchain")
 
 HERE = Path(__file__).parent
-#: Folders and files of the inner loop, `python -m pytest -m quick`: below 90 s once the kernels are compiled.
+#: Folders and files of the inner loop, `python -m pytest -m quick`; CONTRIBUTING.md says how long it may take.
 #: Most parts of the core have one that fails where that part is wrong; orders, random scenes and browsers are for the
 #: whole suite.
 QUICK = (

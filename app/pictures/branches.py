@@ -25,16 +25,16 @@ _STYLES: dict[str, dict[str, Any]] = {
     "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
     "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
+#: Width and dash.
 _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
-"""Width and dash."""
 _ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
 _MARK = ("x", "y", "tooltip", "place")
+#: Sources of the resonance curve behind the branches: its points, and lines between neighbours of which both repeat.
 _CURVE, _CURVE_LINE = "curve", "curve line"
-"""Sources of the resonance curve behind the branches: its points, and lines between neighbours of which both repeat."""
 _TITLE = "largest elastic output force"
+#: Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one.
 _TARGET = 13
-"""Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one."""
 
 Columns = dict[str, dict[str, list[Any]]]
 

@@ -18,18 +18,18 @@ from .axes import force_scale, knob_scale
 from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme, apply_theme, frame, themed
 
+#: Dashes of the line by the start of a sweep.
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
-"""Dashes of the line by the start of a sweep."""
+#: The same in words.
 WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
-"""The same in words."""
+#: The same for a choice beside the curve, with a piece of the line.
 LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈○"}
-"""The same for a choice beside the curve, with a piece of the line."""
+#: What the dashes mean, in a sentence.
 KEY = "Solid line: from rest; dashed: frequency rising; dotted, with hollow marks: frequency falling."
-"""What the dashes mean, in a sentence."""
+#: What fills the marks, by the start of a sweep: a column, or nothing, so that both sweeps show where they differ.
 FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
-"""What fills the marks, by the start of a sweep: a column, or nothing, so that both sweeps show where they differ."""
+#: A tooltip's lines for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
-"""A tooltip's lines for the columns of `forces_in_words`."""
 
 
 def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure:

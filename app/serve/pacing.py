@@ -8,9 +8,9 @@ from typing import Generic, TypeVar
 Picture = TypeVar("Picture")
 
 
+#: Pictures on their way at once: one being painted, one travelling. Measured on two cores: 21 frames a second and 45
+#: ms of lag (p95) with one, 28 and 43 with two.
 _AHEAD = 2
-"""Pictures on their way at once: one being painted, one travelling. Measured on two cores: 21 frames a second
-and 45 ms of lag (p95) with one, 28 and 43 with two."""
 
 
 class FramePacer(Generic[Picture]):

@@ -13,10 +13,10 @@ from granchain_core.run.live import joined
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
 from ..serve.turns import CpuTime, TurnFlag
 
+#: Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden.
 _LONGEST_STEP = 0.1
-"""Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden."""
+#: Longest time [s] that one step is to compute.
 _LONGEST_COMPUTED = 0.1
-"""Longest time [s] that one step is to compute."""
 
 
 @dataclass(frozen=True)

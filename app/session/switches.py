@@ -12,11 +12,11 @@ from granchain_core.scene.effects import Effect
 
 from .message_checks import quoted
 
+#: The one effect that is no knob of the scene: it changes nothing in the motion.
 ACCOUNT_SWITCH = table.ACCOUNT.name
-"""The one effect that is no knob of the scene: it changes nothing in the motion."""
 
+#: The effects in the order in which the page lists them.
 SWITCHES: dict[str, Effect] = {effect.name: effect for effect in (*table.EFFECTS, table.ACCOUNT)}
-"""The effects in the order in which the page lists them."""
 
 
 def present(name: str, shown: Scene, account: bool) -> bool:

@@ -20,8 +20,8 @@ from ...pictures.naive_forces import naive_forces
 from ...pictures.theme import Theme
 from ...scripts import module
 
+#: If references differ by more than this, the motion is too sensitive to be followed for ten periods.
 _LOST = 1e-4
-"""If references differ by more than this, the motion is too sensitive to be followed for ten periods."""
 
 
 @cache

@@ -21,8 +21,8 @@ from ...pictures.theme import Theme
 from ...scripts import module
 from .work import NUDGE, ObserverStep
 
+#: Drive periods after a start during which no multiplier describes the distance.
 _TRANSIENT = 2
-"""Drive periods after a start during which no multiplier describes the distance."""
 
 
 @cache

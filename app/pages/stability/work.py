@@ -16,16 +16,16 @@ from granchain_core.steady.poincare import Section, iter_section
 from granchain_core.steady.settling.regime_decisions import EXAMINED_AFTER
 from granchain_core.stop import Stop
 
+#: Phases of the drive period at which the section is kept.
 PHASES = 48
-"""Phases of the drive period at which the section is kept."""
+#: Fewest periods of a section, and those of one whose motion is not periodic.
 _FEWEST, _CLOUD = 24, 1200
-"""Fewest periods of a section, and those of one whose motion is not periodic."""
+#: Values of one mode; beyond it its samples lie farther apart.
 _MODE_VALUES = 60_000
-"""Values of one mode; beyond it its samples lie farther apart."""
+#: A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8.
 _TRUSTED = 1e-4
-"""A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8."""
+#: If Newton's method ends farther than this from a settled motion, it has found another orbit.
 _SAME_ORBIT = 1e-3
-"""If Newton's method ends farther than this from a settled motion, it has found another orbit."""
 
 
 @dataclass(frozen=True)
