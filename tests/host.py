@@ -6,6 +6,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import waiting
+
 from granchain_core import CurvePoint
 
 
@@ -56,9 +58,9 @@ class FakeHost:
 
     def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
         """Call what waits until something holds."""
-        end = time.monotonic() + seconds
-        while not until():
-            assert time.monotonic() < end, "did not come"
-            while self.callbacks:
-                self.callbacks.pop(0)()
-            time.sleep(0.002)
+        waiting.until(until, seconds, self._call_all)
+
+    def _call_all(self) -> None:
+        while self.callbacks:
+            self.callbacks.pop(0)()
+        time.sleep(0.002)

@@ -22,7 +22,8 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
                     ignore=shutil.ignore_patterns("__pycache__"))
     (copy / "tests" / "dashboard").mkdir()
     shutil.copy(ROOT / "tests" / "dashboard" / "test_messages.py", copy / "tests" / "dashboard")
-    shutil.copy(ROOT / "tests" / "host.py", copy / "tests")
+    for name in ("host.py", "waiting.py"):
+        shutil.copy(ROOT / "tests" / name, copy / "tests")
     return edited_copy(PAGE, copy)
 
 

@@ -44,7 +44,7 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
 
 def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(tree: Path) -> None:
     """README, model page, share links, scales and the gallery, whose tests fail until step 5 is done."""
-    for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
+    for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
         copied(part, tree)
     follow(tree, "-m", "tools.gallery", "drag")
     told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/session/test_share.py", "tests/dashboard/test_scales.py::test_every_scene_has_a_scale",

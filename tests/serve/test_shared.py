@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from test_turns import until
+from waiting import until
 
 from app.serve.queues import LatestWins, Queue
 from app.serve.shared import Shared

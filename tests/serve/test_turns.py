@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import threading
-import time
 
 import pytest
+from waiting import until
 
 from app.serve.turns import CpuTime, FairScheduler, SharedCpuTime, TurnFlag
 from granchain_core import Stop
-
-
-def until(holds: object, seconds: float = 60.0) -> None:
-    """Wait until something holds."""
-    end = time.monotonic() + seconds
-    while not holds():  # type: ignore[operator]
-        assert time.monotonic() < end, "did not come"
-        time.sleep(0.002)
 
 
 def test_half_of_what_was_used_is_forgotten_in_five_seconds() -> None:
