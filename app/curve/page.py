@@ -94,7 +94,7 @@ class CurveController:
             return
         self._chapters.forget()
         self.changed(scene)
-        if self._visible and self._wanted["rest"] and self._affordable(scene) and COMPILER.has(scene, CURVE):
+        if self._visible and self._wanted["rest"] and curve_affordable(scene) and COMPILER.has(scene, CURVE):
             self._drafts.submit(partial(self._draft, scene, self._begun))
 
     @staticmethod
@@ -113,7 +113,7 @@ class CurveController:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
         self._cancel()
         self._asked = without_frequency(scene)
-        self._figure.expected = self._visible and self._wanted["rest"] and self._affordable(scene)
+        self._figure.expected = self._visible and self._wanted["rest"] and curve_affordable(scene)
         self._bar.update_state(driven=scene.is_driven)
         self._quiet.start(self._begin_when_compiled, scene)
 
@@ -123,13 +123,8 @@ class CurveController:
         with self._lock:
             self._buffer = []
 
-    @staticmethod
-    def _affordable(scene: Scene) -> bool:
-        """Whether there is a curve, and it is short enough to be computed without being asked for."""
-        return scene.is_driven and curve_affordable(scene)
-
     def _begin_when_compiled(self, scene: Scene) -> None:
-        if not self._affordable(scene):
+        if not curve_affordable(scene):
             self.stop()
             if not scene.is_driven:  # another drive has no curve that could stay
                 self._computed.clear()
@@ -197,7 +192,7 @@ class CurveController:
                 found.append((title, OFF, "not on the screen"))
             elif self._asked is not None and not self._asked.is_driven:
                 found.append((title, OFF, "nothing drives the chain"))
-            elif self._asked is not None and not self._affordable(self._asked):
+            elif self._asked is not None and not curve_affordable(self._asked):
                 found.append((title, OFF, "it would take too long; granchain curve computes it"))
             elif name in self._remaining and self.computing:
                 found.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))

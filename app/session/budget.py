@@ -46,6 +46,11 @@ class TooLong(BadInput):
 
 @functools.lru_cache(maxsize=64)
 def curve_affordable(scene: Scene) -> bool:
-    """Whether the page computes the curve by itself; it is judged by the frequency in the middle of its range."""
+    """Whether there is a curve, and it is short enough for the page to compute it without being asked.
+
+    The time is estimated from the frequency in the middle of its range.
+    """
+    if not scene.is_driven:
+        return False
     low, high = slider_range(scene, "f")
     return picture_seconds(scene.evolve(f=0.5 * (low + high)), _CURVE_PERIODS, 1) <= LONGEST_CURVE

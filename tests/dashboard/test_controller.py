@@ -106,16 +106,19 @@ def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -
 
 
 def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    sent: list[object] = []
-    monkeypatch.setattr(dashboard.pictures._pacer, "offer", sent.append)
+    sent: list[dict[str, Any]] = []
+    monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: sent.append(message))
     session, pictures = dashboard.session, dashboard.pictures
     session.set_mode("live")
     session.playing = False
     pictures.begin_live()
-    pictures._arrived(pictures.live.advance(7))
+    pictures.advance(7)
+    dashboard.run_callbacks_until(lambda: len(sent) == 1)
     dashboard.received({"do": "scale", "value": "fit"})
-    dashboard.run_callbacks_until(lambda: not pictures.busy)
-    assert sent[0] is sent[1] and len(sent) == 2 and pictures.live._shown == 7
+    dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
+    shown = pictures.run()
+    assert len(sent) == 2 and [message["fit"] for message in sent] == [False, True]
+    assert shown is not None and len(shown.time) == 8, "no sample follows the seven of the first picture"
 
 
 def test_choosing_the_scale_takes_the_scenes_own_again(dashboard: Dashboard) -> None:
