@@ -14,13 +14,13 @@ from granchain_core import Run, Scene
 from granchain_core.scaling import scales_of
 
 _FEWEST, _MOST, _STEP = 96, 384, 48
+#: Rows per contact time 1/φ; a pulse takes about three such times to pass a bead.
 _PER_CONTACT_TIME = 1.5
-"""Rows per contact time 1/φ; a pulse takes about three such times to pass a bead."""
+#: Most values of one quantity in a picture; beyond that, rows are left out that nobody would see.
 _LARGEST = 60_000
-"""Most values of one quantity in a picture; beyond that, rows are left out that nobody would see."""
 
+#: Drive periods in a live picture, and in a settled one at least; a longer orbit is shown once.
 PERIODS = 4
-"""Drive periods in a live picture, and in a settled one at least; a longer orbit is shown once."""
 
 
 def round_up(value: float) -> float:

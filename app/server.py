@@ -87,7 +87,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else address
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
-    settings.perform_document_validation.set_value(False)  # 40 ms of every opening, to find mistakes that tests find
+    settings.perform_document_validation.set_value(False)  # takes 40 ms of every opening, and tests find what it would
     if hasattr(settings, "perform_error_diagnostics"):  # since 3.9: Panel asks for a missing name at every change
         settings.perform_error_diagnostics.set_value(False)
     remember_defaults()

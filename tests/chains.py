@@ -9,8 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from granchain_core import Scene, scene
+from granchain_core.laws import LAWS as DAMPING_LAWS
 
-LAWS = ("linear", "tsuji", "kuwabara-kono", "none")
+#: What the knob `dissipation` may be.
+LAWS = (*DAMPING_LAWS, "none")
 _REFERENCE = np.load(Path(__file__).parent / "reference" / "reference.npz")
 
 

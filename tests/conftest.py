@@ -17,7 +17,7 @@ settings.register_profile("granchain", deadline=None, derandomize=True, max_exam
 settings.load_profile("granchain")
 
 HERE = Path(__file__).parent
-#: Folders and files of the inner loop, `python -m pytest -m quick`: below 90 s once the kernels are compiled.
+#: Folders and files of the inner loop, `python -m pytest -m quick`; CONTRIBUTING.md says how long it may take.
 #: Most parts of the core have one that fails where that part is wrong; orders, random scenes and browsers are for the
 #: whole suite.
 QUICK = (
@@ -46,7 +46,7 @@ LONG = (
     "test_chapters::test_the_peaks_of_section_2_and_what_lies_between",
     "test_regime_labels::test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit",
     "test_stated_errors::test_the_stated_error_bounds_the_true_one",
-    "test_add_a_page::test_the_new_page_fits_into_the_house",
+    "test_add_a_page::test_the_new_page_fits_into_the_dashboard",
     "test_add_an_effect::test_the_tests_that_know_every_scene_and_knob_know_the_new_ones",
 )
 #: How many other tests of the browser take as long as a long one.

@@ -6,6 +6,8 @@ import time
 from collections.abc import Callable
 from typing import Any
 
+import waiting
+
 from granchain_core import CurvePoint
 
 
@@ -20,6 +22,8 @@ class FakeHost:
     def __init__(self) -> None:
         self.callbacks: list[Callable[[], None]] = []
         self.failures: list[Exception] = []
+        self.faults: list[tuple[Exception, str]] = []
+        self.closing: list[Callable[[], object]] = []
 
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """From any thread."""
@@ -29,9 +33,22 @@ class FakeHost:
         """The time passes when the callbacks are worked off."""
         self.next_tick(action, *arguments)
 
+    def on_close(self, action: Callable[[], object]) -> None:
+        """What is called when the visitor leaves."""
+        self.closing.append(action)
+
+    def leave(self) -> None:
+        """The visitor leaves."""
+        for action in self.closing:
+            action()
+
     def failed(self, error: Exception) -> None:
         """What has no place on a page."""
         self.failures.append(error)
+
+    def fault(self, error: Exception, sentence: str) -> None:
+        """An error of granchain itself, and what is said of it beside the page."""
+        self.faults.append((error, sentence))
 
     def call_waiting(self) -> None:
         """Call what waits now; what that asks for waits."""
@@ -41,9 +58,9 @@ class FakeHost:
 
     def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
         """Call what waits until something holds."""
-        end = time.monotonic() + seconds
-        while not until():
-            assert time.monotonic() < end, "did not come"
-            while self.callbacks:
-                self.callbacks.pop(0)()
-            time.sleep(0.002)
+        waiting.until(until, seconds, self._call_all)
+
+    def _call_all(self) -> None:
+        while self.callbacks:
+            self.callbacks.pop(0)()
+        time.sleep(0.002)

@@ -9,7 +9,7 @@ from granchain_core.steady.curve.resonance import STRONG
 
 from ..parts.component import Component, text
 from ..pictures.curve import LABELS
-from ..pictures.regimes import REGIMES, SYMBOLS
+from ..pictures.regimes import REGIME_MARKS, SYMBOLS
 from ..scripts import module
 
 _MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency rising, the state carried along.",
@@ -17,8 +17,9 @@ _MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency risi
 #: What may be shown: name, label and meaning.
 CHOICES = (*((name, label, _MEANINGS[name]) for name, label in LABELS.items()),
            ("features", "paper’s features ┊", "Frequencies the paper states for its rig; it gives no forces."))
-#: Every mark that a curve may have, for the key.
-KINDS = [{"name": name, "symbol": SYMBOLS[marker], "colour": colour} for name, (marker, colour, _) in REGIMES.items()]
+#: Every mark that a curve may have, for the key and for the tab “regimes”.
+KINDS = [{"name": name, "symbol": SYMBOLS[marker], "colour": colour}
+         for name, (marker, colour, _) in REGIME_MARKS.items()]
 
 
 class CurveBar(Component):

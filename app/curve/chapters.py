@@ -1,6 +1,6 @@
 """Buttons for the peaks, valleys and the stop band of the curve from rest.
 
-A name rests on what is computed there. The extrema are those that stand out from both neighbours by 20 %
+Each name follows from a computation at its place. The extrema are those that stand out from both neighbours by 20 %
 (`steady/curve/resonance.py`). At each the chain is settled once more and its driver's pushes are counted. A peak is
 named after them, 1:3 for one strong push in three periods; a valley is an anti-resonance if every period has one push.
 The stop band begins after the last peak, where less than 15 % of the input force arrives from there on.
@@ -23,7 +23,7 @@ from granchain_core.stop import Stop
 from ..frames import samples_for
 from ..serve.queues import ANALYSES, SWEEPS
 from ..serve.shared import Shared
-from ..serve.turns import CpuTime, SchedulerSlot
+from ..serve.turns import CpuTime, TurnFlag
 from ..session.host import Host
 from ..session.session import without_frequency
 from ..session.task import Job, Task
@@ -76,7 +76,7 @@ def stated_name(feature: Feature) -> dict[str, Any]:
 
 
 def _extreme_chapters(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
-                      stop: SchedulerSlot) -> Iterator[dict[str, Any] | None]:
+                      stop: TurnFlag) -> Iterator[dict[str, Any] | None]:
     """The chapter of one extremum after the other. Raises `Cancelled`."""
     for kind, point in extremes:
         yield extreme_chapter(kind, point, scene, stop)
@@ -95,7 +95,7 @@ class Chapters:
         self._task = Task(host, ANALYSES, lambda *_: None, "Naming the peaks of the curve", host.failed)
 
     def forget(self) -> None:
-        """The curve is another one."""
+        """Forget the names: the curve is another one."""
         self._task.cancel()
         self._show([])
 
@@ -116,7 +116,3 @@ class Chapters:
             job.next_tick(self._show, sorted(found, key=lambda one: float(one["f"])))
 
         self._task.start(work)
-
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()

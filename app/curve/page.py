@@ -20,7 +20,7 @@ from ..pictures.curve import WORDS
 from ..serve.compiler import COMPILER, PICTURE_PIECES
 from ..serve.delays import CURVE_EVERY, CURVE_QUIET
 from ..serve.queues import CURVES, LatestWins
-from ..serve.turns import SchedulerSlot
+from ..serve.turns import TurnFlag
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
@@ -32,7 +32,7 @@ from ..session.task import Task
 from .bar import CHOICES, CurveBar
 from .chapters import Chapters, stated_name
 from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
-from .view import Curve
+from .view import CurveFigure
 
 
 class CurveController:
@@ -42,7 +42,7 @@ class CurveController:
     where on the curve the present motion lies. `compared` is called with the visitor's data beside a complete curve.
     """
 
-    def __init__(self, host: Host, figure: Curve, bar: CurveBar, placed: Callable[[], None]) -> None:
+    def __init__(self, host: Host, figure: CurveFigure, bar: CurveBar, placed: Callable[[], None]) -> None:
         self._host = host
         self._figure = figure
         self._bar = bar
@@ -64,6 +64,7 @@ class CurveController:
         self._remaining: list[str] = []
         self._done = -1.0
         self._chapters = Chapters(host, self._show_chapters)
+        host.on_close(self._drafts.close)
 
     def selection(self, scene: Scene) -> str:
         """What is drawn, as a link has it; "auto" for what the scene shows by itself."""
@@ -88,23 +89,23 @@ class CurveController:
         return self.selection(scene)
 
     def moved(self, scene: Scene) -> None:
-        """A knob moved. Any but f changes the curve: a draft comes at once, the curve when the knobs rest."""
+        """A knob moved. Any knob but f changes the curve: a draft comes at once, the curve when the knobs rest."""
         if without_frequency(scene) == self._asked:
             return
         self._chapters.forget()
         self.changed(scene)
-        if self._visible and self._wanted["rest"] and self._affordable(scene) and COMPILER.has(scene, CURVE_KERNELS):
+        if self._visible and self._wanted["rest"] and curve_affordable(scene) and COMPILER.has(scene, CURVE_KERNELS):
             self._drafts.submit(partial(self._draft, scene, self._begun))
 
     @staticmethod
-    def _draft(scene: Scene, begun: int, stop: SchedulerSlot) -> Iterator[tuple[int, list[CurvePoint]]]:
+    def _draft(scene: Scene, begun: int, stop: TurnFlag) -> Iterator[tuple[int, list[CurvePoint]]]:
         with stop.held():
             points = draft_curve(scene, grid(scene, COARSE), stop)
         yield begun, points
 
     def _draw_draft(self, drafted: tuple[int, list[CurvePoint]]) -> None:
         begun, points = drafted
-        if points and begun == self._begun:  # else the curve itself is on its way
+        if points and begun == self._begun:  # otherwise the curve itself is on its way
             with unlocked():
                 self._figure.redraw("rest", points)
 
@@ -112,7 +113,7 @@ class CurveController:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
         self._cancel()
         self._asked = without_frequency(scene)
-        self._figure.expected = self._visible and self._wanted["rest"] and self._affordable(scene)
+        self._figure.expected = self._visible and self._wanted["rest"] and curve_affordable(scene)
         self._bar.update_state(driven=scene.is_driven)
         self._quiet.start(self._begin_when_compiled, scene)
 
@@ -122,13 +123,8 @@ class CurveController:
         with self._lock:
             self._buffer = []
 
-    @staticmethod
-    def _affordable(scene: Scene) -> bool:
-        """Whether there is a curve, and it is short enough to be computed without being asked for."""
-        return scene.is_driven and curve_affordable(scene)
-
     def _begin_when_compiled(self, scene: Scene) -> None:
-        if not self._affordable(scene):
+        if not curve_affordable(scene):
             self.stop()
             if not scene.is_driven:  # another drive has no curve that could stay
                 self._computed.clear()
@@ -196,19 +192,13 @@ class CurveController:
                 found.append((title, OFF, "not on the screen"))
             elif self._asked is not None and not self._asked.is_driven:
                 found.append((title, OFF, "nothing drives the chain"))
-            elif self._asked is not None and not self._affordable(self._asked):
+            elif self._asked is not None and not curve_affordable(self._asked):
                 found.append((title, OFF, "it would take too long; granchain curve computes it"))
             elif name in self._remaining and self.computing:
                 found.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
             else:
                 found.append((title, OFF, "waits until the knobs rest, or was stopped"))
         return found
-
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-        self._chapters.close()
-        self._drafts.close()
 
     def measured(self, measured: Measured | None) -> Difference | None:
         """Show the visitor's own data, or none; returns them beside the curve from rest, once that is there."""
@@ -258,7 +248,7 @@ class CurveController:
             self._host.next_tick(self._draw)
 
     def _draw(self) -> None:
-        """Draw what has come, and wait with what comes soon after: the loop would draw for a whole class else."""
+        """Draw what has come, and let what comes soon after wait: otherwise the loop would draw for a whole class."""
         rest = self._drawn + CURVE_EVERY - time.monotonic()
         if rest > 0.0:
             self._host.call_later(rest, self._draw)

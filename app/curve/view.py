@@ -22,7 +22,7 @@ from ..serve.changes import change
 from .pinned_curves import PinnedCurves
 
 
-class Curve:
+class CurveFigure:
     """The figure with, for every direction, the curve being computed and the one before it in grey.
 
     Lines and marks that most visitors never see are made when they are first needed.
@@ -194,7 +194,7 @@ class Curve:
         return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 
     def finished(self, direction: str) -> None:
-        """All points of a direction are there."""
+        """Note that all points of a direction are there."""
         self._whole = self._whole or direction == "rest"
         if self._measurement is not None:
             self.measured(self._measurement)

@@ -19,12 +19,13 @@ from .table import overlay_names, tab_names
 
 T = TypeVar("T")
 
-#: Fields that say nothing of the motion: a link with a story and no others, written by hand, shows the step's own.
+#: Fields that do not determine the motion. A link written by hand with a story and none but these shows the motion of
+#: the story's step.
 _NOT_A_MOTION = {"v", "story", "tab", "page", "look", "embed"}
 
 
 def take_address(session: Session, query: str) -> tuple[State | None, list[str]]:
-    """Make the session what an address says; what that leaves out gets its default.
+    """Make the session what an address says; fields that it leaves out get their defaults.
 
     Returns the state in which the motion begins, None for rest, and a sentence for every field that was refused.
     """
@@ -38,7 +39,7 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
         fields = {**({"curves": step.curves} if step.curves else {}), **fields}
     session.take_view(fields)
     session.place = {name: fields[name] for name in places if name in fields}
-    if session.place.get("page", "") not in ("", *overlay_names()):  # it has no more than its tab
+    if session.place.get("page", "") not in ("", *overlay_names()):  # a page without an overlay has only its tab
         session.place["tab"] = session.place.pop("page")
     session.story = fields.get("story", "")
     session.pins = tuple(_pins([fields[name] for name in PINS if name in fields], sentences))
@@ -55,7 +56,7 @@ def _pins(texts: list[str], sentences: list[str]) -> list[Pin]:
 
 
 def _read(read: Callable[[], T], sentences: list[str]) -> T | None:
-    """What `read` gives; where it refuses, None, and its sentence among the others."""
+    """What `read` returns; if it refuses, None, with its sentence appended to the others."""
     try:
         return read()
     except BadInput as problem:

@@ -16,13 +16,11 @@ class DisplayChoices:
     """Actions that change how things are shown; only choosing a curve starts a computation."""
 
     def __init__(self, session: Session, views: Views, curves: CurveController,
-                 theme_changed: Callable[[Theme], None], header: Callable[[], None],
-                 redraw: Callable[[], None]) -> None:
+                 theme_changed: Callable[[Theme], None], redraw: Callable[[], None]) -> None:
         self._session = session
         self._views = views
         self._curves = curves
         self._theme_changed = theme_changed
-        self._update_header = header
         self._redraw = redraw
         self.actions: Actions = {
             "theme": self.choose, "scale": self._scale,
@@ -42,10 +40,10 @@ class DisplayChoices:
     def _scale(self, message: dict[str, Any]) -> None:
         self._session.set_scale(message.get("value"))
         self._views.scales.forget()
-        self._update_header()
+        self._views.header.show_session(self._session)
         self._redraw()
 
     def _curve(self, message: dict[str, Any]) -> None:
         self._curves.choose(str(message.get("name")), bool(message.get("value")), self._session.scene)
         self._session.curves = self._curves.selection(self._session.scene)
-        self._update_header()
+        self._views.header.show_session(self._session)

@@ -24,7 +24,7 @@ def page() -> None:
     session = Session()
     query = _query(document)
     start, sentences = take_address(session, query) if query.strip("?") else (None, [])
-    with validate(False):  # a sixth of an opening, to find mistakes that tests find
+    with validate(False):  # validation takes a sixth of an opening, and tests find what it would
         controller = Controller(document, session, start)
         controller.views.put_into(document)
     pn.config.exception_handler = _handler(controller)
@@ -34,10 +34,10 @@ def page() -> None:
 
 
 def _handler(controller: Controller) -> Callable[[Exception], None]:
-    """Tells the controller of a failure, and does not keep it alive.
+    """A handler that tells the controller of a failure without keeping it alive.
 
-    Panel keeps the handler for as long as there is a document, and the controller has the document: no page would ever
-    be forgotten.
+    Panel keeps the handler as long as the document lives, and the controller has the document: with a strong reference
+    no page would ever be forgotten.
     """
     there = weakref.WeakMethod(controller.failed)
 
@@ -50,10 +50,10 @@ def _handler(controller: Controller) -> Callable[[Exception], None]:
 
 
 def _query(document: Document) -> str:
-    """What the address says after its question mark.
+    """The query of the address.
 
-    Panel's own `Location` reads it, too, with Python's `int`: digits that `int` does not take end in an error of the
-    server. So the page is served without it, and the link is read from the request.
+    Panel's `Location` would read it with Python's `int`, and digits that `int` refuses would be an error of the server.
+    So the page is served without `Location`, and the link is read from the request.
     """
     context = document.session_context
     return urlsplit(context.request.uri or "").query if context is not None and context.request is not None else ""

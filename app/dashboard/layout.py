@@ -15,9 +15,9 @@ from panel.io import unlocked
 from granchain_core import Settled
 from granchain_core.experiment.measured import MOST_BYTES
 
-from ..curve.bar import CurveBar
-from ..curve.view import Curve
-from ..parts.chain import SCALES, Chain
+from ..curve.bar import KINDS, CurveBar
+from ..curve.view import CurveFigure
+from ..parts.chain import SCALES, ChainPart
 from ..parts.component import text
 from ..parts.energy import EnergyMap
 from ..parts.equation import Equation
@@ -28,7 +28,6 @@ from ..parts.status_line import StatusLine
 from ..parts.trains import WIDEST_TITLES, Trains
 from ..pictures.curve import KEY
 from ..pictures.energies import ENERGY_COLOURS
-from ..pictures.regimes import REGIMES, SYMBOLS
 from ..pictures.theme import Theme, style_sheet
 from ..scripts import IN_PAGE, modules
 from ..session.session import Session
@@ -51,16 +50,15 @@ class Views:
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
         self.equation = Equation(received)
-        self.chain = Chain(received, sizing_mode="stretch_both",
+        self.chain = ChainPart(received, sizing_mode="stretch_both",
                            state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES, "scales": SCALES})
         self.trains = Trains(self.time)
         self.energy = EnergyMap(self.time)
-        self.curve = Curve(choose)
+        self.curve = CurveFigure(choose)
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
             "largest_file": MOST_BYTES, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
-            "pages": watched_pages(), "regimes": [
-                {"name": name, "symbol": SYMBOLS[style[0]], "colour": style[1]} for name, style in REGIMES.items()]})
+            "pages": watched_pages(), "regimes": KINDS})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
         self.shown: Settled | None = None

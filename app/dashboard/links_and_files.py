@@ -40,17 +40,12 @@ class LinksAndFiles:
         self._measurement = Measurement(host, views, curves)
         self.actions: Actions = {"share": self._share, "save": self._save, **self._measurement.actions}
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._saving.cancel()
-        self._measurement.close()
-
     def picture_ready(self, picture: Settled) -> None:
-        """Another picture for a measured series."""
+        """Compare a measured series with the new picture."""
         self._measurement.picture_ready(picture)
 
     def _share(self, _: dict[str, Any]) -> None:
-        """Send the link; pins without room in it are told."""
+        """Send the link, and say which pins have no room in it."""
         self._views.header.send(type="link", query=self._host.session.link)
         if sentence := self._host.session.pins_left_out:
             raise BadInput(sentence)

@@ -21,7 +21,7 @@ from ..serve.meters import METERS
 from ..serve.pacing import FramePacer
 from ..serve.queues import PICTURES, LatestWins
 from ..serve.shared import Shared
-from ..serve.turns import SchedulerSlot
+from ..serve.turns import TurnFlag
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_residual import with_account
 from ..session.host import Host
@@ -36,12 +36,13 @@ def size_of(picture: Settled) -> int:
     return 4096 + sum(one.nbytes for one in arrays if isinstance(one, np.ndarray))
 
 
-#: Pictures of all visitors: the last of each stays for the next who asks, in at most so many bytes.
+#: Pictures of all visitors. The last picture of each scene is kept for the next visitor who asks, in at most so many
+#: bytes.
 PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of,
                                           lambda pictures: pictures[-1:])
 
 
-def _computed(scene: Scene, start: State | None, most: float, stop: SchedulerSlot) -> Iterator[Settled]:
+def _computed(scene: Scene, start: State | None, most: float, stop: TurnFlag) -> Iterator[Settled]:
     """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
     began = time.thread_time()
     pictures = settling(scene, start=start, samples=samples_for(scene), stop=stop)
@@ -80,13 +81,14 @@ class Pictures:
         self._settled_arrived = arrived
         self._jobs = LatestWins(self._found, partial(host.next_tick, self._failed), self._session.cpu_time)
         self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
-        self.live: LiveRun | None = None
+        self._live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LivePicture | None = None
         self._shown: Settled | LivePicture | None = None
         self._asked: float | None = None
         #: Frames of the last pictures, so that they are prepared once.
         self._frames: deque[Frames] = deque(maxlen=2)
+        host.on_close(self._close)
 
     @property
     def busy(self) -> bool:
@@ -98,7 +100,20 @@ class Pictures:
         """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
         return self._jobs.busy and self.live is None
 
-    def close(self) -> None:
+    @property
+    def live(self) -> LiveRun | None:
+        """The live run; None while a settled motion is shown."""
+        return self._live
+
+    def begin_live(self, start: State | None = None) -> None:
+        """Begin a live run of the session's scene, from `start` or from rest, in place of the one before."""
+        self._live = LiveRun(self._session.scene, self._session.cpu_time, start)
+
+    def end_live(self) -> None:
+        """From now on settled motions are shown."""
+        self._live = None
+
+    def _close(self) -> None:
         """The visitor left."""
         self._jobs.close()
         if self.live is not None:
@@ -124,19 +139,19 @@ class Pictures:
         self._jobs.submit(partial(self._live_step, samples))
 
     def run(self) -> Run | None:
-        """What is on the screen, as a run."""
+        """The motion on the screen as a run."""
         if self.live is not None:
             return self.live.window_run()
         return None if self._session.picture is None else self._session.picture.run
 
     # In a worker thread
 
-    def _settled(self, scene: Scene, start: State | None, stop: SchedulerSlot) -> Iterator[Settled]:
+    def _settled(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
         with _refusing(scene):
             yield from self._pictures_of(scene, start, stop)
 
-    def _pictures_of(self, scene: Scene, start: State | None, stop: SchedulerSlot) -> Iterator[Settled]:
+    def _pictures_of(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
         if scene != self._session.insisted:
             check_first_picture(scene)
         self._await_live_kernels(scene, stop)
@@ -155,12 +170,12 @@ class Pictures:
             yield picture
 
     def _begun_from(self, origin: State | None) -> None:
-        """With the document locked, before the first picture arrives: where the motion begins."""
+        """Remember where the motion begins; called with the document locked, before the first picture arrives."""
         if origin is not self._session.started_from:
             self._session.started_from = origin
             self._host.address_changed()
 
-    def _await_live_kernels(self, scene: Scene, stop: SchedulerSlot) -> None:
+    def _await_live_kernels(self, scene: Scene, stop: TurnFlag) -> None:
         """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
         if not COMPILER.has(scene, FIXED_STEP_KERNELS):
             words = compiling_words("the kernels for this set of effects", 10).capitalize()
@@ -170,14 +185,14 @@ class Pictures:
             if not COMPILER.await_piece(scene, FIXED_STEP_KERNELS, stop):
                 raise Cancelled
 
-    def _live_step(self, samples: int | None, stop: SchedulerSlot) -> Iterator[LivePicture]:
+    def _live_step(self, samples: int | None, stop: TurnFlag) -> Iterator[LivePicture]:
         live, scene = self.live, self._session.scene
         if live is not None:
             with _refusing(scene):
                 if scene != self._session.insisted:
                     check_first_picture(scene)
             self._await_live_kernels(scene, stop)
-            with live.slot.held(anew=True):
+            with live.flag.held(anew=True):
                 picture = live.advance(samples) if samples else live.step(self._session.speed)
             yield picture
 
@@ -214,12 +229,12 @@ class Pictures:
         self._pacer.offer(picture)
 
     def _failed(self, error: Exception) -> None:
-        """There is no picture, and the next one is timed from its own request."""
+        """There is no picture to time; the next one is timed from its own request."""
         self._asked = None
         self._host.failed(error)
 
     def _answered(self) -> None:
-        """Count how long the first picture took, and say so where the server is busy with many visitors."""
+        """Count how long the first picture took, and say so if the server is busy with many visitors."""
         if self._asked is None:
             return
         seconds, self._asked = time.monotonic() - self._asked, None
@@ -238,7 +253,7 @@ class Pictures:
         self._pacer.painted(number)
 
     def redraw(self) -> None:
-        """Send the picture on the screen again, to be drawn otherwise; a running chain sends by itself."""
+        """Send the picture on the screen again, to be drawn in another way; a running chain sends pictures anyway."""
         shown, live = self._shown, self.live is not None
         if shown is None or isinstance(shown, LivePicture) != live or (live and self._session.playing):
             return

@@ -51,7 +51,7 @@ CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error o
 VIRTUAL_FILE, _PERIODS, _RATE, _NOISE = "virtual.csv", 12, 256, 0.02
 #: Most rows of the table of differences.
 _ROWS = 100
-#: Files to try it with: computed by granchain with noise, and they say so.
+#: Sample files, computed by granchain with noise; their comments say so.
 SAMPLES = ASSETS / "samples"
 
 _TOO_LARGE = (f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve of frequency and force needs a few "
@@ -76,12 +76,6 @@ class Measurement:
         self.actions: Actions = {"csv": self._read, "csv-answer": self._answer, "csv-too-large": self._too_large,
                                  "csv-remove": self._remove, "csv-sample": self._sample,
                                  "csv-virtual": self._virtual}
-
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-        self._moving.cancel()
-        self._curves.compared = lambda _: None
 
     def picture_ready(self, picture: Settled) -> None:
         """Move the series to another picture; the difference from the last one is not that of a preview."""
@@ -131,7 +125,7 @@ class Measurement:
 
     def _overlay_in_thread(self, series: Series, run: Run, job: Job) -> None:
         """In a worker thread: where the series lies over the run."""
-        from granchain_core.fit.overlay import overlay  # what a fit needs is not loaded before
+        from granchain_core.fit.overlay import overlay  # imported late: only a fit needs it
 
         job.next_tick(self._show_overlay, overlay(series, run))
 
@@ -140,7 +134,7 @@ class Measurement:
         self._tabs.update_state(misfit=None if found is None else {"sentence": found.sentence, "rows": [], "left": 0})
 
     def _show(self, measured: Measured | Series) -> None:
-        """A curve goes over the curve, a series over the force trains."""
+        """Draw a curve over the curve, or a series over the force trains."""
         self.shown, self._series = measured, measured if isinstance(measured, Series) else None
         difference = self._curves.measured(measured if isinstance(measured, Measured) else None)
         self._views.trains.measured(None)
@@ -160,13 +154,13 @@ class Measurement:
         self._tabs.send(type="sample", name=path.name, text=path.read_text(encoding="utf-8"))
 
     def _virtual(self, _: dict[str, Any]) -> None:
-        """A series of the present scene by sensors with noise and bandwidth, in place of a file."""
+        """Make a series of the present scene with simulated sensors, in place of a file."""
         refuse_undriven(self._host.session.scene)
         self._name, self._answers = VIRTUAL_FILE, Answers()
         self._task.start(partial(self._record_in_thread, self._host.session.scene))
 
     def _record_in_thread(self, scene: Scene, job: Job) -> None:
-        from granchain_core.virtual import Sensors, virtual_series_csv  # what a fit needs is not loaded before
+        from granchain_core.virtual import Sensors, virtual_series_csv  # imported late: only a fit needs it
 
         check_first_picture(scene)
         job.give_way()

@@ -27,7 +27,7 @@ from .layout import Views
 
 
 class Pinned:
-    """Actions of the tab “numbers”. A pin is a scene and a start, so that a link has it; its motion is computed."""
+    """Actions of the tab “numbers”. A pin is a scene and a start, so it fits into a link; its motion is computed."""
 
     def __init__(self, host: Host, views: Views) -> None:
         self._host = host
@@ -38,11 +38,6 @@ class Pinned:
         self._task = Task(host, ANALYSES, say_nothing, "The pinned picture", host.failed)
         self._curve_task = Task(host, CURVES, say_nothing, "The curve of a pinned picture", host.failed)
         self.actions: Actions = {"pin": lambda _: self._add(), "unpin": self._remove, "pin-open": self._open}
-
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-        self._curve_task.cancel()
 
     def show(self) -> None:
         """Draw the session's pins, and compute what is missing of them."""
@@ -57,7 +52,7 @@ class Pinned:
         self.scene_changed()
 
     def scene_changed(self) -> None:
-        """Knobs have moved: the curve of a pin is drawn where it is not the present one."""
+        """Knobs have moved: draw the curve of each pin unless it is the present one."""
         others = self._other_curves()
         missing = [key for key in others if key and key not in self._curves and curve_affordable(key)]
         if missing:
@@ -68,7 +63,7 @@ class Pinned:
             self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
 
     def picture_ready(self, picture: Settled) -> None:
-        """Another picture to compare with."""
+        """Compare the pins with another picture."""
         if self._session.pins and picture.final:
             self._tell()
 
@@ -117,7 +112,7 @@ class Pinned:
             job.next_tick(self._settled, pin, found.run)
 
     def _sweep(self, missing: Sequence[Scene], job: Job) -> None:
-        """After the present curve, which comes first."""
+        """Compute the curves of pins after the present curve."""
         for key in missing:
             job.compile(key, *PICTURE_PIECES)
             job.give_way(lambda: self._host.busy or self._host.curve_computing)
@@ -167,6 +162,6 @@ class Pinned:
 
 
 def _key(pin: Pin) -> str:
-    """What tells a pin from others: its link, and the start itself where that is too long for a link."""
+    """What identifies a pin: its link, and the start itself if that is too long for a link."""
     short = pin.start is None or len(pin.start.displacement) <= MOST_BEADS
     return pin.text if short else f"{pin.text} {id(pin.start)}"

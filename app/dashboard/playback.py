@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from ..parts.header import Header
 from ..session.hooks import Actions
-from ..session.live import LiveRun
 from ..session.session import Session
 from .main_picture import Pictures
 
 
 class Playback:
-    """Actions of the bar on top that deal with time; `compute` asks for a picture, `header` draws the bar anew."""
+    """Actions of the bar on top that deal with time; `compute` asks for a picture."""
 
-    def __init__(self, session: Session, pictures: Pictures, compute: Callable[[], None], header: Callable[[], None],
+    def __init__(self, session: Session, header: Header, pictures: Pictures, compute: Callable[[], None],
                  say: Callable[[str], None]) -> None:
         self._session = session
+        self._header = header
         self._pictures = pictures
         self._compute = compute
-        self._update_header = header
         self._say = say
         self.actions: Actions = {
             "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
@@ -28,19 +28,21 @@ class Playback:
 
     def _mode(self, message: dict[str, Any]) -> None:
         self._session.set_mode(message.get("value"))
-        live = self._session.mode == "live"
-        self._pictures.live = LiveRun(self._session.scene, self._session.cpu_time) if live else None
-        self._update_header()
+        if self._session.mode == "live":
+            self._pictures.begin_live()
+        else:
+            self._pictures.end_live()
+        self._header.show_session(self._session)
         self._compute()
 
     def _start(self, message: dict[str, Any]) -> None:
         self._session.set_start(message.get("value"))
-        self._update_header()
+        self._header.show_session(self._session)
         self._compute()
 
     def _speed(self, message: dict[str, Any]) -> None:
         self._session.set_speed(message.get("value"))
-        self._update_header()
+        self._header.show_session(self._session)
 
     def _playing(self, message: dict[str, Any]) -> None:
         self._session.playing = bool(message.get("value"))
@@ -51,10 +53,10 @@ class Playback:
         self._pictures.idle()
 
     def _reconnected(self, message: dict[str, Any]) -> None:
-        """The browser lost its server and has loaded the page again from its share link, which has all but this."""
+        """The browser lost its server and reloaded the page from its share link, which does not contain the pause."""
         if not message.get("playing"):
             self._playing({"value": False})
-            self._update_header()
+            self._header.show_session(self._session)
         gone = " and your uploaded data are gone" if message.get("uploaded") else ""
         self._say("The connection was lost. Your settings are restored, but the chain has started again from rest"
                   f"{gone}.")

@@ -30,7 +30,7 @@ def _of_scenes() -> dict[str, Extremes]:
 
 
 class Scales:
-    """What the pictures of one page are drawn to; the visitor's choice, "same" or "fit", is that of the session."""
+    """The scales of one page's pictures. The session has the visitor's choice, "same" or "fit"."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -43,7 +43,7 @@ class Scales:
         return self._session.scale == "fit"
 
     def forget(self) -> None:
-        """Take the scene's own scale again, whatever has widened it before."""
+        """Return to the scene's own scale after larger values have widened it."""
         self._scene = ""
 
     def of(self, frames: Frames, scene: Scene) -> Extremes:

@@ -18,7 +18,7 @@ log = logging.getLogger("granchain")
 
 
 class Sentences:
-    """The sentence over the status line. `compute` asks for the picture of the knobs as they are."""
+    """The sentence over the status line. `compute` requests a picture of the present knobs."""
 
     def __init__(self, session: Session, line: StatusLine, compute: Callable[[], None]) -> None:
         self._session = session
@@ -42,7 +42,7 @@ class Sentences:
         """Say in one sentence what happened; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METERS.refused_pictures += 1
-            if error.scene == self._session.scene:  # else a knob has moved since, and asked for another picture
+            if error.scene == self._session.scene:  # otherwise a knob has moved since and requested another picture
                 self.say(str(error))
                 self._refused = error.scene
                 self._show()
@@ -51,10 +51,15 @@ class Sentences:
         elif isinstance(error, NumbersFailed):
             self.note(error.sentence)
         else:
-            METERS.errors += 1
-            log.error("unexpected failure", exc_info=error)
-            self.say(f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
-                     "stays. Move the knob back or reset, and please report it.")
+            self.fault(error, f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
+                              "stays. Move the knob back or reset, and please report it.")
+
+    def fault(self, error: Exception, sentence: str) -> None:
+        """Log and count an error of granchain itself, and show `sentence`, unless it is empty."""
+        METERS.errors += 1
+        log.error("unexpected failure", exc_info=error)
+        if sentence:
+            self.say(sentence)
 
     def _show(self) -> None:
         self._line.update_state(sentence=f"{self._session.sentence} {self._session.notice}".strip(),

@@ -54,12 +54,12 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
 
 
 def _is_known(run: Run) -> bool:
-    """Whether the error of the largest output force is stated; of a motion that does not repeat, or runs, it is not."""
+    """Whether the error of the largest output force is stated; it is not for live runs and motions without a period."""
     return run.force_errors.output is not None
 
 
 def _periods_shown(frames: Frames, scene: Scene) -> str:
-    """How many drive periods the axis of time is long, repetitions of an orbit included; empty without a drive."""
+    """The length of the time axis in drive periods, with an orbit's repetitions; empty without a drive."""
     count = round(float(frames.time[-1]) * scene.f)
     return f", {count} drive period{'s' * (count != 1)}" if scene.is_driven else ""
 

@@ -33,7 +33,7 @@ from ..session.host import Host
 
 @dataclass(frozen=True)
 class TabSpec:
-    """A tab that belongs to no page; the fields mean what they mean in a `PageSpec`."""
+    """A tab that belongs to no page; the fields are those of a `PageSpec`, but it is not `taller` by default."""
 
     name: str
     group: str
@@ -99,12 +99,12 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
 #: What the resonance curve, which is no page, is called in the message `visible`.
-CURVE = "curve"
+CURVE_NAME = "curve"
 
 
 def check_names(rows: Sequence[PageSpec | TabSpec]) -> None:
     """Raise `ValueError` for two tabs of one name, or a page that is called like the curve."""
-    names = [CURVE, *(row.name for row in rows)]
+    names = [CURVE_NAME, *(row.name for row in rows)]
     for name in names:
         if names.count(name) > 1:
             raise ValueError(f"{name!r} in app/dashboard/table.py is taken; give the page another name.")

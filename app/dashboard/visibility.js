@@ -2,7 +2,7 @@
 
 import { onScreen, PHONE } from "../parts/dom.js";
 
-const CURVE = "curve"; // its figure, beside the names of the pages
+const CURVE_NAME = "curve"; // its figure, beside the names of the pages
 
 // Calls `tell(name, value)` when somebody begins or ceases to look at a page or at the curve: at the page's tab, or at the
 // page itself over the pictures, which hides tabs and curve. A page that works hidden is looked at as long as it is open,
@@ -14,7 +14,7 @@ export function watchVisibility(pages, tell) {
   const shown = { tabs: true, curve: true }; // what is on the screen
   let tab = "";
   let telling = false; // a story names the place on the curve, on the screen or not
-  page.visible = new Set([CURVE]); // what the server starts with
+  page.visible = new Set([CURVE_NAME]); // what the server starts with
 
   const isOpen = (name) => (page.overlay ?? tab) === name;
   const isSeen = (name) => !document.hidden && (page.overlay === name || shown.tabs);
@@ -25,7 +25,7 @@ export function watchVisibility(pages, tell) {
   const check = () => {
     const before = page.visible;
     const now = new Set(Object.keys(pages).filter(isVisible));
-    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve || telling || PHONE.matches) now.add(CURVE);
+    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve || telling || PHONE.matches) now.add(CURVE_NAME);
     const [gone, come] = [[...before].filter((name) => !now.has(name)), [...now].filter((name) => !before.has(name))];
     if (!gone.length && !come.length) return;
     page.visible = now;

@@ -108,7 +108,7 @@ class Chain {
   }
 
   receive(message) {
-    window.granchain.answerReceived();
+    window.granchain.answerReceived(); // to a ping, too: “pong” says nothing else
     if (message.type === "frames") this.load(message);
   }
 

@@ -25,7 +25,7 @@ _SCALES = {
 SCALES = [(scale, *_SCALES[scale]) for scale in EXTRAS["scale"]]
 
 
-class Chain(Component):
+class ChainPart(Component):
     """Beads, contacts, driver and wall; the frames come as single-precision arrays."""
 
     _esm = module("chain.js")
@@ -64,7 +64,7 @@ def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, f
 
 
 def _present(frames: Frames) -> np.ndarray:
-    """The last row alone."""
+    """The last row only."""
     return drawn_values(chain_series(frames.displacement[-1:], frames.force[-1:], frames.kinetic_energy[-1:],
                                      frames.drive_displacement[-1:]))
 

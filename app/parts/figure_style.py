@@ -9,11 +9,11 @@ from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
 
 from ..pictures.theme import THEMES
 
+#: Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly.
 TOP, BOTTOM, LEFT, GAP = 78, 82, 60, 6
-"""Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly."""
 
+#: The colour of the output force, the same in every theme.
 OUTPUT = THEMES["light"].output
-"""The colour of the output force, the same in every theme."""
 
 
 def quiet_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str, str | None],
@@ -55,5 +55,5 @@ def quiet_axis(axis: Any, colour: str | None = None) -> None:
 
 
 def together(plot: Plot) -> AbstractContextManager[None]:
-    """What is added to a plot on the page inside: the document's models are collected once, not for each change."""
+    """Collect the document's models once for all that is added to a plot inside, not for each change."""
     return plot.document.models.freeze() if plot.document is not None else nullcontext()

@@ -34,10 +34,17 @@ class Header(Component):
             "files": list(EXPORTS.items()),
             "speeds": sorted(SPEEDS), "view_fields": list(EXTRAS),
         }, **params)
+        self._origin = "rest"
 
-    def show_session(self, session: Session, origin: str) -> None:
-        """Show what the session chose; `origin` is the start of the picture on the screen."""
+    def began_from(self, origin: str, session: Session) -> None:
+        """The picture on the screen has another start, as `Settled.start` names it."""
+        if origin != self._origin:
+            self._origin = origin
+            self.show_session(session)
+
+    def show_session(self, session: Session) -> None:
+        """Show what the session chose, and the start of the picture on the screen."""
         self.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.look,
-            origin=origin, driven=session.scene.is_driven, speed=session.speed, playing=session.playing,
+            origin=self._origin, driven=session.scene.is_driven, speed=session.speed, playing=session.playing,
             query=session.link)

@@ -45,7 +45,7 @@ def knob_state(current: Scene) -> dict[str, Any]:
 
 
 def beside_knobs(current: Scene) -> dict[str, Any]:
-    """What is said beside the knobs of a scene: of the foundation, and of a knob that turns nothing now."""
+    """The words beside the knobs of a scene: on the foundation, and on a knob that has no effect at present."""
     idle = {"D": "no effect: the law, under “more knobs”, is “none”"} if current.dissipation == "none" else {}
     return {"foundation": foundation_words(current), "kept": beside_kappa(current), "idle": idle}
 

@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot
 
+from .pinned_trains import MOST_POINTS, NO_TRAIN
+
 if TYPE_CHECKING:
     from granchain_core.fit.overlay import Overlay
 
 #: The forces in the order of the figures, and the place of the shaker's displacement after them.
 _FORCES = ("input_force", "output_force")
 _DRIVE = 2
-#: Most points of a line; a longer series is cut and ends before the picture does.
-_MOST = 30_000
-_EMPTY = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
 
 
 class MeasuredTrains:
@@ -54,10 +53,10 @@ class MeasuredTrains:
         self._last = shown, scale, push, out, drive
         inside = np.zeros(0, dtype=np.int64)
         if self._shown is not None and shown > 0.0:
-            inside = np.flatnonzero((self._shown.time >= 0.0) & (self._shown.time <= shown))[:_MOST]
+            inside = np.flatnonzero((self._shown.time >= 0.0) & (self._shown.time <= shown))[:MOST_POINTS]
         for place, unit in ((0, push), (1, out), (_DRIVE, drive)):
             measured = self._measured(place)
-            values = _EMPTY
+            values = NO_TRAIN
             if self._shown is not None and measured is not None:
                 values = {"time": (self._shown.time[inside] * scale).astype(np.float32),
                           "force": (measured[inside] / unit).astype(np.float32)}

@@ -92,7 +92,7 @@ window.granchain = (() => {
     if (event.key === "Escape" && overlay) closePage();
   });
 
-  // Sealed: what is not declared here cannot be added elsewhere. null is a function or a part that its script puts there.
+  // Sealed: no other script can add a member. A member that is null here is filled by the script that has it.
   return Object.seal({
     on,
     emit,

@@ -100,10 +100,10 @@ class WithoutChildren:
 
 
 class WithoutDesign:
-    """A Panel component whose design is asked only when style sheets change: the one thing that it has a say in then.
+    """A Panel component that consults its design only when style sheets change, which is all that the design affects.
 
-    Panel works out the design's parameters at every change of every property, half of the time of a change. With a
-    release that makes the changes elsewhere, it is asked again.
+    Panel works out the design's parameters at every change of every property, which takes half of the time of a change.
+    Where a release makes the changes elsewhere, Panel consults the design at every change again.
     """
 
     def _update_properties(self, *events: Any, doc: Document) -> dict[str, Any]:
@@ -115,10 +115,10 @@ class WithoutDesign:
 
 
 class WithoutBusyIndicator:
-    """A Panel component whose events skip the busy indicator, which this page does not show: it takes 2 of 5 ms.
+    """A Panel component whose events skip the busy indicator: it takes 2 of 5 ms, and this page does not show it.
 
-    Panel calls `_process_bokeh_event`; with a release that calls another method or has no `set_curdoc`, the indicator
-    comes back.
+    Panel calls `_process_bokeh_event`. Where a release calls another method or has no `set_curdoc`, the indicator comes
+    back.
     """
 
     def _process_bokeh_event(self, doc: Document, event: Event) -> None:

@@ -18,8 +18,9 @@ DASHES = ([7, 3], [2, 3], [9, 3, 2, 3])
 #: The same dashes in a text.
 SIGNS = ("╌", "┈", "─ ·")
 #: Most points of a line; beyond that a train ends before the picture does.
-_MOST = 30_000
-_EMPTY = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
+MOST_POINTS = 30_000
+#: The data of a line that shows nothing.
+NO_TRAIN = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +96,7 @@ class PinnedTrains:
             for place in range(len(DASHES)):
                 train = self._trains[place] if place < len(self._trains) else None
                 if train is None or not copies[place]:
-                    self._draw(line, place, dict(_EMPTY))
+                    self._draw(line, place, dict(NO_TRAIN))
                     continue
                 time, force = train.over(copies[place], line)
                 self._draw(line, place, {"time": (time * scale).astype(np.float32),
@@ -107,4 +108,4 @@ def _copies(train: _Train | None, shown: float) -> int:
     if train is None or shown <= 0.0:
         return 0
     needed = 2 ** int(np.ceil(np.log2(max(shown / train.lasts, 1.0)))) if train.repeats else 1
-    return max(1, min(needed, _MOST // len(train.lines[0][0])))
+    return max(1, min(needed, MOST_POINTS // len(train.lines[0][0])))

@@ -37,13 +37,13 @@ function emptyEntry(name, tag = "span") {
   return entry;
 }
 
-// The line's entries, in one line always: one that wraps moves every picture while a knob moves, and has them drawn anew.
+// The entries, always in one line: if the line wrapped, every picture would move and be drawn anew while a knob moves.
 class Line {
   constructor() {
     this.el = element("div", { className: "line" });
     this.pen = document.createElement("canvas").getContext("2d");
     this.fonts = new Map(); // by the entry's name; asking the browser for them costs a layout
-    // The elements stay and change their words: a press on an element that is replaced before the release is no click.
+    // The entries stay and change their words: if one were replaced while it is pressed, there would be no click.
     this.regime = emptyEntry("regime", "b");
     this.others = new Map(ENTRIES.map(([name]) => [name, emptyEntry(name)]));
     this.rest = emptyEntry("rest");

@@ -21,7 +21,7 @@ _PLACES = {
     "stop band": f"Stop band: above the last peak, less than {100 * STOPS:.0f} % of the input force reaches the wall.",
 }
 #: What the name of a regime means that is not periodic.
-_REGIMES = {
+_REGIME_MEANINGS = {
     "quasi-periodic": "Quasi-periodic: it comes back near every earlier state and never exactly to one.",
     "chaotic": "Chaotic: it never repeats, and small disturbances grow.",
     "unsettled": "Not settled: so far it neither repeats nor shows by evidence that it never will.",
@@ -78,7 +78,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
     if regime.name == "periodic":
         meanings.append(_FOLLOWED if regime.followed else _SETTLED)
     else:
-        meanings.append(_REGIMES[regime.name] if regime.driven else _UNDRIVEN)
+        meanings.append(_REGIME_MEANINGS[regime.name] if regime.driven else _UNDRIVEN)
     if regime.lyapunov is not None and regime.name != "periodic":
         meanings.append(_LYAPUNOV)
     if regime.evidence:
@@ -88,7 +88,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
 
 
 def multiplier_words(modulus: float, period: int) -> str:
-    """What |μ| says of a small disturbance of an orbit of `period` drive periods."""
+    """What |μ| says about a small disturbance of an orbit of `period` drive periods."""
     orbit = "drive period" if period == 1 else f"{period} drive periods"
     return (f"|μ| {modulus_words(modulus)}: after every {orbit} {100.0 * modulus:.3g} % of a small disturbance is "
             "left; below 1 the orbit is stable.")

@@ -36,8 +36,8 @@ _TICKS = (3, 6)
 _READABLE = 0.01
 #: The smallest force is told where it is a pull above this part of the largest, or a pressure above that part of it.
 _PULLS, _PRESSED = 0.01, 0.2
+#: By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`).
 WIDEST_TITLES = {"left": INPUT.label("mN"), "right": OUTPUT.label("mN")}
-"""By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`)."""
 
 
 class Trains:

@@ -19,8 +19,8 @@ _PALETTE = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c
 _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")
 _NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), GREY
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
+#: Largest error drawn; larger ones, which tell no more, are drawn here.
 _HIGHEST = 10.0
-"""Largest error drawn; larger ones, which tell no more, are drawn here."""
 _COLUMNS = ("ms", "error", "setting", "tooltip")
 
 

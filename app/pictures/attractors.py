@@ -11,7 +11,7 @@ from granchain_core import Attractor
 
 from ..format import in_words
 from .axes import force_scale
-from .regimes import REGIMES, regime_key
+from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme, apply_theme, frame, themed
 
 
@@ -22,7 +22,7 @@ def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
                  y_range=Range1d(0.0, 1.15 * max(one.max_output_force for one in found) / scale.factor))
     for one in found:
         key = regime_key(one.regime.name, one.regime.period)
-        marker, colour, size = REGIMES[key]
+        marker, colour, size = REGIME_MARKS[key]
         share, error = 100.0 * one.share, 100.0 * one.share_error
         source = ColumnDataSource({
             "share": [share], "low": [share - error], "high": [share + error],

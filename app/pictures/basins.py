@@ -13,8 +13,8 @@ from ..format import in_words, prefixed
 from .axes import Scale
 from .theme import GREY, Theme, apply_theme, frame
 
+#: Patterns beside the colours, so that the colours need not be told apart.
 _HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")
-"""Patterns beside the colours, so that the colours need not be told apart."""
 _FAILED = "the numbers failed, or it was stopped"
 
 

@@ -25,16 +25,16 @@ _STYLES: dict[str, dict[str, Any]] = {
     "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
     "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
+#: Width and dash.
 _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
-"""Width and dash."""
 _ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
 _MARK = ("x", "y", "tooltip", "place")
-CURVE, _CURVE_LINE = "curve", "curve line"
-"""Sources of the resonance curve behind the branches: its points, and lines between neighbours of which both repeat."""
+#: Sources of the resonance curve behind the branches: its points, and lines between neighbours of which both repeat.
+_CURVE, _CURVE_LINE = "curve", "curve line"
 _TITLE = "largest elastic output force"
+#: Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one.
 _TARGET = 13
-"""Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one."""
 
 Columns = dict[str, dict[str, list[Any]]]
 
@@ -86,8 +86,8 @@ class BranchRows:
         repeats = [point.regime.period is not None for point in points]
         pieces = [[_CURVE_LINE, number, *map(list, zip(*(places[i] for i in run), strict=True))]
                   for number, run in enumerate(_runs(repeats))]
-        return {"rows": {CURVE: _columns(("x", "y"), places)}, "pieces": pieces,
-                "models": self._fresh({f"legend of {CURVE}": {"visible": True}})}
+        return {"rows": {_CURVE: _columns(("x", "y"), places)}, "pieces": pieces,
+                "models": self._fresh({f"legend of {_CURVE}": {"visible": True}})}
 
     def _choose_scales(self, knob: str, high: float, force: float) -> None:
         """Units of both axes, unless something is drawn already."""
@@ -95,7 +95,7 @@ class BranchRows:
         self._knob = self._knob or knob_scale(knob, (high,))
 
     def _fresh(self, models: dict[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-        """Those of the changed properties, and of the axes' labels, that were not sent before."""
+        """Those properties, with the labels of the axes, that have not been sent yet."""
         assert self._knob is not None and self._force is not None
         models = {**models, "knob": {"axis_label": self._knob.label}, "force": {"axis_label": self._force.label}}
         fresh = {name: properties for name, properties in models.items() if name not in self._models}
@@ -145,7 +145,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     one row for each orbit, the kinds of special points one for each point; `BranchRows` says what an orbit more adds.
     """
     rows = BranchRows(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
-    data: Columns = {**{name: {"x": [], "y": []} for name in (CURVE, _CURVE_LINE, *_LINES)},
+    data: Columns = {**{name: {"x": [], "y": []} for name in (_CURVE, _CURVE_LINE, *_LINES)},
                      "orbits": _columns(_ORBIT, []), **{kind: _columns(_MARK, []) for kind in SPECIAL}}
     models: dict[str, Any] = {}
     number = 0
@@ -184,8 +184,8 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
         plot.xaxis[0].name, plot.yaxis[0].name = "knob", "force"
     sources = {name: ColumnDataSource(columns, name=name) for name, columns in data.items()}
     grey = [plot.multi_line("x", "y", source=sources[_CURVE_LINE], line_width=1.2, line_color=GREY, line_alpha=0.8),
-            plot.scatter("x", "y", source=sources[CURVE], size=2.5, line_color=None, fill_color=GREY, fill_alpha=0.8)]
-    items = [LegendItem(name=f"legend of {CURVE}", label="resonance curve, from rest", renderers=grey, visible=False)]
+            plot.scatter("x", "y", source=sources[_CURVE], size=2.5, line_color=None, fill_color=GREY, fill_alpha=0.8)]
+    items = [LegendItem(name=f"legend of {_CURVE}", label="resonance curve, from rest", renderers=grey, visible=False)]
     for name, (width, dash) in _LINES.items():
         line = plot.multi_line("x", "y", source=sources[name], line_dash=dash, line_join="round")
         items.append(LegendItem(label=name, renderers=[themed(line, line_color="output", line_width=width)]))

@@ -14,10 +14,10 @@ from granchain_core.hard import Picture
 from .theme import Theme, apply_theme, frame, themed
 
 _LOGARITHM = ", log10"
+#: Pictures with at most so many points have a dot at each.
 _DOTTED = 70
-"""Pictures with at most so many points have a dot at each."""
+#: Height of the drawing and of a line of the legend in pixels.
 _HEIGHT, _LINE = 250, 24
-"""Height of the drawing and of a line of the legend in pixels."""
 _STYLES: dict[str, list[dict[str, Any]]] = {
     "ours": [{"colour": "ink", "width": 2.6, "dash": []}, {"colour": "ink", "width": 2.6, "dash": [14, 5]}],
     "naive": [{"colour": "naive", "width": 2.2, "dash": [7, 4]}, {"colour": "second", "width": 2.2, "dash": [2, 4]}],

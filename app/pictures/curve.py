@@ -15,21 +15,21 @@ from granchain_core.regime import Regime
 
 from ..format import in_words, short_error
 from .axes import force_scale, knob_scale
-from .regimes import REGIMES, regime_key
+from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme, apply_theme, frame, themed
 
+#: Dashes of the line by the start of a sweep.
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
-"""Dashes of the line by the start of a sweep."""
+#: The same in words.
 WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
-"""Starts of a sweep in words."""
+#: The same for a choice beside the curve, with a piece of the line.
 LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈○"}
-"""Starts of a sweep for a choice beside the curve, with a piece of the line."""
+#: What the dashes mean, in a sentence.
 KEY = "Solid line: from rest; dashed: frequency rising; dotted, with hollow marks: frequency falling."
-"""What the dashes mean, in a sentence."""
+#: What fills the marks, by the start of a sweep: a column, or nothing, so that both sweeps show where they differ.
 FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
-"""What fills the marks, by the start of a sweep: a column, or nothing, so that both sweeps show where they differ."""
+#: A tooltip's lines for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
-"""A tooltip's lines for the columns of `forces_in_words`."""
 
 
 def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure:
@@ -65,7 +65,7 @@ def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
     The force `drawn` is drawn over `factor` [N], marks `larger` px larger.
     """
     keys = [regime_key(p.regime.name, p.regime.period) for p in points]
-    styles = [REGIMES[key] for key in keys]
+    styles = [REGIME_MARKS[key] for key in keys]
     return {
         "frequency": [p.frequency for p in points], "force": [getattr(p, drawn) / factor for p in points],
         "marker": [style[0] for style in styles], "colour": [style[1] for style in styles],

@@ -29,15 +29,15 @@ from granchain_core.diagram.cells import CELL_REGIMES, empty_cells
 
 from ..format import in_words, short_error
 from .axes import Scale, knob_scale
-from .regimes import REGIMES, regime_key
+from .regimes import REGIME_MARKS, regime_key
 from .theme import BROWN, Theme, apply_theme, frame, themed
 
-CATEGORIES = (*REGIMES, "failed")
-"""What a cell may be, in the curve's colours, each with a hatch of its own."""
-COLOURS = [REGIMES[name][1] if name in REGIMES else BROWN for name in CATEGORIES]
+#: What a cell may be, in the curve's colours, each with a hatch of its own.
+CATEGORIES = (*REGIME_MARKS, "failed")
+COLOURS = [REGIME_MARKS[name][1] if name in REGIME_MARKS else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
+#: Most cells that a browser shows smoothly.
 MOST_DRAWN_CELLS = 40_000
-"""Most cells that a browser shows smoothly."""
 _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip", "spacing",
          "number", "own_right", "own_top")
 

@@ -36,10 +36,10 @@ _ROWS = 2000
 #: Width of the panels beside the energies [px].
 _BESIDE = 190
 
+#: A motion with what its driver did: harmonic for a number of periods, or by a signal.
 Recorded = Run | Driven
-"""A motion with what its driver did: harmonic for a number of periods, or by a signal."""
+#: A factor in SI and the unit that it makes.
 Scaled = tuple[float, str]
-"""A factor in SI and the unit that it makes."""
 
 
 @dataclass(frozen=True)

@@ -18,13 +18,13 @@ from granchain_core.regime import modulus_words
 from ..format import duration
 from .theme import Theme, apply_theme, frame, themed
 
+#: Multipliers farther out are drawn at the edge, with their modulus beside them.
 _FARTHEST = 2.4
-"""Multipliers farther out are drawn at the edge, with their modulus beside them."""
 _AROUND = 1.18
+#: Moduli below which a mark is small, and has no trail.
 _TINY, _SMALL = 0.02, 0.05
-"""Moduli below which a mark is small, and has no trail."""
+#: Marks of successive orbits that are farther apart than this are not joined.
 _STEP = 0.35
-"""Marks of successive orbits that are farther apart than this are not joined."""
 _SETS = {"within": "dies out", "outside": "grows", "observer within": "observer",
          "observer outside": "observer, grows"}
 _MARK = ("x", "y", "size", "value", "modulus", "angle", "decay", "rank")

@@ -10,11 +10,11 @@ from bokeh.plotting import figure
 
 from .theme import Theme, apply_theme, frame, themed
 
+#: How many drive periods are shown at once; panning shows the earlier ones that are kept.
 SHOWN_PERIODS = 60
-"""How many drive periods are shown at once; panning shows the earlier ones that are kept."""
 _LOWEST, _HIGHEST = 1e-13, 30.0
+#: Periods after which a prediction is no longer drawn.
 _LONGEST = 10_000.0
-"""Periods after which a prediction is no longer drawn."""
 
 
 def observer(period: Sequence[float], distance: Sequence[float], prediction: Sequence[tuple[float, float]],

@@ -20,14 +20,14 @@ from granchain_core.analysis.spectrum import cosines
 from ..format import prefixed
 from .theme import Theme, apply_theme, frame, span_of, themed
 
+#: Most points of a line; a longer motion is thinned out evenly.
 _ROWS = 700
-"""Most points of a line; a longer motion is thinned out evenly."""
+#: The spectrum ends at this multiple of the drive frequency.
 _HARMONICS = 12.5
-"""The spectrum ends at this multiple of the drive frequency."""
+#: What glyphs refer to.
 _COLUMNS = ("x", "y", "floor", "number", "contact", "from", "to")
-"""What glyphs refer to."""
+#: The spectrum's smallest amplitude, over its largest.
 _FLOOR = 1e-4
-"""The spectrum's smallest amplitude, over its largest."""
 
 
 def probe(name: str, run: Run, bead: int, theme: Theme) -> figure:
@@ -98,12 +98,12 @@ def _spectrum() -> figure:
     return plot
 
 
+#: The pictures by name: displacement, velocity and the forces of both contacts over time; when each contact is
+#: closed, 0 the driver's, N the wall's; velocity over displacement, with a dot at every begin of a drive period;
+#: amplitudes over frequency.
 PICTURES: dict[str, Callable[[], figure]] = {
     "displacement": _displacement, "velocity": _velocity, "forces": _forces, "contacts": _contacts, "phase": _phase,
     "spectrum": _spectrum}
-"""The pictures by name: displacement, velocity and the forces of both contacts over time; when each contact is closed,
-0 the driver's, N the wall's; velocity over displacement, with a dot at every begin of a drive period; amplitudes over
-frequency."""
 
 
 def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:

@@ -1,14 +1,19 @@
-"""Marks of the regimes, the same in curve, map and legend."""
+"""Marks of the regimes.
+
+They are the same on the resonance curve and its key, in the map, the list of attractors, the strobes over a knob, the
+tab “regimes” and the paper's figures. After a change, run `python -m tools.paper` and `python -m tools.screenshots`,
+because the pictures in docs/paper and docs/dashboard.png show them.
+"""
 
 from __future__ import annotations
 
-from .theme import GREY, THEMES
+from .theme import BLUE, GREY, THEMES
 
 #: Marker, colour and size of every regime: told apart with and without colour.
-REGIMES = {
+REGIME_MARKS = {
     "period 1": ("circle", THEMES["light"].output, 7), "period 2": ("diamond", "#a855f7", 11),
     "period 3": ("triangle", "#f59e0b", 10), "period 4": ("square", "#06b6d4", 8),
-    "period 5+": ("star", "#ec4899", 12), "quasi-periodic": ("circle_dot", "#3b82f6", 9),
+    "period 5+": ("star", "#ec4899", 12), "quasi-periodic": ("circle_dot", BLUE, 9),
     "chaotic": ("x", "#ef4444", 9), "unsettled": ("dash", GREY, 10),
 }
 
@@ -18,7 +23,7 @@ SYMBOLS = {"circle": "●", "diamond": "◆", "triangle": "▲", "square": "■"
 
 
 def regime_key(name: str, period: int | None) -> str:
-    """The entry of `REGIMES` of a motion, by the name of its regime and its period where it has one."""
+    """The entry of `REGIME_MARKS` of a motion, by the name of its regime and its period where it has one."""
     if name == "periodic" and period:
-        return f"period {period}" if f"period {period}" in REGIMES else "period 5+"
-    return name if name in REGIMES else "unsettled"
+        return f"period {period}" if f"period {period}" in REGIME_MARKS else "period 5+"
+    return name if name in REGIME_MARKS else "unsettled"

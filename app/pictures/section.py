@@ -11,10 +11,10 @@ from bokeh.plotting import figure
 
 from .theme import Theme, apply_theme, frame, span_of, themed
 
+#: Sections with fewer points than this have their transient drawn larger.
 _FEW = 150
-"""Sections with fewer points than this have their transient drawn larger."""
+#: How many points of the way to an orbit are joined.
 _PATH = 60
-"""How many points of the way to an orbit are joined."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from granchain_core import StrobeDiagram
 
 from ..format import prefixed
 from .axes import knob_scale
-from .regimes import REGIMES, regime_key
+from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme, apply_theme, frame
 
 
@@ -23,7 +23,7 @@ def strobe_diagram(found: StrobeDiagram, bead: int, theme: Theme) -> figure:
     keys = [regime_key(point.regime.name, point.regime.period) for point in kept for _ in point.strobes]
     source = ColumnDataSource(name="strobes", data={
         "value": values / axis.factor, "state": states / factor, "regime": keys,
-        "colour": [REGIMES[key][1] for key in keys]})
+        "colour": [REGIME_MARKS[key][1] for key in keys]})
     plot = frame(name="strobes", min_border=4)
     dots = plot.scatter("value", "state", source=source, size=3, fill_color="colour", line_color=None,
                         legend_group="regime")

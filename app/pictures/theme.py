@@ -12,8 +12,9 @@ from bokeh.plotting import figure
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 
 
-AMBER, VIOLET, TEAL, BROWN, GREY = "#e0900a", "#9b6bf2", "#0fa3b8", "#7a3b00", "#8a8f98"
-"""Colours of marks in several pictures, the same in every theme."""
+#: Colours of marks in several pictures, the same in every theme. Blue is the input force; it is also quasi-periodic
+#: motion, because no picture of regimes shows the input force.
+AMBER, VIOLET, TEAL, BROWN, GREY, BLUE = "#e0900a", "#9b6bf2", "#0fa3b8", "#7a3b00", "#8a8f98", "#3b82f6"
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Theme:
     type: int = 15
     small: int = 14
     drive: str = "#e5484d"
-    input: str = "#3b82f6"
+    input: str = BLUE
     output: str = "#2f9e6a"
     naive: str = "#d97706"
     second: str = VIOLET

@@ -1,8 +1,8 @@
 """Defaults of Bokeh's properties, found once for all models and made when they are needed.
 
 Bokeh finds a default anew for each of a page's models, some 8000 times, and makes ten empty lists and dictionaries for
-each model: more than half of the making of a page. What is replaced here is not public in Bokeh; where a release lacks
-one of the functions that are replaced, none is.
+each model, which takes more than half of the time of making a page. The functions that are replaced here are not public
+in Bokeh; where a release lacks one of them, none is replaced.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _CONSTANTS = (type(None), bool, int, float, str, bytes)
 
 @dataclass(frozen=True)
 class _Remembered:
-    """What was found of the properties of classes: constants, whether each model has its own, and that it is empty."""
+    """What is known of properties by class: constant defaults, whether each model has its own, whether it is empty."""
 
     known: dict[tuple[type, str], Any] = field(default_factory=dict)
     changing: dict[tuple[type, str], bool] = field(default_factory=dict)
@@ -31,7 +31,7 @@ class _Remembered:
 
 
 def remember_defaults() -> None:
-    """Replace Bokeh's ways to the defaults of its models."""
+    """Replace the functions by which Bokeh finds the defaults of its models."""
     find: Any = getattr(PropertyDescriptor, "_get_default", None)
     unstable: Any = getattr(PropertyDescriptor, "has_unstable_default", None)
     overridden: Any = getattr(HasProps, "_overridden_defaults", None)
@@ -53,7 +53,7 @@ def remember_defaults() -> None:
 
 
 def _theme(model: Any) -> dict[str, Any] | None:
-    """A model's themed values, without a search for an attribute that is hardly ever there."""
+    """A model's themed values, without searching its classes for an attribute that is hardly ever set."""
     themed: dict[str, Any] | None = model.__dict__.get("__themed_values__")
     return themed
 
@@ -72,8 +72,8 @@ def _merges_once(overridden: Any, found: _Remembered) -> Callable[[type], dict[s
 def _asks_once(unstable: Any, found: _Remembered) -> Callable[[Any, Any], bool]:
     """Whether each model has a default of its own.
 
-    A new model is told that it has none where it would be empty: it is made when it is asked for, and a browser is not
-    told of it anyway.
+    For a new model the answer is no where its default would be empty: the default is made when it is asked for, and is
+    not sent to a browser anyway.
     """
 
     def is_unstable(descriptor: Any, model: Any) -> bool:
@@ -88,7 +88,7 @@ def _asks_once(unstable: Any, found: _Remembered) -> Callable[[Any, Any], bool]:
 
 
 def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], found: _Remembered) -> Callable[[Any, Any], Any]:
-    """A property's default; a constant that no theme changes is found once for its class."""
+    """Find a property's default; a constant that no theme changes is found once per class."""
 
     def remembered(descriptor: Any, model: Any) -> Any:
         themed = _theme(model)
@@ -107,7 +107,7 @@ def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], found: _Reme
 
 
 def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
-    """What a browser is told of a model, without a look at all its defaults."""
+    """The properties of a model that are sent to a browser, found without looking at all its defaults."""
 
     def changed(model: Any, wanted: Callable[[Any], bool], *, include_defaults: bool = True,
                 include_undefined: bool = False) -> dict[str, Any]:
@@ -128,7 +128,7 @@ def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
 
 
 def _visits_what_is_there(visit: Any, found: _Remembered) -> Callable[[Any, Any], None]:
-    """Visit the models to which a model refers, without making what would be empty."""
+    """Visit the models to which a model refers, without making defaults that would be empty."""
 
     def visit_model(value: Any, visitor: Any) -> None:
         if not isinstance(value, HasProps):

@@ -1,8 +1,8 @@
 """Changes of a document on their way to the browser: those of one action leave as one message, in one write.
 
-It is the message that Bokeh would send, written without going through the graph of the document's models. Values that
-are not plain, such as new models, are encoded by Bokeh. Tornado and Bokeh have no public way to what is used here;
-where a release has it no longer, changes leave as Bokeh sends them.
+It is the message that Bokeh would send, but it is made without a search of all the document's models. Bokeh encodes
+values that are not plain, such as new models. The parts of Tornado and Bokeh that are used here are not public; where a
+release does not have them, changes leave as Bokeh sends them.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from bokeh.model import Model
 from tornado.iostream import IOStream, StreamClosedError
 from tornado.locks import Lock
 
-#: What a number may be in JavaScript without loss.
+#: Largest integer that JavaScript represents exactly.
 _MOST_SAFE = 2**53 - 1
-#: Kinds of numbers that BokehJS has arrays of, by NumPy's letters.
+#: Types for which BokehJS has arrays, by NumPy's letters.
 _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
-#: Arrays up to this size stand in the text [bytes]: each of the others is two frames more, for both sides.
+#: Arrays up to this size are written into the text [bytes]: a larger one costs both sides two more frames.
 _SHORT = 8192
 _NUMBERS = itertools.count(1)
 
@@ -47,7 +47,7 @@ class _Message:
         self.arrays: list[tuple[str, memoryview]] = []
 
     def event(self, event: DocumentPatchedEvent) -> dict[str, Any]:
-        """What Bokeh's `to_serializable` makes of it."""
+        """The event as Bokeh's `to_serializable` writes it."""
         if isinstance(event, MessageSentEvent) and isinstance(event.msg_data, ModelEvent):
             sent = event.msg_data
             values = [["model", _reference(sent.model)], ["data", self.value(getattr(sent, "data", None))]]
@@ -130,7 +130,7 @@ def written(events: list[DocumentPatchedEvent]) -> bytes | None:
 
 
 def _encoded(document: Document, events: list[DocumentPatchedEvent], connection: Any) -> bytes:
-    """The bytes of the message as Bokeh makes it, with the models that the browser does not have yet."""
+    """The frames of these events as Bokeh encodes them, with models that the browser does not have yet."""
     message = connection.protocol.create("PATCH-DOC", events)
     parts: list[bytes | memoryview] = []
     for text in (message.header_json, message.metadata_json, message.content_json):
@@ -142,7 +142,7 @@ def _encoded(document: Document, events: list[DocumentPatchedEvent], connection:
 
 
 class _Socket:
-    """A page's websocket, as far as this release has what is needed."""
+    """A page's websocket, if this release of Bokeh and Tornado has the attributes that are needed."""
 
     def __init__(self, connection: Any) -> None:
         self.connection = connection
@@ -157,7 +157,7 @@ class _Socket:
         return isinstance(self._stream, IOStream) and isinstance(self._lock, Lock)
 
     def write(self, data: bytes) -> None:
-        """Write whole messages; behind one of Bokeh's that is being written."""
+        """Write whole messages, after any message that Bokeh is writing."""
         stream, lock = self._stream, self._lock
         assert isinstance(stream, IOStream) and isinstance(lock, Lock)
 
@@ -177,7 +177,7 @@ class _Socket:
 
 
 def _send(document: Document, session: Any, events: list[Any]) -> None:
-    """Send held events: what the browser is to know as one message, the rest by Bokeh."""
+    """Send held events: those for the browser as one message; Bokeh handles the rest."""
     patches = [event for event in events if isinstance(event, DocumentPatchedEvent)]
     sockets = [_Socket(one) for one in getattr(session, "_subscribed_connections", ())]
     if patches and sockets and all(one.usable for one in sockets):
@@ -191,7 +191,7 @@ def _send(document: Document, session: Any, events: list[Any]) -> None:
 
 @contextmanager
 def gathered(document: Document) -> Iterator[None]:
-    """Send what is changed inside as one message. To be used with the document locked."""
+    """Send the changes made inside as one message. To be used with the document locked."""
     session = getattr(document.session_context, "session", None)
     callbacks = document.callbacks
     known = session is not None and hasattr(callbacks, "_held_events")
@@ -222,7 +222,7 @@ def is_gathered(model: Model) -> bool:
 
 
 def change(model: Model, **values: Any) -> None:
-    """Change properties of a model, to values that are right: Bokeh neither checks nor converts them.
+    """Change properties of a model to valid values: Bokeh neither checks nor converts them.
 
     An equal value is no change. Where nothing is gathered, this is the model's own `update`.
     """
@@ -240,7 +240,7 @@ def change(model: Model, **values: Any) -> None:
 
 
 def _hold(events: list[Any], event: Any) -> None:
-    """Keep an event, and drop an earlier event of the same property."""
+    """Keep an event; it replaces an earlier one of the same property, which is out of date."""
     for place, one in enumerate(events):
         if type(one) is type(event) and one.model is event.model and one.attr == event.attr:
             events[place] = event
@@ -249,7 +249,7 @@ def _hold(events: list[Any], event: Any) -> None:
 
 
 def tell(model: Model, event: ModelEvent) -> bool:
-    """Send an event to a model's view in the browser with what is gathered; False where nothing is."""
+    """Send an event to a model's view in the browser with the gathered changes; False if nothing is being gathered."""
     document = _gathering(model)
     if document is None:
         return False

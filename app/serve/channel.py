@@ -1,6 +1,6 @@
-"""One visitor's document and the event loop: actions run with the document locked, several in one go.
+"""One visitor's document and the event loop: several actions at a time run with the document locked.
 
-Bokeh's own callbacks are made, wrapped, kept, announced and removed one by one, which takes longer than most actions.
+Bokeh creates, wraps, stores, announces and removes its callbacks one by one, which takes longer than most actions.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from .meters import METERS
 
 log = logging.getLogger("granchain.page")
 
-#: What Bokeh is still writing: the loop itself keeps no task alive.
+#: Writes of Bokeh that are not finished. Nothing else keeps these tasks alive: the loop has only weak references.
 _FINISHING: set[asyncio.Future[None]] = set()
 
 
 def can_lock(session: Any) -> bool:
-    """Whether this is a session of Bokeh's that can be locked here."""
+    """Whether this is a Bokeh session that can be locked here."""
     there = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
     return there and hasattr(session, "_pending_writes")
 
@@ -69,7 +69,7 @@ def _with_turn(session: Any, actions: list[Callable[[], None]], turn: Any) -> No
 
 
 def _act(session: Any, actions: list[Callable[[], None]]) -> list[Any]:
-    """With the lock held: run them; what Bokeh has still to write afterwards."""
+    """Run actions with the lock held; return what Bokeh still has to write."""
     session._pending_writes = []
     try:
         with set_curdoc(session.document), gathered(session.document):
@@ -91,7 +91,7 @@ async def _finish(pending: list[Any], release: Any) -> None:
 
 
 class Channel:
-    """Calls actions with a document locked. Where a release cannot be locked so, Bokeh calls them."""
+    """Calls actions with a document locked. Where a release of Bokeh cannot be locked like this, Bokeh calls them."""
 
     def __init__(self, document: Document) -> None:
         self._document = document

@@ -25,8 +25,9 @@ from .queues import COMPILATIONS, LOADING
 
 log = logging.getLogger("granchain")
 
-#: The kernels of the main picture and of its curve.
-PICTURE_PIECES = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, CURVE_KERNELS)
+#: The kernels of a run, and those of the main picture and its curve.
+MOTION_PIECES = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)
+PICTURE_PIECES = (*MOTION_PIECES, CURVE_KERNELS)
 _ROOT = Path(__file__).resolve().parents[2]
 
 

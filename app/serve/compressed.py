@@ -20,13 +20,13 @@ _KINDS = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map", ".html", ".t
 _MODULES = frozenset(map(str, FILES.values()))
 #: For how long a browser keeps what does not change [s].
 _YEAR = 365 * 86400
-#: Size from which it is worth it: that of one packet [bytes].
+#: Smallest file that is compressed: the size of one packet [bytes].
 _LEAST = 1400
 
 
 @functools.lru_cache(maxsize=512)
 def compressed(path: str, modified: int, size: int) -> bytes | None:
-    """The file compressed, None where that saves nothing; `modified` and `size` make a changed file another one."""
+    """The compressed file, None if that saves nothing; `modified` and `size` tell a changed file from the old one."""
     if size < _LEAST or Path(path).suffix not in _KINDS:
         return None
     whole = Path(path).read_bytes()
@@ -39,16 +39,16 @@ _resolved: dict[tuple[type, str], str] = {}
 
 
 class CompressedFiles(StaticFileHandler):
-    """Mixed into a handler of files: gives them compressed to a browser that takes them so and asks for all of them."""
+    """Mixed into a handler of files: compresses a file for a browser that accepts that and asks for all of it."""
 
     def parse_url_path(self, url_path: str) -> str:
-        """The file of an address, remembered: Panel resolves every module of a component to answer for one."""
+        """The file of an address. It is remembered, because Panel resolves every module of a component to find one."""
         key = type(self), url_path
         found = _resolved.get(key)
         if found is None:
             ours = file_at(url_path)
             found = super().parse_url_path(url_path) if ours is None else str(ours)
-            if Path(found).is_absolute():  # by Panel's handler, which has a list of what may be served
+            if Path(found).is_absolute():  # found by Panel's handler, which lists what may be served
                 _resolved[key] = found
         return found
 
@@ -69,13 +69,15 @@ class CompressedFiles(StaticFileHandler):
         return type(self).get_content(path, start, end) if packed is None else packed
 
     def get_content_size(self) -> int:
-        """Bytes that are sent."""
+        """Number of bytes that are sent."""
         packed = self._packed()
         return super().get_content_size() if packed is None else len(packed)
 
     def set_extra_headers(self, path: str) -> None:
-        """How it is encoded, that this depends on the request, and that a module of ours never changes: with any of
-        them the addresses of all do, so that a page that is opened again asks for none."""
+        """State the encoding, that it depends on the request, and that our modules never change.
+
+        If any module changes, the addresses of all change, so a page that is opened again requests none of them.
+        """
         super().set_extra_headers(path)
         if path in _MODULES:
             self.set_header("Cache-Control", f"max-age={_YEAR}, immutable")
@@ -84,6 +86,6 @@ class CompressedFiles(StaticFileHandler):
             self.set_header("Content-Encoding", "gzip")
 
     def compute_etag(self) -> str | None:
-        """Another one for the compressed file: it has other bytes."""
+        """The compressed file has a tag of its own, because its bytes differ."""
         tag = super().compute_etag()
         return tag if tag is None or self._packed() is None else f'{tag[:-1]}-gzip"'

@@ -1,14 +1,14 @@
 """Delays in seconds: between two checks, and after the last knob movement before work begins."""
 
-#: Between the first two checks whether the main picture is done, and between later ones at most; long work waits for it
-#: and never competes with a knob.
+#: Between the first two checks whether the main picture is done, and the longest time between later ones. Long work
+#: waits for the picture, so it never competes with a knob.
 PICTURE_POLL, LONGEST_POLL = 0.01, 0.2
 #: Between checks of a stop flag while another process works.
 STOP_POLL = 0.05
 
 #: Between a settled picture and its analysis: nothing is analysed while a knob moves.
 ANALYSIS_QUIET = 0.12
-#: Without a knob movement before a resonance curve is begun: nobody reads one while dragging.
+#: Without a knob movement before a resonance curve is begun: nobody reads a curve while dragging.
 CURVE_QUIET = 0.35
 #: Without a knob movement before a new map is begun.
 MAP_QUIET = 0.7

@@ -36,7 +36,7 @@ _REMEMBERED = 600.0
 
 @dataclass
 class Rules:
-    """What is let in: hosts (all if empty), most visitors at once, and the origins whose pages may embed this one."""
+    """What is allowed: hosts (all if empty), most visitors at once, and the origins whose pages may embed this one."""
 
     hosts: frozenset[str] = frozenset()
     most_visitors: int = 200
@@ -84,7 +84,7 @@ class Guard(RequestHandler):
     request_id = ""
 
     def set_default_headers(self) -> None:
-        """Those of `Rules`, and the request's id."""
+        """Set the headers of `Rules` and the request's id."""
         super().set_default_headers()
         self.request_id = self.request_id or secrets.token_hex(6)
         for name, value in self.rules.headers().items():
@@ -92,14 +92,14 @@ class Guard(RequestHandler):
         self.set_header("X-Request-Id", self.request_id)
 
     async def prepare(self) -> None:
-        """Refuse what is not for this server, or not allowed."""
+        """Refuse a request that is for another server or not allowed."""
         self.check()
         looked = super().prepare()
         if looked is not None:
             await looked
 
     def check(self) -> None:
-        """Raise `HTTPError` for what is refused."""
+        """Raise `HTTPError` if the request is refused."""
         if not self.rules.serves(self.request.host_name):
             raise HTTPError(421, "host %r is not served", self.request.host_name[:80])
         if any(name in self.request.arguments for name in ("bokeh-session-id", "bokeh-token")) \
@@ -111,7 +111,7 @@ class Guard(RequestHandler):
             raise HTTPError(503, "there are %d visitors", self.rules.most_visitors)
 
     def write_error(self, status_code: int, **_: Any) -> None:
-        """A line for the visitor; what happened is in the log under the same id."""
+        """Answer with a line for the visitor; the log has the details under the same id."""
         self.set_header("Content-Type", "text/plain; charset=UTF-8")
         sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
                 503: "This server has as many visitors as it can serve; please try again in a minute.",
@@ -119,7 +119,7 @@ class Guard(RequestHandler):
         self.finish(f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n")
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
-        """To the log, with the request's id."""
+        """Write the error to the log, with the request's id."""
         words = {"request": self.request_id, "path": self.request.path[:200], "remote": self.request.remote_ip}
         if isinstance(value, HTTPError):
             log.warning("refused: %s", value, extra=words)
@@ -129,7 +129,7 @@ class Guard(RequestHandler):
 
 
 class GuardedSocket(Guard):
-    """Guard of a websocket: one connection for a session, not too many messages, and none that no page sends."""
+    """The guard of a websocket: one connection for a session, not too many messages, and only those that pages send."""
 
     _tokens = FRAMES_AT_ONCE
     _at = 0.0
@@ -144,14 +144,14 @@ class GuardedSocket(Guard):
         offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
         try:
             session = get_session_id(offered[1])
-        except Exception:  # whatever a stranger has written there
+        except Exception:  # a stranger may have written anything there
             raise HTTPError(403, "no token of ours") from None
         if not self.rules.connects(session):
             raise HTTPError(403, "a second connection to one session")
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
         """Pass whole messages on, unless there are too many or one is not of a page; that closes the connection."""
-        if self._refused:  # what was under way when the connection was closed
+        if self._refused:  # frames may still arrive after the connection was closed
             return None
         now = time.monotonic()
         self._tokens = min(FRAMES_AT_ONCE, self._tokens + (now - self._at) * FRAMES_A_SECOND) - 1.0
@@ -182,9 +182,9 @@ class GuardedSocket(Guard):
         self.close(1008, reason)  # type: ignore[attr-defined]
 
     def on_close(self) -> None:
-        """The visitor left: what is computed for the page ends at the next look, and is not kept for a minute.
+        """The visitor left: Bokeh drops the session at its next check, which ends the page's computations.
 
-        Tornado says so twice where the closing frame of a refused page arrives before its stream ends.
+        Tornado calls this twice if the closing frame of a refused page arrives before its stream ends.
         """
         if self._left:
             return
@@ -196,7 +196,7 @@ class GuardedSocket(Guard):
             session.request_expiration()
 
     async def send_message(self, message: Any) -> None:
-        """Errors go out without traceback and with the request's id."""
+        """Send errors with the request's id in place of a traceback."""
         if message.msgtype == "ERROR":
             METERS.errors += 1
             log.error("message failed: %s", message.content["text"],
@@ -207,7 +207,7 @@ class GuardedSocket(Guard):
 
 
 def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:
-    """The handler class with a guard before it; a handler of files also sends them compressed."""
+    """The handler with a guard before it; a handler of files also compresses them."""
     guard = GuardedSocket if issubclass(handler, WSHandler) else Guard
     files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
     return type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})
@@ -216,8 +216,8 @@ def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]
 def guard_handlers(server: Server, rules: Rules) -> None:
     """Put a guard before every handler of the server.
 
-    Bokeh has no public way to its handlers. If a release keeps them elsewhere, this raises `AttributeError` and the
-    server does not start: without guards it must not.
+    Bokeh's handlers are not public. If a release keeps them elsewhere, this raises `AttributeError`, and the server
+    does not start: it must not run without guards.
     """
     application = server._tornado
     for rule in application.wildcard_router.rules:

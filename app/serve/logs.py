@@ -25,15 +25,15 @@ class JsonFormatter(logging.Formatter):
 
 
 def only_when_debugging(_record: logging.LogRecord) -> bool:
-    """A filter for what Bokeh logs of a message that it cannot handle: with --log-level debug alone.
+    """A filter that shows Bokeh's records of messages that it cannot handle only with --log-level debug.
 
-    The guard's own line says it without a traceback, and a stranger can send such a message as often as he likes.
+    The guard logs such a message in one line without a traceback, and a stranger can send as many as he likes.
     """
     return logging.getLogger().isEnabledFor(logging.DEBUG)
 
 
 def configure(level: str) -> None:
-    """Everything that is logged in this process from `level` on goes to standard error in such lines."""
+    """Write everything that this process logs from `level` on to standard error in such lines."""
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(JsonFormatter())
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)

@@ -1,8 +1,9 @@
 """Rules for websocket messages: only those that BokehJS sends for our page reach Bokeh.
 
-Bokeh decodes more than its browser side sends: compressed bytes, which a few kilobytes make gigabytes of, arrays of any
-shape, new models of any kind, a whole new document. A message is three texts, header, metadata and content; it is let
-through if it asks for the document or changes properties and sends events, in plain values that are not too deep.
+Bokeh decodes more than its browser side sends: arrays of any shape, new models of any kind, a whole new document, and
+compressed bytes, of which a few kilobytes may expand to gigabytes. A message consists of three texts: header, metadata
+and content. It is let through if it asks for the document, or if it changes properties and sends events with plain
+values that are not nested too deep.
 """
 
 from __future__ import annotations
@@ -12,11 +13,11 @@ from typing import Any
 
 #: What BokehJS asks for: the document, and changes of it.
 KINDS = ("PULL-DOC-REQ", "PATCH-DOC")
-#: How it changes it: a property of a model, or an event of the document or of a model.
+#: What a change may be: a property of a model, or an event of the document or of a model.
 CHANGES = ("ModelChanged", "MessageSent")
-#: Values that are not plain JSON: NaN and infinities, lists, sets and dictionaries, and events.
+#: Encoded values that are allowed: NaN and infinities, lists, sets and dictionaries, and events.
 TYPES = ("number", "array", "set", "map", "event")
-#: Lists and dictionaries within each other; a page of ours sends six.
+#: How deep lists and dictionaries may be nested; our page nests six.
 DEEPEST = 20
 
 

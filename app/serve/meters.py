@@ -43,12 +43,20 @@ class Meters:
         #: How long computations wait before they can begin [s]; the server puts it there.
         self.turn_wait: Callable[[], float] = lambda: 0.0
 
+    def visitor_left(self) -> None:
+        """A page was closed."""
+        self.visitors -= 1
+
     def answered(self, seconds: float) -> None:
         """Count a first picture that came so many seconds after the knob moved."""
         place = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
         with self._lock:
             self.answers[place] += 1
             self.answers_total += seconds
+
+    def loop_late(self, seconds: float) -> None:
+        """Count a turn of the event loop that came so late."""
+        self._late.append(seconds)
 
     @property
     def lateness(self) -> float:
@@ -65,7 +73,7 @@ class Meters:
         while True:
             due = time.monotonic() + _EVERY
             await asyncio.sleep(_EVERY)
-            self._late.append(max(0.0, time.monotonic() - due))
+            self.loop_late(max(0.0, time.monotonic() - due))
 
     def text(self) -> str:
         """In the text format of Prometheus, version 0.0.4."""

@@ -8,16 +8,16 @@ from typing import Generic, TypeVar
 Picture = TypeVar("Picture")
 
 
+#: Pictures on their way at once: one being painted, one travelling. Measured on two cores: 21 frames a second and 45
+#: ms of lag (p95) with one, 28 and 43 with two.
 _AHEAD = 2
-"""Pictures on their way at once: one being painted, one travelling. Measured on two cores: 21 frames a second
-and 45 ms of lag (p95) with one, 28 and 43 with two."""
 
 
 class FramePacer(Generic[Picture]):
     """Passes pictures to the browser; of those that wait, only the latest is sent.
 
-    Without the acknowledgement a server that computes faster than the browser paints fills the websocket, and
-    what one sees lags a second behind the knob.
+    Without acknowledgements, a server that computes faster than the browser paints would fill the websocket, and the
+    picture would lag a second behind the knob.
     """
 
     def __init__(self, send: Callable[[int, Picture], None], idle: Callable[[], None]) -> None:

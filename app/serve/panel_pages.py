@@ -1,4 +1,4 @@
-"""What Panel works out anew for every page and finds the same each time: scripts and style sheets."""
+"""Scripts and style sheets, which are the same for every page, but which Panel works out anew each time."""
 
 from __future__ import annotations
 

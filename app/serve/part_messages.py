@@ -1,6 +1,6 @@
-"""Messages of the page's own parts, taken from the websocket to the part without Bokeh's decoding of a change.
+"""Messages of the page's own parts, passed from the websocket to the part without Bokeh's decoding of a change.
 
-All that a visitor does comes this way. What is not plainly such a message goes through Bokeh as before.
+Everything that a visitor does comes this way. A message that is not plainly of this kind goes through Bokeh.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _RECEIVERS: weakref.WeakKeyDictionary[Document, dict[str, weakref.WeakMethod[Rec
 
 
 class _NotPlain(Exception):
-    """Not the message of a part, in plain values."""
+    """This is not a message of a part in plain values."""
 
 
 def receives(document: Document, model: str, receive: Receive) -> None:

@@ -1,9 +1,9 @@
-"""Priorities of threads: the event loop and what has just begun go before work that takes long.
+"""Priorities of threads: the event loop and computations that have just begun go before long work.
 
 On Linux every thread has a niceness of its own; elsewhere it belongs to the whole process, and nothing is changed.
-Without special rights a thread cannot take back what it gave up: one that gives way ends with the work that it does
-(queues.py). The threads that it begins give way too, if they are not begun by `begin`. The main thread, that of the
-event loop, never gives way.
+Without special rights a thread cannot raise its priority again, so a thread that gives way ends with its work
+(queues.py). Threads that it starts give way too, unless `begin` starts them. The main thread, which has the event loop,
+never gives way.
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ import sys
 import threading
 from queue import SimpleQueue
 
-#: By how much a thread that gives way is nicer: beside one that does not it gets a tenth of a processor.
+#: Niceness added to a thread that gives way: beside a thread that does not, it gets a tenth of a processor.
 _PATIENT = 10
 
 
 class _Starter:
-    """A thread that does not give way and begins others."""
+    """A thread that does not give way, and starts others."""
 
     def __init__(self) -> None:
         self.asked: SimpleQueue[threading.Thread] = SimpleQueue()
@@ -26,7 +26,7 @@ class _Starter:
         self._running = False
 
     def run(self) -> None:
-        """Begin with it, in a thread that does not give way yet."""
+        """Start it; called by a thread that does not give way yet."""
         with self._lock:
             if not self._running:
                 threading.Thread(target=self._serve, daemon=True, name="starter").start()
@@ -41,14 +41,14 @@ _STARTER = _Starter()
 
 
 def give_way() -> None:
-    """From now on let threads that do not give way have the processor first."""
+    """Lower this thread's priority: from now on threads that do not give way have the processor first."""
     if sys.platform == "linux" and not gives_way() and threading.current_thread() is not threading.main_thread():
         _STARTER.run()
         os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), min(_usual() + _PATIENT, 19))
 
 
 def gives_way() -> bool:
-    """Whether this thread does, or was begun by one that does."""
+    """Whether this thread gives way, or was started by one that does."""
     return sys.platform == "linux" and os.getpriority(os.PRIO_PROCESS, threading.get_native_id()) > _usual()
 
 

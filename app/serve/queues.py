@@ -1,9 +1,8 @@
-"""Where computations of the dashboard run: named queues shared by all visitors, and latest-wins jobs, of which each
-visitor has one for the picture and one for drafts of the curve.
+"""Where computations of the dashboard run.
 
-Kernels release the GIL, so threads are enough; turns.py shares the processor fairly among the computations of
-pictures. Long work has
-queues of its own, because a picture must never wait for it.
+All visitors share named queues. Each visitor has two latest-wins jobs, one for the picture and one for drafts of the
+curve. Kernels release the GIL, so threads are enough; those that compute pictures take fair turns (turns.py). Long work
+has queues of its own, because a picture must never wait for it.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ from granchain_core import Cancelled
 
 from .meters import METERS
 from .priorities import begin, give_way, gives_way
-from .turns import CpuTime, SchedulerSlot
+from .turns import CpuTime, TurnFlag
 
 Result = TypeVar("Result")
 
@@ -30,13 +29,13 @@ log = logging.getLogger("granchain")
 
 
 class Queue:
-    """Work of one kind, first come, first served, on at most so many threads, which begin when they are needed.
+    """Work of one kind, first come, first served, on at most `workers` threads, each started when it is needed.
 
     The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
     `patient` queue give way to others (priorities.py).
 
-    Work is assigned to a thread at once, or waits because no thread is free. A thread that has been given work and has
-    not begun it must not count as free: the next work would otherwise wait until the first is done.
+    A thread counts as busy from the moment it is given work, before it has begun it: otherwise the next piece of work
+    would be given to the same thread, and wait although another thread could begin it.
     """
 
     def __init__(self, name: str, workers: int, patient: bool = False) -> None:
@@ -46,7 +45,7 @@ class Queue:
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._numbers = count()
-        self._free = 0  # threads that nothing has been given to
+        self._free = 0  # threads without work
         self.waiting = 0  # work that waits for a thread
         self._lock = threading.Lock()
 
@@ -76,7 +75,7 @@ class Queue:
         return future
 
     def _begin(self) -> None:
-        """With the lock held: one thread more."""
+        """Start one more thread; called with the lock held."""
         thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {next(self._numbers)}")
         self._threads.append(thread)
         begin(thread)
@@ -87,9 +86,9 @@ class Queue:
         while True:
             work = self._given.get()
             work()
-            del work  # a thread that waits keeps nothing of the visitor it served last
+            del work  # or a waiting thread would keep objects of the visitor it served last
             with self._lock:
-                if gives_way() and not self._patient:  # the next work has one that does not
+                if gives_way() and not self._patient:  # this thread ends; the next work gets a new one
                     self._threads.remove(threading.current_thread())
                     if self.waiting:
                         self.waiting -= 1
@@ -103,8 +102,8 @@ class Queue:
 
 #: One thread for each visitor whose picture is awaited; default steps, energy accounts and drafts are computed in it.
 VISITORS = Queue("visitors", 1000)
-#: Pictures. More threads than cores: who computes is decided by turns (turns.py), and one that waits for the compiler
-#: keeps its thread.
+#: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
+#: for the compiler keeps its thread.
 PICTURES = Queue("pictures", 200)
 #: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
 ANALYSES = Queue("analyses", 8, patient=True)
@@ -115,7 +114,7 @@ LOADING = Queue("loading", 1)
 #: Visitors who wait for their resonance curves. Maps and branches wait for a curve that is under way, so curves cannot
 #: share their queue.
 CURVES = Queue("curves", 200)
-#: What computes them. Each uses all cores; the system shares these among them.
+#: The computations of these curves. Each uses all cores, which the system divides among them.
 SWEEPS = Queue("sweeps", 8, patient=True)
 #: Work that takes minutes: maps, searches for attractors, branches.
 LONG = Queue("long", 8, patient=True)
@@ -124,14 +123,14 @@ MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
 COMPILATIONS = Queue("compilations", 2)
 
-Work = Callable[[SchedulerSlot], Iterator[object]]
+TurnWork = Callable[[TurnFlag], Iterator[object]]
 
 #: How long a first picture is computed before a newer request stops it [s].
 _PATIENCE = 1.0
 
 
 class _Alarms:
-    """One thread that calls what is due later."""
+    """One thread that calls actions when they are due."""
 
     def __init__(self) -> None:
         self._changed = threading.Condition()
@@ -176,19 +175,19 @@ class LatestWins:
         self._fail = fail
         self.cpu_time = CpuTime() if cpu_time is None else cpu_time
         self._lock = threading.Lock()
-        self._waiting: Work | None = None
+        self._waiting: TurnWork | None = None
         self._running = False
         self._refining = False
         self._closed = False
         self._began = 0.0
-        self._stop = SchedulerSlot(self.cpu_time)
+        self._stop = TurnFlag(self.cpu_time)
 
     @property
     def busy(self) -> bool:
         """Whether something is being computed or waits to be."""
         return self._running
 
-    def submit(self, work: Work) -> None:
+    def submit(self, work: TurnWork) -> None:
         """Compute `work` next, in place of anything that has not started."""
         with self._lock:
             if self._closed:
@@ -205,7 +204,7 @@ class LatestWins:
             self._began = time.monotonic()
         VISITORS.submit(self._drain)
 
-    def _give_up(self, stop: SchedulerSlot) -> None:
+    def _give_up(self, stop: TurnFlag) -> None:
         """The first result has not come for a second: begin with what waits."""
         with self._lock:
             if self._stop is stop and self._waiting is not None:
@@ -218,13 +217,13 @@ class LatestWins:
             self._waiting = None
             self._stop.set()
 
-    def _next(self) -> Work | None:
+    def _next(self) -> TurnWork | None:
         with self._lock:
             work, self._waiting = self._waiting, None
             self._running = work is not None
             self._refining = False
             self._began = time.monotonic()
-            self._stop = SchedulerSlot(self.cpu_time)
+            self._stop = TurnFlag(self.cpu_time)
             if self._closed:
                 self._stop.set()
             return work
@@ -236,7 +235,7 @@ class LatestWins:
                 VISITORS.submit(self._drain)
                 return
 
-    def _do(self, work: Work) -> None:
+    def _do(self, work: TurnWork) -> None:
         try:
             for result in work(self._stop):
                 if self._closed:

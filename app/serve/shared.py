@@ -14,16 +14,16 @@ from typing import Generic, TypeVar
 from granchain_core.stop import Stop
 
 from .queues import Queue
-from .turns import CpuTime, Flag, SchedulerSlot, SharedCpuTime
+from .turns import CpuTime, Flag, SharedCpuTime, TurnFlag
 
 Item = TypeVar("Item")
 
-#: Between two looks of a visitor who waits [s]; new items wake it at once.
+#: Between two checks of a visitor's stop flag while it waits [s]; new items wake it at once.
 _LOOK = 0.5
 
 
 class _Computation(Generic[Item]):
-    """What is found so far, by whom it is awaited, and how it ended."""
+    """One computation: what it has found so far, who waits for it, and how it ended."""
 
     def __init__(self) -> None:
         self.changed = threading.Condition()
@@ -31,14 +31,14 @@ class _Computation(Generic[Item]):
         self.done = False
         self.error: Exception | None = None
         self.cpu_time = SharedCpuTime()
-        self.stop = SchedulerSlot(self.cpu_time)
+        self.stop = TurnFlag(self.cpu_time)
 
 
 class Shared(Generic[Item]):
-    """Computations by their keys. `kept` chooses which items of a finished one are kept; `size` gives their memory.
+    """Computations by their keys. Of a finished one, `kept` selects the items that are kept; `size` is their memory.
 
-    Finished computations take at most `memory` bytes; the least recently used is dropped first. With `turns` the
-    computations take turns (turns.py).
+    Finished ones take at most `memory` bytes; the least recently used is dropped first. With `turns` the computations
+    take turns (turns.py).
     """
 
     def __init__(self, queue: Queue, memory: int, size: Callable[[Item], int],
@@ -50,7 +50,7 @@ class Shared(Generic[Item]):
         self.used = 0
         self.hits, self.misses = 0, 0
 
-    def follow(self, key: Hashable, compute: Callable[[SchedulerSlot], Iterator[Item]], stop: Stop,
+    def follow(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]], stop: Stop,
                cpu_time: CpuTime) -> Generator[Item, None, None]:
         """The items of `compute`, or of the computation with the same key that is under way or finished.
 
@@ -72,7 +72,7 @@ class Shared(Generic[Item]):
         finally:
             self._leave(key, one, cpu_time)
 
-    def _joined(self, key: Hashable, compute: Callable[[SchedulerSlot], Iterator[Item]],
+    def _joined(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
         """With the lock held: the computation under way, or a new one."""
         found = None if key is None else self._under_way.get(key)
@@ -122,7 +122,7 @@ class Shared(Generic[Item]):
                 return
 
     def _compute(self, key: Hashable, one: _Computation[Item],
-                 compute: Callable[[SchedulerSlot], Iterator[Item]]) -> None:
+                 compute: Callable[[TurnFlag], Iterator[Item]]) -> None:
         """In a thread of the queue."""
         error: Exception | None = None
         try:

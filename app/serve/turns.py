@@ -1,8 +1,8 @@
-"""Fair scheduling: the next picture computed is that of the waiting visitor who has used least time.
+"""Fair scheduling: of the visitors who wait, the one who has used least time gets the next turn to compute.
 
-Kernels run without the interpreter's lock, so as many computations as there are cores go on at once. What a visitor
-sees first begins at once and is not interrupted, because it is short. What makes a picture better, or takes long, gives
-its turn up at the first pause after a slice of time.
+Kernels run without the interpreter's lock, so as many computations as there are cores run at once. A first picture
+begins at once and is not interrupted, because it is short. A computation that refines a picture, or takes long, gives
+up its turn at the first pause after a slice of time.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from .priorities import give_way
 
 Result = TypeVar("Result")
 
-#: Longest processor time for which a computation without a result has just begun [s]: a first picture of ten beads
-#: takes a tenth of it.
+#: A computation without a result counts as just begun for this processor time [s]. A first picture of ten beads takes
+#: a tenth of it.
 _BEGINNING = 0.03
-#: How long a turn is kept although others wait [s]. At every pause would be too often: passing it to another thread
-#: costs some waits for the interpreter.
+#: How long a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
+#: another thread costs some waits for the interpreter.
 _SLICE = 0.02
-#: Waits are averaged over so many computations that began, within so many seconds.
+#: Waits are averaged over so many beginnings, in the last so many seconds.
 _REMEMBERED, _LATELY = 200, 10.0
-#: After so long a wait a computation has a slice although others use all cores [s].
+#: A computation that has waited this long gets a slice although others use all cores [s].
 _LONGEST_WAIT = 0.5
-#: Time between two checks of a waiting computation whether it may begin [s]: it may when a turn ends or grows too old.
-#: The more computations wait, the longer this time, up to so many times as long.
+#: Time between two checks whether there is room, which may come merely because time passes [s]. The more threads wait,
+#: the less often each of them checks; the time grows up to this many times.
 _LOOK, _MOST_LOOKS = 0.05, 20
 
 #: Time in which half of what a visitor has used is forgotten [s].
@@ -59,7 +59,7 @@ class CpuTime:
 
 
 class SharedCpuTime(CpuTime):
-    """Visitors who wait for the same picture: they share its cost, and queue as the one that has used least."""
+    """Visitors who wait for the same picture: they share its cost, and their rank is that of the one who used least."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -71,26 +71,26 @@ class SharedCpuTime(CpuTime):
         return min((member.used for member in list(self.members)), default=math.inf)
 
     def charge(self, seconds: float) -> None:
-        """Each member pays its part."""
+        """Charge each member its share."""
         members = list(self.members)
         for member in members:
             member.charge(seconds / len(members))
 
 
 class _Turn:
-    """One thread that waits for its turn or has it; `at` is when it began to."""
+    """A thread that waits for a turn or has one; `at` is the time at which the wait or the turn began."""
 
     def __init__(self, cpu_time: CpuTime, stop: Stop, begins: bool, at: float) -> None:
         self.cpu_time, self.stop, self.begins, self.at = cpu_time, stop, begins, at
         self.granted = threading.Event()
 
     def rank(self, now: float) -> tuple[bool, bool, float]:
-        """Place in the queue: of the computations that wait, the one with the lowest rank is next."""
+        """Its place in the queue: the lowest rank is next."""
         return not self.begins, now - self.at < _LONGEST_WAIT, self.cpu_time.used
 
 
 class FairScheduler:
-    """Who computes now: `at_once` that have just begun, and others as long as fewer than `at_once` compute."""
+    """Gives turns to `at_once` computations that have just begun, and to others while fewer than `at_once` compute."""
 
     def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
         self._at_once, self._clock = at_once, clock
@@ -121,7 +121,7 @@ class FairScheduler:
         with self._lock:
             self._waiting.append(mine)
             self._grant()
-        # One of those that wait looks for all; more often would take the interpreter from the loop and the pictures.
+        # One waiting thread checks for all: more checks would keep the interpreter from the event loop and pictures.
         while not mine.granted.wait(_LOOK * min(len(self._waiting), _MOST_LOOKS)):
             if stop:
                 self.stopped(stop)
@@ -131,22 +131,22 @@ class FairScheduler:
         return mine
 
     def stopped(self, stop: Stop) -> None:
-        """This stop flag is set: whoever waits with it need not wait longer."""
+        """Release the thread that waits with this stop flag, which has been set."""
         with self._lock:
             for one in [one for one in self._waiting if one.stop is stop]:
                 self._waiting.remove(one)
                 one.granted.set()
 
     def end(self, turn: _Turn) -> None:
-        """The turn is over."""
+        """End a turn."""
         with self._lock:
             self._running.discard(turn)
             self._grant()
 
     def should_yield(self, turn: _Turn, begins: bool) -> bool:
-        """Whether a turn must be given up; `begins` says whether its computation has only just begun.
+        """Whether a computation has to give up its turn; `begins` says whether it still counts as just begun.
 
-        It must if another has a better claim, or if more than `at_once` compute and this one has used most.
+        It has to if another has a better claim, or if more than `at_once` compute and its visitor has used most.
         """
         if begins:
             return False
@@ -167,7 +167,7 @@ class FairScheduler:
     def _grant(self) -> None:
         """With the lock held: give turns to those with the best claims."""
         self._looked = now = self._clock()
-        # With many who wait, their order costs more than to see that there is room for none.
+        # Where many wait, sorting them costs more than seeing that there is room for none.
         if not any(self._has_room(one, now) for one in self._waiting):
             return
         for one in sorted(self._waiting, key=lambda one: one.rank(now)):
@@ -193,7 +193,7 @@ TURNS = FairScheduler(max(2, os.cpu_count() or 1))
 
 
 class Flag(Stop):
-    """A stop flag that wakes who waits: `on_set` is called in the thread that sets it."""
+    """A stop flag that wakes a waiting thread: `on_set` is called in the thread that sets the flag."""
 
     __slots__ = ("on_set",)
 
@@ -208,7 +208,7 @@ class Flag(Stop):
             self.on_set()
 
 
-class SchedulerSlot(Flag):
+class TurnFlag(Flag):
     """The stop flag of a picture's computation, which takes turns with others while it computes."""
 
     __slots__ = ("_began", "_scheduler", "_spent", "_turn", "cpu_time")
@@ -226,12 +226,12 @@ class SchedulerSlot(Flag):
         return self._spent < _BEGINNING
 
     def set(self) -> None:
-        """Ask for the end, also while this waits for its turn."""
+        """Ask for the end, even of the wait for a turn."""
         super().set()
         self._scheduler.stopped(self)
 
     def pause(self) -> None:
-        """Between two parts of the computation: let a visitor go first who has used less."""
+        """Between two parts of the computation: let visitors who have used less go first."""
         if self._turn is None:
             return
         self._charge()
@@ -242,7 +242,7 @@ class SchedulerSlot(Flag):
 
     @contextmanager
     def held(self, anew: bool = False) -> Iterator[None]:
-        """While a turn is held; wait for it first. `anew` where another computation begins with this flag."""
+        """Wait for a turn and hold it. `anew`: another computation begins with this flag."""
         if anew:
             self._spent = 0.0
         self._enter()
@@ -254,7 +254,7 @@ class SchedulerSlot(Flag):
 
     @contextmanager
     def released(self) -> Iterator[None]:
-        """While this thread waits for something else, another has its turn."""
+        """Leave the turn to others while this thread waits for something else."""
         if self._turn is None:
             yield
             return
@@ -266,7 +266,7 @@ class SchedulerSlot(Flag):
             self._enter()
 
     def in_turns(self, results: Iterable[Result]) -> Iterator[Result]:
-        """The results, each computed while a turn is held."""
+        """Compute each result while a turn is held."""
         found = iter(results)
         while True:
             with self.held():
@@ -278,7 +278,7 @@ class SchedulerSlot(Flag):
             yield result
 
     def _give_way(self) -> None:
-        """Lower the system's priority of this thread, unless the computation has only just begun."""
+        """Lower the priority of a thread whose computation no longer counts as just begun."""
         if not self.begins:
             give_way()
 

@@ -10,7 +10,7 @@ from granchain_core.run.budget import check_picture, picture_seconds
 from ..frames import PERIODS, samples_for
 from .session import slider_range
 
-#: Most that a first picture may take unless the visitor insists [s].
+#: The longest that a first picture may take unless the visitor insists [s].
 FIRST_PICTURE = 5.0
 #: Processor time after which the search for the steady state of one picture is given up [s].
 WHOLE_PICTURE = 120.0
@@ -29,7 +29,7 @@ def check_first_picture(scene: Scene) -> None:
 
 
 class RefusedPicture(BadInput):
-    """The picture of a scene that would take too long, or has; the visitor may insist on this scene."""
+    """The picture of a scene would take too long, or took too long; the visitor may insist on it."""
 
     def __init__(self, scene: Scene, sentence: str) -> None:
         super().__init__(sentence)
@@ -46,6 +46,11 @@ class TooLong(BadInput):
 
 @functools.lru_cache(maxsize=64)
 def curve_affordable(scene: Scene) -> bool:
-    """Whether the page computes the curve by itself; it is judged by the frequency in the middle of its range."""
+    """Whether there is a curve, and it is short enough for the page to compute it without being asked.
+
+    The time is estimated from the frequency in the middle of its range.
+    """
+    if not scene.is_driven:
+        return False
     low, high = slider_range(scene, "f")
     return picture_seconds(scene.evolve(f=0.5 * (low + high)), _CURVE_PERIODS, 1) <= UNASKED_CURVE

@@ -24,7 +24,7 @@ class Debounce:
         self._host.call_later(self._seconds, self._run, self._last, action, arguments)
 
     def cancel(self) -> None:
-        """Call nothing."""
+        """Drop the action that waits."""
         self._last += 1
         self.pending = False
 

@@ -9,8 +9,8 @@ from granchain_core.integrate import Engine, adaptive_setting
 from granchain_core.result import residual
 from granchain_core.stop import Stop
 
+#: Tolerance per step over the accuracy asked for: small, so that the residual is not the account's own error.
 _FINENESS = 0.01
-"""Tolerance per step over the accuracy asked for: small, so that the residual is not the account's own error."""
 
 
 def with_account(picture: Settled, stop: Stop) -> Settled:

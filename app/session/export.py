@@ -21,7 +21,7 @@ from .session import without_frequency
 #: Names of the forces in a program, and the fields of a run.
 _FORCES = {"largest output force [N]": "max_output_force", "its elastic part [N]": "max_output_force_elastic",
            "largest input force [N]": "max_input_force"}
-#: Relative difference from which on a program says that it found something else than the page: the last of six digits.
+#: Relative difference above which a program reports that its result differs from the page's: the last of six digits.
 _SAME = 5e-6
 
 
@@ -75,7 +75,7 @@ def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
 
 
 def script(screen: Screen) -> str:
-    """A Python program that computes what is on the screen and says whether it found the same."""
+    """A Python program that computes what is on the screen and says whether its results agree."""
     return "\n\n".join(source for _, source in _pieces(screen)) + "\n"
 
 

@@ -47,9 +47,6 @@ class Page:
     def visibility_changed(self, visible: bool) -> None:
         """Somebody began to look at the page or its tab, or ceased to; at first nobody does."""
 
-    def close(self) -> None:
-        """The visitor left."""
-
 
 def all_actions(owners: Mapping[str, Actions]) -> Actions:
     """The actions of all owners in one table. Raises `TypeError` if two of them use one name."""

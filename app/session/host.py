@@ -40,8 +40,14 @@ class Host(Protocol):
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
         """Call `action` with the document locked, so many seconds from now."""
 
+    def on_close(self, action: Callable[[], object]) -> None:
+        """Call `action` when the visitor leaves; nothing is called by `next_tick` or `call_later` from then on."""
+
     def failed(self, error: Exception) -> None:
         """Tell the visitor about a failure that has no place on its own page."""
+
+    def fault(self, error: Exception, sentence: str) -> None:
+        """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.

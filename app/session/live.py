@@ -11,12 +11,12 @@ from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.run.live import joined
 
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
-from ..serve.turns import CpuTime, SchedulerSlot
+from ..serve.turns import CpuTime, TurnFlag
 
+#: Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden.
 _LONGEST_STEP = 0.1
-"""Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden."""
+#: Longest time [s] that one step is to compute.
 _LONGEST_COMPUTED = 0.1
-"""Longest time [s] that one step is to compute."""
 
 
 @dataclass(frozen=True)
@@ -29,16 +29,16 @@ class LivePicture:
 
 
 class LiveRun:
-    """One chain that keeps running, from rest or from `start`; `step` and `advance` are for a worker thread, the rest
-    for the page.
+    """One chain that keeps running, from rest or from `start`.
 
-    While it computes it holds its `slot`.
+    `step` and `advance` are called in a worker thread, everything else by the page. The run holds its `flag` while it
+    computes.
     """
 
     def __init__(self, scene: Scene, cpu_time: CpuTime, start: State | None = None) -> None:
         self.samples = samples_for(scene)
-        self.slot = SchedulerSlot(cpu_time)
-        self._chain = LiveChain(scene, samples=self.samples, start=start, stop=self.slot)
+        self.flag = TurnFlag(cpu_time)
+        self._chain = LiveChain(scene, samples=self.samples, start=start, stop=self.flag)
         self._window = LiveWindow(self.samples)
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None
@@ -64,8 +64,8 @@ class LiveRun:
         self._last = None
 
     def close(self) -> None:
-        """The visitor left: what is being computed ends."""
-        self.slot.set()
+        """End the computation under way: the visitor left."""
+        self.flag.set()
 
     def step(self, periods_per_second: float) -> LivePicture:
         """Advance by the viewing time since the last step; in slow motion, wait for the next sample.
@@ -78,7 +78,7 @@ class LiveRun:
         elapsed = 0.03 if self._last is None else min(now - self._last, _LONGEST_STEP)
         self._owed = min(self._owed, 1.0) + elapsed * rate
         if self._owed < 1.0:
-            with self.slot.released():
+            with self.flag.released():
                 time.sleep((1.0 - self._owed) / rate)
             self._owed = 1.0
         self._last = time.perf_counter()

@@ -8,10 +8,10 @@ from typing import Any, Literal
 
 from ..serve.compiler import compiling_words
 
-#: In the list of what is computed now: nobody asks for it, nothing is left to do, it is under way.
+#: In the list of what is computed now: not asked for, nothing left to do, under way.
 OFF, READY, COMPUTING = "off", "ready", "computing"
 
-#: How a computation stands.
+#: The state of a computation.
 Status = Literal["none", "waiting", "compiling", "settling", "computing", "measuring", "following", "searching",
                  "drawing", "done", "stopped", "failed"]
 
@@ -37,7 +37,7 @@ class StatusWords:
     instead: Mapping[Status, str] = field(default_factory=dict)
 
     def of(self, status: Status) -> dict[str, Any]:
-        """What the page's part in the browser shows.
+        """The entries of `state` that the page shows in the browser.
 
         `status` itself, `progress` in words (empty where there is nothing to say), and whether it is `running`.
         """

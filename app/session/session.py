@@ -18,7 +18,7 @@ from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
 from .share import EXTRAS, QUESTION, SPEEDS, START, VIEW, encode, pins_in
 from .starts import start_text
-from .switches import ACCOUNT, changes
+from .switches import ACCOUNT_SWITCH, changes
 
 MODES, STARTS = EXTRAS["mode"], EXTRAS["start"]
 
@@ -85,7 +85,7 @@ class Session:
 
     def switch(self, name: str, on: bool) -> None:
         """Switch an effect on or off; the values of its knobs are kept until it is switched on again."""
-        if name == ACCOUNT:
+        if name == ACCOUNT_SWITCH:
             self.energy_account = on
             return
         moved = changes(name, on, self.scene, self.remembered)

@@ -22,7 +22,7 @@ CURVES = ("rest", "up", "down", "features")
 
 
 def joined(names: Iterable[str]) -> str:
-    """A choice of curves as a link has it."""
+    """A choice of curves as text of a link."""
     chosen = set(names)
     return ".".join(name for name in CURVES if name in chosen) or "none"
 
@@ -93,7 +93,7 @@ def encode(shown: Scene, extras: Mapping[str, str], texts: Mapping[str, str] | N
 
 
 def pins_in(query: str) -> int:
-    """How many pins a link has."""
+    """The number of pins in a link."""
     return sum(name in PINS for name, _ in parse_qsl(query))
 
 

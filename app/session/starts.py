@@ -36,7 +36,7 @@ def read_start(text: str, scene: Scene) -> State:
         raise BadInput(f"The link begins the motion in a state of {(len(values) - 1) // 2} beads, but the chain has "
                        f"{scene.N}; it begins at rest.")
     phase, places, speeds = values[0], values[1:scene.N + 1], values[scene.N + 1:]
-    # Beyond a bead's size and the speed of sound in steel no contact law means anything.
+    # No contact law holds for displacements beyond a bead's size or speeds beyond that of sound in steel.
     sane = np.isfinite(values).all() and 0.0 <= phase < 1.0 and np.abs(places).max() < 1.0
     if not sane or np.abs(speeds).max() > 6000.0:
         raise BadInput("The initial state in the link is impossible for a chain; the motion begins at rest.")

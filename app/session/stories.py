@@ -56,7 +56,7 @@ class Expect:
 
 
 @dataclass(frozen=True)
-class Step:
+class StoryStep:
     """One step. `via` are frequencies [Hz] at which the chain is settled before, one after the other, from rest.
 
     `look` is the part of the main page that it is about, `page` the page over the pictures that it offers to open.
@@ -81,7 +81,7 @@ class Story:
     title: str
     about: str
     order: int
-    steps: tuple[Step, ...] = field(repr=False)
+    steps: tuple[StoryStep, ...] = field(repr=False)
 
 
 def stories(folder: Path = FOLDER) -> tuple[tuple[Story, ...], tuple[str, ...]]:
@@ -137,7 +137,7 @@ def told_words(story: Story, number: int, words: str) -> str:
     return _NUMBER.sub(value, getattr(story.steps[number - 1], words))
 
 
-def state_before(step: Step, stop: Stop | None = None) -> State | None:
+def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
     """The state in which the motion of a step begins: the last one of its `via`, None for rest."""
     state: State | None = None
     for frequency in step.via:
@@ -145,7 +145,7 @@ def state_before(step: Step, stop: Stop | None = None) -> State | None:
     return state
 
 
-def differences(step: Step, shown: Run) -> list[str]:
+def differences(step: StoryStep, shown: Run) -> list[str]:
     """What of a run is not as the step tells, in sentences."""
     found, expected = [], step.expect
     regime = shown.regime.name if shown.regime.driven else UNDRIVEN
@@ -168,7 +168,7 @@ def _force(newtons: float, repeats: bool) -> str:
     return f"{newtons:.{3 if repeats else 2}g} N"
 
 
-def _step(number: int, data: Any) -> Step:
+def _step(number: int, data: Any) -> StoryStep:
     try:
         if not isinstance(data, dict):
             raise BadInput("it is not a table.")
@@ -179,7 +179,7 @@ def _step(number: int, data: Any) -> Step:
             raise BadInput("via must be a list of frequencies in Hz.")
         for frequency in via:
             shown.evolve(f=frequency)
-        return Step(_text(data, "say", "it"), str(data.get("ask", "")), str(data.get("answer", "")), shown,
+        return StoryStep(_text(data, "say", "it"), str(data.get("ask", "")), str(data.get("answer", "")), shown,
                     _expect(_table(data, "expect")), tuple(map(float, via)),
                     _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *EXTRAS["curves"])),
                     _one_of(data, "page", ("", *PAGES)))

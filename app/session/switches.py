@@ -12,30 +12,30 @@ from granchain_core.scene.effects import Effect
 
 from .message_checks import quoted
 
-ACCOUNT = table.ACCOUNT.name
-"""The one effect that is no knob of the scene: it changes nothing in the motion."""
+#: The one effect that is no knob of the scene: it changes nothing in the motion.
+ACCOUNT_SWITCH = table.ACCOUNT.name
 
-EFFECTS: dict[str, Effect] = {effect.name: effect for effect in (*table.EFFECTS, table.ACCOUNT)}
-"""The effects in the order in which the page lists them."""
+#: The effects in the order in which the page lists them.
+SWITCHES: dict[str, Effect] = {effect.name: effect for effect in (*table.EFFECTS, table.ACCOUNT)}
 
 
 def present(name: str, shown: Scene, account: bool) -> bool:
     """Whether the effect is in the kernels of this scene."""
-    return account if name == ACCOUNT else EFFECTS[name].present(shown)
+    return account if name == ACCOUNT_SWITCH else SWITCHES[name].present(shown)
 
 
 def refusal(name: str, shown: Scene) -> str:
     """Why the effect cannot be switched for this scene; empty where it can."""
-    return "" if EFFECTS[name].possible(shown) else EFFECTS[name].refusal
+    return "" if SWITCHES[name].possible(shown) else SWITCHES[name].refusal
 
 
 def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) -> dict[str, Any]:
     """Knob values that a switch sets; on: those the visitor had, else the preset's, else the usual ones."""
-    if name not in EFFECTS or name == ACCOUNT:
+    if name not in SWITCHES or name == ACCOUNT_SWITCH:
         raise BadInput(f"There is no switchable effect {quoted(name)}.")
     if refused := refusal(name, shown):
         raise BadInput(refused)
-    effect = EFFECTS[name]
+    effect = SWITCHES[name]
     if not on:
         return dict(effect.off)
     before = {**scene(shown.name).knobs, **remembered}
@@ -50,7 +50,7 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
 
 def variants(name: str, shown: Scene) -> tuple[Variant, Variant] | None:
     """The scene with the effect and without it, everything else the same; None where it cannot be switched."""
-    if name == ACCOUNT:
+    if name == ACCOUNT_SWITCH:
         return Variant(shown, balance=True), Variant(shown)
     if refusal(name, shown):
         return None

@@ -57,7 +57,7 @@ class Job:
     def give_way(self, to: Callable[[], bool] | None = None) -> None:
         """Wait while the picture for a moved knob is being computed, or while `to` returns True.
 
-        The longer this takes, the more rarely it checks: a thread that checks takes the interpreter from all others.
+        The longer this takes, the less often it checks: each check takes the interpreter from all other threads.
         """
         waits, pause = to or (lambda: self._host.awaiting_picture), PICTURE_POLL
         while waits() and not self.stop:
@@ -66,7 +66,7 @@ class Job:
 
 
 class Task:
-    """One kind of background work of a page; a new start replaces the last.
+    """One kind of background work of a page; a new start replaces the last, and it ends when the visitor leaves.
 
     `say` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the work
     reports. `title` begins the sentence about a fault. `failed` takes errors that the page itself does not show.
@@ -80,6 +80,7 @@ class Task:
         self._title = title
         self._failed = failed
         self._job: Job | None = None
+        host.on_close(self.cancel)
 
     @property
     def running(self) -> bool:
@@ -110,8 +111,10 @@ class Task:
         except (NumbersFailed, BadInput) as problem:
             job.next_tick(self._end, "failed", str(problem), problem)
         except Exception as error:
-            job.next_tick(self._end, "failed", f"{self._title} failed because of an error in granchain.")
-            self._host.next_tick(self._host.failed, error)
+            sentence = (f"{self._title} failed because of an error in granchain ({type(error).__name__}); "
+                        "please report it.")
+            job.next_tick(self._end, "failed", sentence)
+            self._host.next_tick(self._host.fault, error, "" if self._failed is None else sentence)
         else:
             job.next_tick(self._end, "done")
 

@@ -21,7 +21,7 @@ HERE = Path(__file__).parent
 #: How most pages are opened.
 USUAL: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce"}
 
-# Three workers with a browser and a server each share two processors: what is waited for comes, but not within
+# Two workers with a browser and a server each share two processors: what is waited for comes, but not within
 # Playwright's five seconds.
 expect.set_options(timeout=60_000)
 

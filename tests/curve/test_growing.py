@@ -9,7 +9,7 @@ import pytest
 from app.curve.bar import CurveBar
 from app.curve.page import CurveController
 from app.curve.sweep import Progress
-from app.curve.view import Curve
+from app.curve.view import CurveFigure
 from app.serve.delays import CURVE_EVERY
 from app.session.session import Session
 from granchain_core import CurvePoint, scene
@@ -41,7 +41,7 @@ def point(f: float) -> Progress:
 def test_points_that_come_soon_after_each_other_are_drawn_together(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
     monkeypatch.setattr("app.curve.page.time.monotonic", lambda: now[0])
-    host, figure = Host(), Curve(lambda _: None)
+    host, figure = Host(), CurveFigure(lambda _: None)
     curves = CurveController(host, figure, CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
     for f in (500.0, 600.0, 700.0):
         curves._report(point(f))
@@ -60,7 +60,7 @@ def test_a_stopped_curve_is_not_under_way_again_when_its_last_points_would_be_dr
     now = [100.0]
     monkeypatch.setattr("app.curve.page.time.monotonic", lambda: now[0])
     host = Host()
-    curves = CurveController(host, Curve(lambda _: None), CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
+    curves = CurveController(host, CurveFigure(lambda _: None), CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
     curves._remaining = ["rest"]
     for f in (500.0, 600.0):
         curves._report(point(f))

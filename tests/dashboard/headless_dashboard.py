@@ -17,6 +17,7 @@ class Dashboard(FakeHost, Controller):
 
     busy, awaiting_picture, curve_computing = Controller.busy, Controller.awaiting_picture, Controller.curve_computing
     call_later, failed, complete_curve = Controller.call_later, Controller.failed, Controller.complete_curve
+    on_close, fault = Controller.on_close, Controller.fault
 
     def __init__(self) -> None:
         FakeHost.__init__(self)
@@ -26,4 +27,4 @@ class Dashboard(FakeHost, Controller):
 
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
         """From any thread."""
-        self.callbacks.append(lambda: self._guarded(action, *arguments))
+        self.callbacks.append(lambda: self._calls.guarded(action, *arguments))

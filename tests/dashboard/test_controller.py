@@ -25,7 +25,6 @@ from app.serve.compiler import COMPILER, Compiler
 from app.serve.meters import METERS
 from app.session.budget import RefusedPicture
 from app.session.hooks import all_actions
-from app.session.live import LiveRun
 from app.session.message_checks import listed, whole
 from granchain_core import BadInput, run, scene, settle
 from granchain_core.experiment.measured import MOST_BYTES
@@ -108,16 +107,19 @@ def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -
 
 
 def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    sent: list[object] = []
-    monkeypatch.setattr(dashboard.pictures._pacer, "offer", sent.append)
+    sent: list[dict[str, Any]] = []
+    monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: sent.append(message))
     session, pictures = dashboard.session, dashboard.pictures
     session.set_mode("live")
     session.playing = False
-    pictures.live = LiveRun(session.scene, session.cpu_time)
-    pictures._arrived(pictures.live.advance(7))
+    pictures.begin_live()
+    pictures.advance(7)
+    dashboard.run_callbacks_until(lambda: len(sent) == 1)
     dashboard.received({"do": "scale", "value": "fit"})
-    dashboard.run_callbacks_until(lambda: not pictures.busy)
-    assert sent[0] is sent[1] and len(sent) == 2 and pictures.live._shown == 7
+    dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
+    shown = pictures.run()
+    assert len(sent) == 2 and [message["fit"] for message in sent] == [False, True]
+    assert shown is not None and len(shown.time) == 8, "no sample follows the seven of the first picture"
 
 
 def test_choosing_the_scale_takes_the_scenes_own_again(dashboard: Dashboard) -> None:
@@ -135,7 +137,7 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
     dashboard.session.scene = chain
     found = settle(chain, samples=8)
     for picture in (replace(found, run=replace(found.run, start=GIVEN_STATE)), found):
-        dashboard._arrived(picture)
+        dashboard.picture_ready(picture)
         state = dashboard.views.header.state
         assert (state["origin"], state["start"]) == (picture.start, "rest")
 
@@ -245,14 +247,20 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
     assert given["http_server_kwargs"]["idle_connection_timeout"] == 60 and given["http_server_kwargs"]["body_timeout"] == 30
 
 
-def test_a_busy_server_says_so(dashboard: Dashboard) -> None:
+def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """And stops saying so with the first picture that comes in time."""
+    clock = [5.0]
+    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0], thread_time=time.thread_time))
     try:
-        for late, said in ((1.5, True), (0.0, False)):
-            METERS._late.extend([late] * 40)
-            dashboard.pictures._asked = time.monotonic() - 1.2
-            dashboard.pictures._answered()
+        for late, wait, said in ((0.4, 0.0, True), (0.0, 0.1, False), (0.0, 0.4, True)):
+            for _ in range(40):
+                METERS.loop_late(late)
+            monkeypatch.setattr(METERS, "turn_wait", lambda wait=wait: wait)
+            dashboard.pictures.compute()
+            clock[0] += 1.2
+            dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
             words = dashboard.views.status_line.state["busy"]
             assert words == ("The server is busy: pictures follow every 1.2 s." if said else "")
     finally:
-        METERS._late.clear()
+        for _ in range(40):
+            METERS.loop_late(0.0)

@@ -1,4 +1,4 @@
-"""The messages of a browser: docs/dashboard.md lists those that are understood, and each script sends only these."""
+"""The messages between browser and server: docs/dashboard.md lists those of both directions, and no others are sent."""
 
 from __future__ import annotations
 
@@ -11,9 +11,18 @@ from app.dashboard.controller import Controller
 from app.scripts import FILES
 from app.session.session import Session
 
-PAGE = (Path(__file__).parents[2] / "docs" / "dashboard.md").read_text(encoding="utf-8")
-LISTED = {owner: re.findall(r"`([\w-]+)`", messages)
-          for owner, messages in re.findall(r"^\| ([^|]+) \| ((?:`[\w-]+`(?:, )?)+) \|$", PAGE.split("| owner | messages |")[1], re.MULTILINE)}
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "dashboard.md").read_text(encoding="utf-8")
+
+
+def listed(title: str) -> dict[str, list[str]]:
+    """The table with this title: the messages of each row."""
+    table = PAGE.split(f"| {title} | messages |\n|---|---|\n")[1].partition("\n\n")[0]
+    return {owner: re.findall(r"`([\w-]+)`", messages) for owner, messages in re.findall(r"^\| ([^|]+) \| (.+) \|$", table, re.MULTILINE)}
+
+
+LISTED = listed("owner")
+READ = {script.strip("`"): messages for script, messages in listed("read by").items()}
 #: In the scripts: `do: "name"`, or an argument of a function that sends it.
 SENT = re.compile(r'\bdo: "([\w-]+)"|\b(?:send|request)\("([\w-]+)"|\b(?:control|act)\("[^"]+", "([\w-]+)"')
 
@@ -29,3 +38,22 @@ def test_every_message_of_a_script_is_understood() -> None:
     known = {name for messages in LISTED.values() for name in messages}
     assert sent <= known
     assert not known - sent, "nobody sends these, or in a way that this test does not see"
+
+
+#: In the scripts: a comparison of the message's type with a name.
+READS = re.compile(r'(?:\bmessage\.|(?<![.\w]))type [!=]== "([\w-]+)"')
+#: In Python: `send(type="name")`, and the type of a message that a function makes for `send`.
+SENDS = re.compile(r'send\b[(,]\s*type="([\w-]+)"|"type": "([\w-]+)"')
+
+
+def test_the_table_of_messages_to_the_browser_is_what_the_scripts_read() -> None:
+    found = {name: READS.findall(path.read_text(encoding="utf-8")) for name, path in FILES.items()}
+    reading = {name: set(messages) for name, messages in found.items() if messages}
+    reading["chain.js"].add("pong")  # which any message of the chain may be: it shows that the server answers
+    assert reading == {script: set(messages) for script, messages in READ.items()}
+
+
+def test_every_message_to_the_browser_is_read() -> None:
+    files = [path for part in ("curve", "dashboard", "pages", "parts", "session") for path in (ROOT / "app" / part).rglob("*.py")]
+    sent = {name for path in files for match in SENDS.findall(path.read_text(encoding="utf-8")) for name in match if name}
+    assert sent == {name for messages in READ.values() for name in messages}

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from app.dashboard.table import CURVE, PAGES, TABS, TabSpec, check_names, overlay_names
+from app.dashboard.table import CURVE_NAME, PAGES, TABS, TabSpec, check_names, overlay_names
 from app.session.stories import PAGES as STORY_PAGES
 
 
-@pytest.mark.parametrize("row", [replace(PAGES[0], name=CURVE), TabSpec(PAGES[0].name, "learn")], ids=["curve", "twice"])
+@pytest.mark.parametrize("row", [replace(PAGES[0], name=CURVE_NAME), TabSpec(PAGES[0].name, "learn")], ids=["curve", "twice"])
 def test_a_name_that_is_taken_is_refused(row: TabSpec) -> None:
     with pytest.raises(ValueError, match=f"'{row.name}' in app/dashboard/table.py is taken"):
         check_names((*TABS, row))
@@ -19,7 +19,7 @@ def test_a_name_that_is_taken_is_refused(row: TabSpec) -> None:
 
 def test_the_browser_calls_the_curve_as_the_server_does() -> None:
     script = Path(__file__).parents[2] / "app" / "dashboard" / "visibility.js"
-    assert f'const CURVE = "{CURVE}";' in script.read_text(encoding="utf-8")
+    assert f'const CURVE_NAME = "{CURVE_NAME}";' in script.read_text(encoding="utf-8")
 
 
 def test_stories_open_the_pages_over_the_pictures() -> None:

@@ -22,12 +22,14 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
                     ignore=shutil.ignore_patterns("__pycache__"))
     (copy / "tests" / "dashboard").mkdir()
     shutil.copy(ROOT / "tests" / "dashboard" / "test_messages.py", copy / "tests" / "dashboard")
+    for name in ("host.py", "waiting.py"):
+        shutil.copy(ROOT / "tests" / name, copy / "tests")
     return edited_copy(PAGE, copy)
 
 
 def test_the_page_edits_three_files_and_writes_four() -> None:
     edits, new = files_of(PAGE)
-    assert (len(edits), len(new)) == (3, 4)
+    assert (len(edits - new), len(new)) == (3, 4)
     assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 3 files, write 4"
 
 
@@ -59,7 +61,37 @@ print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["
     assert (overlay, words) == ("Transmission True", "['How much of the input force arrives.']")
 
 
-def test_the_new_page_fits_into_the_house(tree: Path) -> None:
+def test_the_new_page_computes_in_the_background_until_it_is_told_to_stop(tree: Path) -> None:
+    """What takes long is done by a task: it ends with what it found, with a moved knob, and with the visitor."""
+    told = follow(tree, "-c", """
+import sys
+sys.path.insert(0, "tests")
+from types import SimpleNamespace
+from host import FakeHost
+from app.pages.transmission.page import TransmissionPage
+from granchain_core import scene
+
+host, shown = FakeHost(), {"running": False}
+host.session = SimpleNamespace(scene=scene("sec2").evolve(N=2, f=600.0), picture=None)
+page = TransmissionPage(host, SimpleNamespace(update_state=shown.update))
+page.actions["transmission-search"]({})
+print(shown["running"], shown["progress"])
+host.run_callbacks_until(lambda: not shown["running"], 300.0)
+print(shown["status"], shown["most"])
+page.actions["transmission-search"]({})
+page.scene_changed()
+print(shown["status"], shown["running"])
+page.actions["transmission-search"]({})
+host.leave()
+host.run_callbacks_until(lambda: not host.callbacks)
+print(shown["status"])
+""")
+    begun, found, stopped, left = told.splitlines()
+    assert (begun, stopped, left) == ("True waiting for its turn …", "stopped False", "waiting")
+    assert found.startswith("done The largest share arrives at ") and found.endswith(" Hz.")
+
+
+def test_the_new_page_fits_into_the_dashboard(tree: Path) -> None:
     """Layers, private attributes, docstrings, the map of docs/design.md and the table of messages of docs/dashboard.md."""
     told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
                   str(Path("tests", "dashboard")), "-k", "transmission or table or map or circle or message")

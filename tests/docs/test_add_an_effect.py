@@ -10,7 +10,7 @@ from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
 #: The headings under which the effect is mentioned, and under which the force becomes one that is not linear in the velocity.
-MENTIONED = "## 5. Mention it: edit 5, and one that a tool writes"
+MENTIONED = "## 5. Mention it: edit 6, and one that a tool writes"
 NONLINEAR = "## 6. A force that is not linear in the velocity: edit 5 of these files, write 1"
 
 
@@ -23,8 +23,8 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_edits_and_writes_as_many_files_as_it_says() -> None:
     edits, new = files_of(PAGE, MENTIONED)
     mentions = files_of(PAGE, NONLINEAR)[0] - edits
-    assert (len(edits), len(new), len(mentions)) == (6, 3, 5)  # and the changelog
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 6 files, write 3, mention it in 6"
+    assert (len(edits), len(new), len(mentions)) == (6, 3, 6)  # and the picture that tools.gallery writes
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 6 files, write 3, mention it in 7"
     all_edits, all_new = files_of(PAGE)
     assert all_edits <= edits | mentions | new | all_new and len(all_new - new) == 1
     text = PAGE.read_text(encoding="utf-8").partition(NONLINEAR)[2]
@@ -43,10 +43,13 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
 
 
 def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(tree: Path) -> None:
-    """README, model page, share links and scales, which are red until step 5 is done."""
-    for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
+    """README, model page, share links, scales and the gallery, whose tests fail until step 5 is done."""
+    for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
         copied(part, tree)
+    follow(tree, "-m", "tools.gallery", "drag")
     told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/session/test_share.py", "tests/dashboard/test_scales.py::test_every_scene_has_a_scale",
+                  "tests/dashboard/test_gallery.py::test_every_scene_has_a_picture_and_a_question_and_there_are_no_others",
+                  "tests/dashboard/test_gallery.py::test_a_card_has_title_sentence_question_and_its_picture",
                   "tests/docs/test_pages.py::test_every_scene_is_in_the_readme_and_every_knob_in_the_model")
     assert " passed" in told and "failed" not in told
 
@@ -99,14 +102,14 @@ def test_the_new_effect_has_a_switch_in_the_panel_a_slider_a_cost_and_axes(tree:
     """Off and on again by its switch, with its own kernel each time; the knob is under "more", and can be followed."""
     told = follow(tree, "-c", """
 from app.session.session import Session
-from app.session.switches import EFFECTS, present, variants
+from app.session.switches import SWITCHES, present, variants
 from app.parts.knobs import knob_state
 from granchain_core import scene
 from granchain_core.diagram.grid import KNOBS
 from granchain_core.orbits import CONTINUOUS
 from granchain_core.warm import structure
 session = Session(scene=scene("drag"))
-print(EFFECTS["drag"].title, "|", present("drag", session.scene, False))
+print(SWITCHES["drag"].title, "|", present("drag", session.scene, False))
 for on in (False, True):
     session.switch("drag", on)
     print(session.scene.c, structure(session.scene))

@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
+from granchain_core.laws import LAWS
 from tests.numerics.forces.draw import FEW
 from tests.numerics.forces.judge import Verdict, verdicts
 from tests.numerics.forces.located import located
 from tools.fuzzing import oracle
 
-LAWS = [("linear", "allowed"), ("linear", "cut"), ("tsuji", "cut"), ("kuwabara-kono", "allowed")]
+CONTACTS = [("linear", "allowed"), ("linear", "cut"), ("tsuji", "cut"), ("kuwabara-kono", "allowed")]
 #: Seed of the slice of random scenes, not one by which factors were chosen.
 SEED = 2026
 
@@ -59,12 +60,12 @@ def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing()
     assert at_wall.max() == pytest.approx(found.maxima[1], rel=1e-12)
 
 
-@pytest.mark.parametrize(("law", "tension"), LAWS)
+@pytest.mark.parametrize(("law", "tension"), CONTACTS)
 def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law, tension):
     """(A0, f, D) → (sA0, s^{1/4}f, s^{1/4}D) with forces s^{3/2}; D of an overlap-dependent law is D/s^{q − 1/4} more.
 
     Measured: forces at 1e-10 and 1e-12 differ by less than 1e-9, displacements from SciPy's by 7e-9, which is SciPy's."""
-    s, q = 3.0, {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}[law]
+    s, q = 3.0, LAWS[law].exponent
     one = scene("sec2").evolve(dissipation=law, tension=tension, kappa=0.01)
     other = one.evolve(A0=s * one.A0, f=s**0.25 * one.f, D=s ** (0.25 - q) * one.D, kappa=0.01)
     found, nearly, scaled = located(one, 1, 2), located(one, 1, 2, tolerance=1e-10), located(other, 1, 2)

@@ -2,11 +2,26 @@
 
 from __future__ import annotations
 
+import pytest
+
+from app.pages.numbers import words
 from app.pages.numbers.words import summary
 from granchain_core import scene, settle
+from granchain_core.scene.effects import EFFECTS, Effect, effects_of
+
+LOST = "On average, the damping of the contacts takes all the energy"
 
 
 def test_where_the_energy_goes_is_said_of_a_driven_damped_chain_alone() -> None:
-    lost = "On average, the damping of the contacts takes all the energy"
-    assert lost in summary(settle(scene("sec2")).run)
-    assert lost not in summary(settle(scene("impact")).run)
+    assert LOST in summary(settle(scene("sec2")).run)
+    assert LOST not in summary(settle(scene("impact")).run)
+
+
+def test_nothing_is_said_of_a_scene_with_an_effect_that_may_lose_energy_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Such as the drag of docs/add-an-effect.md; foundation and preload store energy, and a cut force is the damped one."""
+    run = settle(scene("sec2")).run
+    drag = Effect("drag", "drag", "ground drag", "A viscous ground slows every bead.", lambda scene: True)
+    storing = [effect for effect in EFFECTS if effect.name in ("tension", "foundation", "preload")]
+    for others, said in ((storing, True), ([drag], False)):
+        monkeypatch.setattr(words, "effects_of", lambda scene, others=others: [*effects_of(scene), *others])
+        assert (LOST in summary(run)) == said

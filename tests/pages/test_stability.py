@@ -24,7 +24,7 @@ from app.pages.stability.view import (
     section_points,
     verdict,
 )
-from app.pages.stability.work import Analysis, Target, analyse, search, section_of, transient
+from app.pages.stability.work import OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
 from granchain_core.regime import Regime, modulus_words
 from granchain_core.stop import Stop
@@ -37,11 +37,11 @@ def picture(name: str = "sec2", **knobs: Any) -> Settled:
 
 
 @cache
-def analysis(**knobs: Any) -> Analysis:
+def analysis(**knobs: Any) -> OrbitAnalysis:
     """The analysis of a settled picture of sec2."""
     found = picture(**knobs)
     assert found.regime.period is not None
-    return analyse(Target(found.run.scene, found.regime.period, found.state, True), False, 0, Stop())
+    return analyse(OrbitTarget(found.run.scene, found.regime.period, found.state, True), False, 0, Stop())
 
 
 def with_leading(*leading: complex) -> Any:
@@ -148,7 +148,7 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
     shown = picture()
     far = replace(shown.state, displacement=1.01 * shown.state.displacement)
     with pytest.raises(NumbersFailed, match="ended 1e-02 away"):
-        analyse(Target(shown.run.scene, 1, far, True), False, 0, Stop())
+        analyse(OrbitTarget(shown.run.scene, 1, far, True), False, 0, Stop())
 
 
 class Page(FakeHost):
@@ -167,7 +167,7 @@ class Page(FakeHost):
     def work(self, until: Any, seconds: float = 60.0) -> None:
         """Work off until something holds; nothing may fail."""
         self.run_callbacks_until(until, seconds)
-        assert self.failures == []
+        assert self.failures == [] and self.faults == []
 
     def marks(self, name: str) -> int:
         """How many multipliers are in a set of the plane."""
@@ -214,7 +214,7 @@ def test_a_picture_that_stays_is_analysed(page: Page) -> None:
     view.picture_ready(replace(picture()))
     page.work(lambda: not page.callbacks)
     assert len(page.told) == count
-    view.close()
+    page.leave()
 
 
 def test_a_moved_knob_gives_up_and_greys(page: Page) -> None:
@@ -226,7 +226,7 @@ def test_a_moved_knob_gives_up_and_greys(page: Page) -> None:
     assert page.state["stale"]
     page.work(lambda: not page.callbacks)
     assert page.state["stale"], "what was asked for before the knob moved is not computed"
-    view.close()
+    page.leave()
 
 
 def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
@@ -237,7 +237,7 @@ def test_the_observer_is_computed_when_it_is_switched_on(page: Page) -> None:
     page.work(lambda: page.marks("observer within") + page.marks("observer outside") == 22)
     view.actions["stability-mode"]({"value": 2})
     page.work(lambda: page.state.get("rank") == 2)
-    view.close()
+    page.leave()
 
 
 def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
@@ -251,7 +251,7 @@ def test_a_found_orbit_is_marked_and_left_again(page: Page) -> None:
     view.actions["stability-back"]({})
     page.work(lambda: not page.state["searched"])
     assert page.state["period"] == 4
-    view.close()
+    page.leave()
 
 
 def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> None:
@@ -260,7 +260,7 @@ def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> 
     view.picture_ready(picture(tension="cut"))
     page.work(lambda: page.state.get("status") == "failed" and any(m["type"] == "section" for m in page.told))
     assert "multipliers are not computed" in page.state["sentence"] and page.marks("within") == 0
-    view.close()
+    page.leave()
 
 
 def test_the_followed_orbit_is_not_called_another_one() -> None:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.curve.page import CurveController
 from app.frames import samples_for
 from app.parts.knobs import knob_state
+from app.session.budget import curve_affordable
 from granchain_core import scene, scene_names
 
 
@@ -22,7 +22,7 @@ def test_a_scene_shows_the_knobs_that_make_it() -> None:
 def test_a_chain_without_a_drive_has_fine_pictures_and_no_curve() -> None:
     impact = scene("impact")
     assert samples_for(impact) > 3 * samples_for(impact.evolve(drive="harmonic"))
-    assert not CurveController._affordable(impact) and CurveController._affordable(scene("sec2"))
+    assert not curve_affordable(impact) and curve_affordable(scene("sec2"))
 
 
 def test_f_a0_d_and_k_are_never_folded_away_and_a_knob_in_sight_that_can_be_zero_says_what_that_is() -> None:

@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from granchain_core import BadInput, Scene, run, scene, scene_names
+from granchain_core.laws import LAWS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
@@ -19,7 +20,7 @@ KNOBS = st.fixed_dictionaries({}, optional={
     "f": st.floats(0.1, 1e6), "A0": st.floats(1e-12, 1e-4), "D": st.floats(0.0, 1e6), "k": st.floats(0.0, 1e10),
     "N": st.integers(1, 60), "F0": st.floats(0.0, 1e4), "accuracy": st.floats(1e-12, 0.1),
     "wall": st.one_of(st.sampled_from(["bead", "same-material", "rigid"]), st.floats(1e-6, 1e6)),
-    "dissipation": st.sampled_from(["linear", "tsuji", "kuwabara-kono", "none"]),
+    "dissipation": st.sampled_from([*LAWS, "none"]),
     "tension": st.sampled_from(["allowed", "cut"])})
 SCENES = st.builds(lambda name, knobs: scene(name).evolve(**knobs), st.sampled_from(scene_names()), KNOBS)
 

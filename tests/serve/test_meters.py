@@ -1,15 +1,9 @@
-"""A server that is too busy says so: in the status line, with how often pictures follow."""
+"""How long computations wait before they begin."""
 
 from __future__ import annotations
 
-import pytest
-from bokeh.document import Document
-
-from app.dashboard.controller import Controller
-from app.serve import meters
 from app.serve.turns import CpuTime, FairScheduler
-from app.session.session import Session
-from granchain_core import Stop, settle
+from granchain_core import Stop
 
 
 def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> None:
@@ -27,19 +21,3 @@ def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> No
     assert turns.wait == 1.5
     now[0] = 12.0
     assert turns.wait == 0.0
-
-
-@pytest.mark.parametrize(("late", "wait", "said"), [(0.0, 0.1, False), (0.4, 0.0, True), (0.0, 0.4, True)])
-def test_a_busy_server_says_so_with_the_next_picture(late: float, wait: float, said: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(meters.METERS, "turn_wait", lambda: wait)
-    monkeypatch.setattr(meters.METERS, "_late", [late])
-    controller = Controller(Document(), Session())
-    try:
-        controller.pictures.compute()
-        controller.pictures.close()
-        controller.pictures._asked -= 1.25  # type: ignore[operator]
-        controller.pictures._arrived(settle(controller.session.scene))
-        words = controller.views.status_line.state["busy"]
-        assert words.startswith("The server is busy: pictures follow every 1.") if said else words == ""
-    finally:
-        controller.close(None)

@@ -12,7 +12,7 @@ import pytest
 
 from app.serve.priorities import give_way, gives_way
 from app.serve.queues import LatestWins, Queue
-from app.serve.turns import CpuTime, FairScheduler, SchedulerSlot
+from app.serve.turns import CpuTime, FairScheduler, TurnFlag
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the niceness is that of the process")
 
@@ -21,7 +21,7 @@ def niceness() -> int:
     return os.getpriority(os.PRIO_PROCESS, threading.get_native_id())
 
 
-def computes(slot: SchedulerSlot, seconds: float) -> Iterator[int]:
+def computes(slot: TurnFlag, seconds: float) -> Iterator[int]:
     """The niceness after so much processor time, which has a pause at its end."""
     began = time.thread_time()
     while time.thread_time() - began < seconds:
@@ -31,7 +31,7 @@ def computes(slot: SchedulerSlot, seconds: float) -> Iterator[int]:
 
 
 def in_turns(seconds: float) -> int:
-    slot = SchedulerSlot(CpuTime(), FairScheduler(2))
+    slot = TurnFlag(CpuTime(), FairScheduler(2))
     return next(slot.in_turns(computes(slot, seconds)))
 
 
@@ -73,8 +73,8 @@ def test_the_next_picture_of_a_visitor_does_not_give_way_with_the_last_one() -> 
     found: list[int] = []
     jobs = LatestWins(found.append, lambda error: pytest.fail(str(error)))
 
-    def work(before: Callable[[], None]) -> Callable[[SchedulerSlot], Iterator[int]]:
-        def results(_: SchedulerSlot) -> Iterator[int]:
+    def work(before: Callable[[], None]) -> Callable[[TurnFlag], Iterator[int]]:
+        def results(_: TurnFlag) -> Iterator[int]:
             yield niceness()
             before()
 

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from test_turns import until
+from waiting import until
 
 from app.serve.queues import LatestWins, Queue
 from app.serve.shared import Shared
-from app.serve.turns import CpuTime, Flag, SchedulerSlot
+from app.serve.turns import CpuTime, Flag, TurnFlag
 from granchain_core import Cancelled
 
 
@@ -21,7 +21,7 @@ class Work:
     def __init__(self) -> None:
         self.begun, self.go, self.stops = 0, threading.Semaphore(0), []
 
-    def __call__(self, stop: SchedulerSlot) -> Iterator[int]:
+    def __call__(self, stop: TurnFlag) -> Iterator[int]:
         """1, 2, 3."""
         self.begun += 1
         self.stops.append(stop)
@@ -94,7 +94,7 @@ def test_it_ends_with_the_last_visitor_and_not_before() -> None:
 def test_an_error_reaches_all_and_is_not_kept() -> None:
     one = shared()
 
-    def fails(stop: SchedulerSlot) -> Iterator[int]:
+    def fails(stop: TurnFlag) -> Iterator[int]:
         raise ZeroDivisionError
         yield 1
 
@@ -110,7 +110,7 @@ def test_a_first_result_that_takes_long_gives_way_to_a_newer_request(monkeypatch
     jobs = LatestWins(delivered.append, delivered.append)
     begun = threading.Event()
 
-    def endless(stop: SchedulerSlot) -> Iterator[object]:
+    def endless(stop: TurnFlag) -> Iterator[object]:
         begun.set()
         while True:
             stop.check()
@@ -127,7 +127,7 @@ def test_nothing_is_delivered_to_a_visitor_who_left() -> None:
     jobs = LatestWins(delivered.append, delivered.append)
     gone, went_on = threading.Event(), threading.Event()
 
-    def work(stop: SchedulerSlot) -> Iterator[object]:
+    def work(stop: TurnFlag) -> Iterator[object]:
         assert gone.wait(20)
         yield "late"
         went_on.set()

@@ -3,20 +3,12 @@
 from __future__ import annotations
 
 import threading
-import time
 
 import pytest
+from waiting import until
 
-from app.serve.turns import CpuTime, FairScheduler, SchedulerSlot, SharedCpuTime
+from app.serve.turns import CpuTime, FairScheduler, SharedCpuTime, TurnFlag
 from granchain_core import Stop
-
-
-def until(holds: object, seconds: float = 60.0) -> None:
-    """Wait until something holds."""
-    end = time.monotonic() + seconds
-    while not holds():  # type: ignore[operator]
-        assert time.monotonic() < end, "did not come"
-        time.sleep(0.002)
 
 
 def test_half_of_what_was_used_is_forgotten_in_five_seconds() -> None:
@@ -43,10 +35,10 @@ def test_who_is_stopped_while_waiting_does_not_wait_for_the_next_look(monkeypatc
     monkeypatch.setattr("app.serve.turns._LOOK", 3600.0)
     turns = FairScheduler(1, lambda: 0.0)
     held = turns.begin(CpuTime(), Stop())
-    slots = [SchedulerSlot(CpuTime(), turns) for _ in range(3)]
-    begun: list[SchedulerSlot] = []
+    slots = [TurnFlag(CpuTime(), turns) for _ in range(3)]
+    begun: list[TurnFlag] = []
 
-    def wait(slot: SchedulerSlot) -> None:
+    def wait(slot: TurnFlag) -> None:
         with slot.held():
             begun.append(slot)
 
@@ -159,7 +151,7 @@ def test_a_turn_does_not_go_to_who_has_used_more() -> None:
 def test_at_a_pause_the_turn_is_passed_on() -> None:
     now = [0.0]
     turns = FairScheduler(1, lambda: now[0])
-    slot = SchedulerSlot(account(5.0), turns)
+    slot = TurnFlag(account(5.0), turns)
     list(slot.in_turns([1]))
     with slot.held():
         thread, = waiting_threads(turns, account(1.0))
@@ -189,7 +181,7 @@ def test_what_has_just_begun_waits_for_nothing_that_takes_long_and_is_not_interr
 
 
 def test_a_computation_with_a_result_has_no_longer_just_begun() -> None:
-    slot, seen = SchedulerSlot(CpuTime(), FairScheduler(1)), []
+    slot, seen = TurnFlag(CpuTime(), FairScheduler(1)), []
     for _ in slot.in_turns(seen.append(slot.begins) for _ in range(3)):
         pass
     assert seen == [True, False, False]

@@ -13,6 +13,7 @@ import pytest
 from bokeh.document import Document
 from event_loop import run_async
 from listening import Listening
+from waiting import until
 
 from app.dashboard.controller import Controller
 from app.serve.queues import PICTURES, VISITORS
@@ -26,14 +27,6 @@ def alive(*kinds: type) -> weakref.WeakSet[Any]:
     """The objects of these kinds."""
     gc.collect()
     return weakref.WeakSet(one for one in gc.get_objects() if issubclass(type(one), kinds))
-
-
-def until(holds: object, seconds: float = 60.0) -> None:
-    """Wait until something holds."""
-    end = time.monotonic() + seconds
-    while not holds():  # type: ignore[operator]
-        assert time.monotonic() < end, "did not come"
-        time.sleep(0.1)
 
 
 async def visit(address: str, query: str = "", moves: int = 2) -> Viewer:
@@ -55,7 +48,7 @@ def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) ->
         with caplog.at_level(logging.ERROR):
             for _ in range(3):
                 run_async(visit(address))
-            until(lambda: not alive(Controller, Document) - before)  # what other tests have left may go meanwhile
+            until(lambda: not alive(Controller, Document) - before, pause=lambda: time.sleep(0.1))  # what other tests have left may go meanwhile
         assert not [record for record in caplog.records if record.levelno >= logging.ERROR]
     finally:
         one.stop()

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.frames import samples_for
-from app.session.stories import FOLDER, Step, Story, differences, read_story, state_before, stories, told_words
+from app.session.stories import FOLDER, Story, StoryStep, differences, read_story, state_before, stories, told_words
 from granchain_core import BadInput, Run, settle
 
 TOLD, REFUSED = stories()
@@ -26,7 +26,7 @@ expect = { regime = "periodic", period = 1, output = 0.6285, input = 0.6975 }
 """
 
 
-def motion_of(step: Step) -> Run:
+def motion_of(step: StoryStep) -> Run:
     """The motion of a step, with the samples that the page has."""
     return settle(step.scene, start=state_before(step), samples=samples_for(step.scene)).run
 

@@ -6,7 +6,7 @@ import pytest
 
 from app.session.energy_residual import with_account
 from app.session.session import Session
-from app.session.switches import ACCOUNT, EFFECTS, changes, present, variants
+from app.session.switches import ACCOUNT_SWITCH, SWITCHES, changes, present, variants
 from granchain_core import BadInput, scene, scene_names, settled
 from granchain_core.scaling import slots_of
 from granchain_core.stop import Stop
@@ -14,8 +14,8 @@ from granchain_core.warm import structure
 
 
 @pytest.mark.parametrize(("shown", "name"), [  # where there is no damping there is no tension to cut, see below
-    (shown, name) for shown in scene_names() for name, effect in EFFECTS.items()
-    if name != ACCOUNT and effect.possible(scene(shown))])
+    (shown, name) for shown in scene_names() for name, effect in SWITCHES.items()
+    if name != ACCOUNT_SWITCH and effect.possible(scene(shown))])
 def test_a_switch_changes_what_is_compiled_and_comes_back(name: str, shown: str) -> None:
     session = Session(scene=scene(shown))
     before = structure(session.scene)
@@ -59,13 +59,13 @@ def test_without_damping_there_is_no_tension_to_cut() -> None:
     assert variants("tension", bare) is None
 
 
-@pytest.mark.parametrize("name", ["wall", "", ACCOUNT, "D"])
+@pytest.mark.parametrize("name", ["wall", "", ACCOUNT_SWITCH, "D"])
 def test_what_is_no_effect_of_a_knob_is_refused(name: str) -> None:
     with pytest.raises(BadInput):
         changes(name, True, scene("sec2"), {})
 
 
-@pytest.mark.parametrize("name", EFFECTS)
+@pytest.mark.parametrize("name", SWITCHES)
 def test_the_two_kernels_differ_in_that_effect_only(name: str) -> None:
     shown = scene("sec2").evolve(F0=0.5, k=1000.0)
     pair = variants(name, shown)
@@ -78,8 +78,9 @@ def test_the_two_kernels_differ_in_that_effect_only(name: str) -> None:
 
 def test_slots_name_types_and_absences() -> None:
     found = {name: kind for name, _, kind in slots_of(scene("sec2"), balance=False)}
-    assert found == {"chain": "Chain", "dissipation": "LinearDashpot", "tension": None, "foundation": None,
-                     "preload": None, "driver": "Harmonic", "balance": None}
+    assert {name: kind for name, kind in found.items() if kind is not None} == {
+        "chain": "Chain", "dissipation": "LinearDashpot", "driver": "Harmonic"}
+    assert {"tension", "foundation", "preload", "balance"} <= set(found)
     assert {name: kind for name, _, kind in slots_of(scene("rig"), balance=True)}["balance"] == "Balance"
 
 

@@ -10,7 +10,7 @@ import pytest
 from host import FakeHost
 
 from app.serve.queues import Queue
-from app.session.task import Job, Task
+from app.session.task import Job, Task, say_nothing
 from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 
 
@@ -38,6 +38,10 @@ def task(host: Dashboard) -> Task:
     return Task(host, Queue("test", 1), host.say, "The measurement")  # type: ignore[arg-type]
 
 
+#: What is said of an error of granchain itself.
+FAULT = "The measurement failed because of an error in granchain (ZeroDivisionError); please report it."
+
+
 def failing(error: Exception) -> Callable[[Job], None]:
     """Work that ends with this."""
     def work(_: Job) -> None:
@@ -52,16 +56,34 @@ def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) ->
     assert host.said == [("measuring", ""), ("done", "")]
 
 
+def test_a_task_ends_when_the_visitor_leaves(host: Dashboard, task: Task) -> None:
+    """A page need not remember it, and nothing is computed for nobody."""
+    begun, ended = threading.Event(), threading.Event()
+
+    def work(job: Job) -> None:
+        begun.set()
+        while not job.stop:
+            time.sleep(0.001)
+        ended.set()
+
+    task.start(work)
+    assert begun.wait(20.0)
+    host.leave()
+    assert ended.wait(20.0) and not task.running
+    host.call_waiting()
+    assert host.said == []
+
+
 @pytest.mark.parametrize(("error", "sentence", "told"), [
     (NumbersFailed("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
     (BadInput("f must be positive."), "f must be positive.", False),
-    (ZeroDivisionError("1/0"), "The measurement failed because of an error in granchain.", True)])
+    (ZeroDivisionError("1/0"), FAULT, True)])
 def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: Dashboard,
                                                           task: Task) -> None:
     task.start(failing(error))
     host.run_callbacks_until(lambda: not task.running and not host.callbacks)
     assert host.said == [("failed", sentence)]
-    assert host.failures == ([error] if told else [])
+    assert host.faults == ([(error, "")] if told else []) and host.failures == []
 
 
 def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: Dashboard) -> None:
@@ -70,6 +92,11 @@ def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: Dashboard)
     task.start(failing(problem))
     host.run_callbacks_until(lambda: not task.running)
     assert host.failures == [problem]
+    fault = ZeroDivisionError("1/0")
+    task = Task(host, Queue("test", 1), say_nothing, "The measurement", host.failed)  # type: ignore[arg-type]
+    task.start(failing(fault))
+    host.run_callbacks_until(lambda: bool(host.faults))
+    assert host.faults == [(fault, FAULT)] and host.failures == [problem]
 
 
 def test_nothing_of_cancelled_work_arrives(host: Dashboard, task: Task) -> None:

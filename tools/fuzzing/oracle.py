@@ -19,6 +19,7 @@ from scipy.optimize import brentq
 from granchain_core import NumbersFailed, Scene
 from granchain_core.state import rest
 
+#: Power of the overlap in the damping force; not taken from granchain_core, which is judged by this.
 _POWER = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5, "none": 0.0}
 #: Places inside a step where contacts are looked at, so that a brief touch is seen.
 _LOOKS = np.linspace(0.0, 1.0, 9)[1:]

@@ -86,10 +86,6 @@ class AccuracyPage(Page):
         if self._task.cancel():
             self._say("stopped")
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     def visibility_changed(self, visible: bool) -> None:
         """When the page or its tab is opened, measure if nothing has been measured yet."""
         if not visible:

@@ -20,8 +20,8 @@ from ...pictures.naive_forces import naive_forces
 from ...pictures.theme import Theme
 from ...scripts import module
 
+#: If references differ by more than this, the motion is too sensitive to be followed for ten periods.
 _LOST = 1e-4
-"""If references differ by more than this, the motion is too sensitive to be followed for ten periods."""
 
 
 @cache
@@ -53,9 +53,9 @@ class Accuracy(FigurePart):
         self.update_state(rows=described_rows(rows), drawn=points(rows), **reference)
 
     def mark(self, rows: list[Row], asked: Annotations, stale: bool, sentence: str, used: str) -> None:
-        """Mark what is asked, cheapest and used now; `stale` if the rows belong to another chain.
+        """Mark the accuracy asked for, the cheapest setting and the one used now.
 
-        `sentence` tells the cheapest, `used` what is used now.
+        `stale`: the rows belong to another chain. `sentence` tells the cheapest, `used` what is used now.
         """
         self.send(type="asked", marks=marks(asked, rows), stale=stale, sentence=sentence, used=used)
 
@@ -85,7 +85,7 @@ def described_rows(rows: list[Row]) -> list[dict[str, Any]]:
 
 
 def described_reference(found: WorkPrecision) -> dict[str, Any]:
-    """The reference, the second one, and how far they are apart."""
+    """The reference, the second reference, and their distance."""
     known = math.isfinite(found.agreement)
     if found.disagreement:
         words = f"The second reference failed: {found.disagreement}"

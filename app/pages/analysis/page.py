@@ -51,12 +51,8 @@ class AnalysisPage(Page):
             "analysis-ask": self._ask, "analysis-compute": self._begin, "analysis-stop": lambda _: self._stop()}
         self.address_taken()
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     def scene_changed(self) -> None:
-        """The knobs have moved: what is under way is about another scene, and so are the values in the fields."""
+        """The knobs have moved: the work under way and the values in the fields belong to another scene."""
         self._stop()
         if self._question is not None:
             self._fields = offered_fields(self._question, self._host.session.scene, self._fields)
@@ -83,7 +79,7 @@ class AnalysisPage(Page):
                 self._say("none", str(problem))
 
     def address_taken(self) -> None:
-        """The address says what is asked, and with which values; what is on the page already stays."""
+        """Take question and values from the address; an answer that is on the page stays."""
         text = self._host.session.question
         if text and text != self._text:
             self._unasked = False

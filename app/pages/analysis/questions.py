@@ -14,7 +14,7 @@ from bokeh.models import LayoutDOM
 from granchain_core import BadInput, Scene, Stop, basins, lyapunov_spectrum, run, settle, spectrum, strobe_diagram
 from granchain_core.analysis.spectrum import FORCES
 from granchain_core.errors import check_range, unknown_name
-from granchain_core.pieces import ADAPTIVE_KERNELS, CURVE_KERNELS, FIXED_STEP_KERNELS, ORBIT_KERNELS
+from granchain_core.pieces import CURVE_KERNELS, ORBIT_KERNELS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.text import number_in, whole_in
@@ -24,13 +24,13 @@ from ...pictures.lyapunov import lyapunov as draw_lyapunov
 from ...pictures.spectrum import spectrum as draw_spectrum
 from ...pictures.strobe_diagram import strobe_diagram as draw_strobes
 from ...pictures.theme import Theme
+from ...serve.compiler import MOTION_PIECES
 
 #: Most beads of a chain, values of a knob, starts along an axis, periods and strobes that the page computes; the
 #: commands take more.
 MOST_BEADS, MOST_VALUES, MOST_STARTS, MOST_PERIODS, MOST_STROBES = 300, 200, 40, 2000, 500
 #: Periods recorded of a motion without a period, and samples a period, as of `granchain spectrum`.
 _RECORD, _SAMPLES = 64, 256
-_MOTION = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)
 
 Progress = Callable[[float], None]
 
@@ -170,7 +170,8 @@ def _spectrum_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
         return spectrum(run(chain, 0, _RECORD, _SAMPLES, start=settled.state, stop=stop), chosen["force"])
 
     return Plan(f"Spectrum of the {chosen['force']} force, {_about(chain)}",
-                _command("spectrum", chain, f"--force {chosen['force']}"), ((chain, _MOTION),), compute, draw_spectrum)
+                _command("spectrum", chain, f"--force {chosen['force']}"), ((chain, MOTION_PIECES),), compute,
+                draw_spectrum)
 
 
 # Lyapunov exponents
@@ -186,7 +187,7 @@ def _lyapunov_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
         return lyapunov_spectrum(chain, periods, stop=stop, progress=progress)
 
     return Plan(f"Lyapunov exponents, {_about(chain)}", _command("lyapunov", chain, f"--periods {periods}"),
-                ((chain, (*_MOTION, ORBIT_KERNELS)),), compute, draw_lyapunov)
+                ((chain, (*MOTION_PIECES, ORBIT_KERNELS)),), compute, draw_lyapunov)
 
 
 # Strobes over a knob
@@ -212,7 +213,8 @@ def _strobe_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
 
     words = f"--over {_axis(knob, (low, high), count)} --start {start} --keep {keep} --bead {bead}"
     return Plan(f"Strobes of bead {bead} over {knob}, {chain.name}", _command("strobes", chain, words),
-                tuple((one, _MOTION) for one in ends), compute, lambda found, theme: draw_strobes(found, bead, theme))
+                tuple((one, MOTION_PIECES) for one in ends), compute,
+                lambda found, theme: draw_strobes(found, bead, theme))
 
 
 # Basins in a plane of starts
@@ -239,7 +241,7 @@ def _basin_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
 
     words = f"--x {_axis(x, x_ends, count)} --y {_axis(y, y_ends, count)}"
     return Plan(f"Basins over {x} and {y}, {_about(chain)}", _command("basins", chain, words),
-                ((chain, (*_MOTION, CURVE_KERNELS, ORBIT_KERNELS)),), compute, draw_basins)
+                ((chain, (*MOTION_PIECES, CURVE_KERNELS, ORBIT_KERNELS)),), compute, draw_basins)
 
 
 QUESTIONS = {one.name: one for one in (

@@ -24,7 +24,7 @@ from ...session.message_checks import listed, whole
 from ...session.progress import Status, StatusWords
 from ...session.session import slider_range, without_frequency
 from ...session.task import Job, Task
-from .view import LONGEST_PERIOD, Branches
+from .view import LONGEST_BRANCH_PERIOD, Branches
 
 WORDS = StatusWords("the kernels for branches", 40, kept="the orbits found so far")
 NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no branch. Choose a period, and an orbit of "
@@ -73,12 +73,12 @@ class BranchesPage(Page):
             self._view.update_state(now=now.f, stale=stale)
 
     def picture_ready(self, picture: Settled) -> None:
-        """Begin by itself where the page was opened before the motion had settled."""
+        """Follow the orbit if the page was opened before the motion had settled."""
         if self._waits and picture.final:
             self._begin()
 
     def curve_ready(self) -> None:
-        """Draw the curve behind the branches, where somebody has opened the page."""
+        """Draw the curve behind the branches, if the page has been opened."""
         if self._begun or self._waits:
             self._draw_curve()
 
@@ -87,14 +87,10 @@ class BranchesPage(Page):
         if self._task.cancel():
             self._say("stopped")
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     # What the visitor does
 
     def _opened(self) -> None:
-        """The first time, follow the orbit on the screen without being asked."""
+        """Follow the orbit on the screen when the page is opened for the first time."""
         self._draw_curve()
         if self._begun:
             return
@@ -117,7 +113,7 @@ class BranchesPage(Page):
     def _start(self, message: dict[str, Any]) -> None:
         period = message.get("period")
         if period is not None:
-            period = whole("period of a branch", period, 1, LONGEST_PERIOD)
+            period = whole("period of a branch", period, 1, LONGEST_BRANCH_PERIOD)
         scene, picture = self._host.session.scene, self._host.session.picture
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)

@@ -13,7 +13,7 @@ from ...pictures.theme import Theme
 from ...scripts import module
 
 #: Longest period that can be asked for here, in drive periods.
-LONGEST_PERIOD = 8
+LONGEST_BRANCH_PERIOD = 8
 
 
 @cache
@@ -30,4 +30,4 @@ class Branches(FigurePart):
     empty_figures = staticmethod(empty_figures)
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"longest_period": LONGEST_PERIOD, "special": list(SPECIAL)}, **params)
+        super().__init__(received, state={"longest_period": LONGEST_BRANCH_PERIOD, "special": list(SPECIAL)}, **params)

@@ -22,7 +22,7 @@ from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import quoted
 from ...session.progress import COMPUTING, READY, UNDER_WAY
-from ...session.switches import EFFECTS, present, refusal, variants
+from ...session.switches import SWITCHES, present, refusal, variants
 from ...session.task import Job, Task
 
 
@@ -51,10 +51,10 @@ class EffectsPage(Page):
     @property
     def _progress_words(self) -> str:
         if self._compiling:
-            return f"compiling a kernel for {EFFECTS[self._compiling].title}"
+            return f"compiling a kernel for {SWITCHES[self._compiling].title}"
         if self.measuring:
-            return f"measuring {EFFECTS[self.measuring].title}"
-        possible = sum(variants(name, self._host.session.scene) is not None for name in EFFECTS)
+            return f"measuring {SWITCHES[self.measuring].title}"
+        possible = sum(variants(name, self._host.session.scene) is not None for name in SWITCHES)
         return f"{len(self._costs)} of {possible} effects measured"
 
     def scene_changed(self) -> None:
@@ -76,14 +76,9 @@ class EffectsPage(Page):
         if visible:
             self._poll(self._round)
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._visible = False
-        self._task.cancel()
-
     def _switch(self, message: dict[str, Any]) -> None:
         name, on = message.get("name"), message.get("value")
-        if not isinstance(name, str) or name not in EFFECTS or not isinstance(on, bool):
+        if not isinstance(name, str) or name not in SWITCHES or not isinstance(on, bool):
             raise BadInput(f"There is no effect {quoted(name)} to switch.")
         try:
             session = self._host.session
@@ -109,7 +104,7 @@ class EffectsPage(Page):
         if not COMPILER.has(scene, *PICTURE_PIECES):  # the picture's own kernels come first
             return
         self._compiling = ""
-        for name in EFFECTS:
+        for name in SWITCHES:
             pair = variants(name, scene)
             if name in self._costs or name in self._failed or pair is None:
                 continue
@@ -153,7 +148,7 @@ class EffectsPage(Page):
     def _show(self) -> None:
         session = self._host.session
         self._view.update_state(panel={
-            "effects": [self._effect(name, session.scene) for name in EFFECTS],
+            "effects": [self._effect(name, session.scene) for name in SWITCHES],
             "slots": [{"slot": name, "title": title, "type": kind}
                       for name, title, kind in slots_of(session.scene, session.energy_account)],
             "always": list(ALWAYS),
@@ -163,7 +158,7 @@ class EffectsPage(Page):
         })
 
     def _effect(self, name: str, scene: Scene) -> dict[str, Any]:
-        effect, costs = EFFECTS[name], self._costs.get(name, {})
+        effect, costs = SWITCHES[name], self._costs.get(name, {})
         refused = refusal(name, scene)
         return {
             "name": name, "slot": effect.slot, "title": effect.title, "meaning": effect.meaning, "refused": refused,

@@ -30,6 +30,7 @@ class HardCasesPage(Page):
         self._view = view
         self._process = CaseProcess()
         self._task = Task(host, MEASUREMENTS, self._end, "The case")
+        host.on_close(self._give_up)
         self._shown: dict[str, dict[str, Any]] = {}
         self._asked = 0
         self.rows: dict[str, list[Check]] = {}
@@ -53,10 +54,6 @@ class HardCasesPage(Page):
             self._put(name, **WORDS.of("stopped"))
         self.waiting = []
         self._show()
-
-    def close(self) -> None:
-        """The visitor left."""
-        self._give_up()
 
     def _give_up(self) -> None:
         self._task.cancel()

@@ -35,7 +35,7 @@ from .view import cells_message, described, head_message
 COLUMNS, ROWS = 60, 40
 #: Random states from which attractors are looked for.
 _RANDOM_STATES = 64
-#: The same for a scene that cannot be computed in batches.
+#: Random states for a scene that cannot be computed in batches.
 _FEW_RANDOM_STATES = 12
 
 WORDS = StatusWords(kept="the cells computed so far", instead={"waiting": "waiting for the curve …"})
@@ -73,12 +73,6 @@ class MapPage(Page):
             "map-attractors": lambda _: self._find(), "map-load": self._load,
         }
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._visible = False
-        self._diagram.cancel()
-        self._search.cancel()
-
     def scene_changed(self) -> None:
         """A knob has moved: any but f and A0 changes the diagram, and any at all changes the attractors."""
         if not self._visible:
@@ -110,7 +104,7 @@ class MapPage(Page):
         self._show_attractors("done" if self._found else "none")
 
     def theme_changed(self, theme: Theme) -> None:
-        """Another theme: the figure has its colours from here."""
+        """Send the figure again: its colours are set here."""
         changed, self._theme = theme != self._theme, theme
         if changed and self._visible and self._grid is not None:
             self._send_all()

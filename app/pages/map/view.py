@@ -13,7 +13,7 @@ from granchain_core.regime import modulus_words
 from ...format import short_error
 from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models
 from ...pictures.item import figure_item
-from ...pictures.regimes import REGIMES, regime_key
+from ...pictures.regimes import REGIME_MARKS, regime_key
 from ...pictures.theme import Theme
 
 
@@ -45,7 +45,7 @@ def described(attractor: Attractor) -> dict[str, Any]:
     elif regime.lyapunov is not None:
         words.append(f"Lyapunov exponent {regime.lyapunov[0]:+.3f} ± {regime.lyapunov[1]:.3f} per period")
     return {
-        "colour": REGIMES[regime_key(regime.name, period)][1], "words": ", ".join(words),
+        "colour": REGIME_MARKS[regime_key(regime.name, period)][1], "words": ", ".join(words),
         "force": f"{attractor.max_output_force:.4g} N" + (f", error {short_error(error)}" if error else ""),
         "share": attractor.share, "share_words": f"{100 * attractor.share:.0f} ± {100 * attractor.share_error:.0f} %",
         "from": [origin.name for origin in attractor.origins if not origin.name.startswith("random")],

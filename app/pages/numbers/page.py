@@ -20,14 +20,14 @@ class NumbersPage(Page):
         self.actions: Actions = {}
 
     def picture_ready(self, picture: Settled) -> None:
-        """Another motion."""
+        """Describe the new motion."""
         if picture.final:
             run = picture.run
             tables = {"forces": forces_over_time(run), "beads": beads(run)} if self._visible else {}
             self._view.send(type="numbers", summary=summary(run), **tables)
 
     def visibility_changed(self, visible: bool) -> None:
-        """The tables are computed only while somebody looks."""
+        """Compute the tables only while somebody looks."""
         self._visible = visible
         picture = self._host.session.picture
         if visible and picture is not None:

@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from granchain_core import Run
+from granchain_core.scene.effects import effects_of
 
 from ...format import in_words
 
 #: Instants of a table over time; the file has all.
 _INSTANTS = 25
-#: A value below this part of the largest of its series is what rounding left of zero, as of the sine of a full turn.
+#: A value below this part of the largest of its series is a rounded zero, such as the sine of a full turn.
 _ROUNDING = 1e-12
+#: Effects with which contacts alone lose energy: the others store it, or cut the damped force.
+_ONLY_CONTACTS_LOSE = {"dashpot", "tension", "foundation", "preload"}
 #: Most beads of a table; the file has all.
 _BEADS = 200
 
@@ -27,7 +30,7 @@ def summary(run: Run) -> str:
 
 
 def _forces(run: Run) -> str:
-    """The motion, and the largest forces at both ends with their ratio, which is none of energies."""
+    """The motion, and the largest forces at both ends with their ratio, which is not a ratio of energies."""
     pushed, arrived = (in_words(force, "N", 3) for force in (run.max_input_force, run.max_output_force))
     if not run.scene.is_driven:
         return (f"Nothing drives the chain; {_time(run, -1)} from its start are shown. The force on bead 1 from the "
@@ -45,8 +48,12 @@ def _travel(run: Run) -> str:
 
 
 def _where_energy_goes(run: Run) -> str:
-    """What becomes of the driver's work in a steady motion: contacts alone lose energy, and the wall does not move."""
-    if not (run.scene.is_driven and run.scene.has_dissipation):
+    """What becomes of the work of the driver in a steady motion, if only the damping of contacts can lose energy.
+
+    The wall takes none, because it does not move.
+    """
+    effects = {effect.name for effect in effects_of(run.scene)}
+    if not run.scene.is_driven or "dashpot" not in effects or effects - _ONLY_CONTACTS_LOSE:
         return ""
     return " On average, the damping of the contacts takes all the energy from the driver; the wall takes none."
 
@@ -59,13 +66,13 @@ def forces_over_time(run: Run) -> list[list[str]]:
 
 
 def _value(values: np.ndarray, row: int, unit: str) -> str:
-    """A value of a series; what rounding left of a zero is a zero."""
+    """A value of a series; a rounded zero is shown as zero."""
     value = float(values[row])
     return f"0 {unit}" if abs(value) <= _ROUNDING * float(np.abs(values).max()) else in_words(value, unit, 3)
 
 
 def beads(run: Run) -> list[list[str]]:
-    """For every bead its number, largest sampled displacement, speed and kinetic energy, and the time of the last."""
+    """For each bead the largest displacement, speed and kinetic energy, as sampled, and when it has that energy."""
     energy = run.kinetic_energy
     return [[str(bead + 1), in_words(float(np.abs(run.displacement[:, bead]).max()), "m", 3),
              in_words(float(np.abs(run.velocity[:, bead]).max()), "m/s", 3),

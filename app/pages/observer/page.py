@@ -14,7 +14,7 @@ from ...session.host import Host
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .view import Observer
-from .work import ObserverRun, Step
+from .work import ObserverRun, ObserverStep
 
 WORDS = StatusWords("the observer's kernels", 10)
 
@@ -24,7 +24,7 @@ class _Moved:
     """A step of a run, and whether the run began with it."""
 
     run: ObserverRun
-    step: Step
+    step: ObserverStep
     began: bool
 
 
@@ -50,10 +50,6 @@ class ObserverPage(Page):
         self._view.update_state(kappa=scene.kappa)
         if self._run is not None and self._run.scene.digest != scene.digest:
             self._view.update_state(sentence="", predicted=None, measured=None)
-
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
 
     def _wish(self, name: str) -> None:
         self._wishes.append(name)

@@ -19,10 +19,10 @@ from ...pictures.energies import ENERGY_COLOURS
 from ...pictures.observer import observer, prediction
 from ...pictures.theme import Theme
 from ...scripts import module
-from .work import NUDGE, Step
+from .work import NUDGE, ObserverStep
 
+#: Drive periods after a start during which no multiplier describes the distance.
 _TRANSIENT = 2
-"""Drive periods after a start during which no multiplier describes the distance."""
 
 
 @cache
@@ -42,7 +42,7 @@ class Observer(FigurePart):
         super().__init__(received, state=first_state(), **params)
         self._anchor: tuple[float, float] | None = None
 
-    def step(self, step: Step, scene: Scene, began: bool, since: int, factor: float | None) -> None:
+    def step(self, step: ObserverStep, scene: Scene, began: bool, since: int, factor: float | None) -> None:
         """Send one period, and the prediction from the end of the transient, two periods after the start."""
         self.need_figures()
         if began:
@@ -59,7 +59,7 @@ def first_state() -> dict[str, Any]:
             "progress": "", "sentence": ""}
 
 
-def step_message(step: Step, scene: Scene, began: bool) -> dict[str, Any]:
+def step_message(step: ObserverStep, scene: Scene, began: bool) -> dict[str, Any]:
     """One drive period for the browser, all series in one array: rows of the chain's, then of the observer's."""
     push = step.largest_input
     factor, letter = prefixed(push)

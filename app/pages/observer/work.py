@@ -30,7 +30,7 @@ _REMEMBERED = 400
 
 
 @dataclass(frozen=True)
-class Step:
+class ObserverStep:
     """One drive period: T rows of chain and observer in SI, of their distance, and the period's number at its start.
 
     `largest_input` is the largest input force [N], also where it jumps between two rows.
@@ -139,7 +139,7 @@ class ObserverRun:
         first, end = linear_window(np.sqrt((strobes**2).sum(axis=1)))
         return strobes[first:end]
 
-    def step(self) -> Step:
+    def step(self) -> ObserverStep:
         """Compute the next drive period."""
         engine, n = self.pair.engine, self.scene.N
         next_period(engine.log.peaks)
@@ -154,7 +154,7 @@ class ObserverRun:
         u, v = rows.displacement * scales.length, rows.velocity * scales.velocity
         self._largest_input = max(self._largest_input, float(engine.maxima[0] * scales.force))
         force, half_mass = rows.force * scales.force, 0.5 * self.scene.masses()
-        return Step(
+        return ObserverStep(
             number=number, samples=self.samples,
             drive=self.scene.A0 * np.sin(2 * np.pi * np.arange(self.samples + 1) / self.samples),
             chain=u[:, :n], observer=u[:, n + 1 :], chain_force=force[:, : n + 1],

@@ -15,7 +15,7 @@ from .view import Probe
 
 
 class ProbePage(Page):
-    """It follows the settled picture while it is on the screen, so that it costs nothing otherwise."""
+    """Follows the settled picture while it is on the screen; at other times it costs nothing."""
 
     def __init__(self, host: Host, view: Probe) -> None:
         self._host = host

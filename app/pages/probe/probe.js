@@ -72,6 +72,7 @@ export function render({ model }) {
   model.on("state", () => probe.show());
   model.on("figures", () => probe.show());
   model.on("msg:custom", (message) => {
+    if (message.type !== "probe") return;
     probe.drawn = message.drawn;
     probe.show();
   });

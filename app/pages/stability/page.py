@@ -33,7 +33,7 @@ from .view import (
     section_points,
     verdict,
 )
-from .work import PHASES, Analysis, Target, analyse, search, section_of, transient
+from .work import PHASES, OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 
 _LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
@@ -41,7 +41,7 @@ WORDS = StatusWords("the tangent flow", 20)
 
 
 class StabilityPage(Page):
-    """While it is on the screen, it analyses every picture that stays; a moving knob cancels the analysis."""
+    """Analyses every picture that stays, while it is on the screen; a moving knob cancels the analysis."""
 
     def __init__(self, host: Host, view: Stability) -> None:
         self._host = host
@@ -55,8 +55,8 @@ class StabilityPage(Page):
         self._picture: Settled | None = None
         self._start: State | None = None
         self._analysed: State | None = None
-        self._target: Target | None = None
-        self._analysis: Analysis | None = None
+        self._target: OrbitTarget | None = None
+        self._analysis: OrbitAnalysis | None = None
         self._section: Section | None = None
         self._trail = Trail()
         self.status: Status = "none"
@@ -108,11 +108,6 @@ class StabilityPage(Page):
         else:
             self._begin()
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._visible = False
-        self._give_up()
-
     def _give_up(self) -> None:
         self._orbits.cancel()
         self._sections.cancel()
@@ -129,20 +124,20 @@ class StabilityPage(Page):
         self._bead = min(self._bead, picture.run.scene.N)
         self._view.update_state(stale=True, beads=picture.run.scene.N)
         if picture.regime.name == "periodic" and picture.regime.period is not None:
-            self._follow(Target(picture.run.scene, picture.regime.period, picture.state, followed=True))
+            self._follow(OrbitTarget(picture.run.scene, picture.regime.period, picture.state, followed=True))
         else:
             self._target = None
             self._clear(no_multipliers(picture))
         self._sections.start(partial(self._make_section, picture, self._start))
 
-    def _follow(self, target: Target) -> None:
+    def _follow(self, target: OrbitTarget) -> None:
         self._target = target
         self._say("computing")
         self._orbits.start(partial(self._analyse, target, self._observer, self._rank))
 
     # In a worker thread
 
-    def _analyse(self, target: Target, observer: bool, rank: int, job: Job) -> None:
+    def _analyse(self, target: OrbitTarget, observer: bool, rank: int, job: Job) -> None:
         self._compile(target.scene, job)
         job.next_tick(self._arrived, analyse(target, observer, rank, job.stop))
 
@@ -161,13 +156,13 @@ class StabilityPage(Page):
 
     # What comes back
 
-    def _arrived(self, found: Analysis | Target | Section) -> None:
+    def _arrived(self, found: OrbitAnalysis | OrbitTarget | Section) -> None:
         if self._picture is None:
             return
         with unlocked():
-            if isinstance(found, Analysis):
+            if isinstance(found, OrbitAnalysis):
                 self._show(found)
-            elif isinstance(found, Target):
+            elif isinstance(found, OrbitTarget):
                 self._rank = 0
                 self._follow(found)
             else:
@@ -183,12 +178,12 @@ class StabilityPage(Page):
                 self._show_evidence()
 
     def _section_ended(self, status: Status, sentence: str) -> None:
-        """Report a failure; how the analysis stands is another matter."""
+        """Report a failure; it says nothing about the analysis."""
         if status == "failed":
             with unlocked():
                 self._view.update_state(failure=sentence)
 
-    def _show(self, analysis: Analysis) -> None:
+    def _show(self, analysis: OrbitAnalysis) -> None:
         self._analysis, self.status = analysis, "done"
         orbit = analysis.orbit
         if analysis.target.followed:

@@ -73,7 +73,8 @@ class StabilityPage {
   receive(message) {
     if (message.type === "mode") this.mode.load(message);
     else if (message.type === "no-mode") this.mode.forget();
-    else this.section.load(message.type === "section" ? message : null);
+    else if (message.type === "section") this.section.load(message);
+    else if (message.type === "no-section") this.section.load(null);
     this.mode.showTitle(this.model.state.rank);
     this.root.classList.toggle("irregular", !this.mode.mode);
     if (window.granchain.overlay === "stability") this.redraw();

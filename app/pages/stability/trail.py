@@ -17,7 +17,7 @@ class Trail:
         self._scene = ""
 
     def follow(self, found: np.ndarray, period: int, scene: str) -> None:
-        """Another orbit that the chain follows."""
+        """Add the orbit that the chain follows now."""
         if scene != self._scene:
             self._sets, self._last, self._scene = [], None, scene
         if self._last is not None and not _same(self._last[1], found):

@@ -26,7 +26,7 @@ from ...pictures.multipliers import multiplier_words, plane, plane_state
 from ...pictures.section import SectionPoints, close_up, section, section_state
 from ...pictures.theme import Theme
 from ...scripts import module
-from .work import PHASES, Analysis
+from .work import PHASES, OrbitAnalysis
 
 
 @cache
@@ -61,7 +61,7 @@ def period_words(orbit: Orbit) -> str:
 
 
 def verdict(orbit: Orbit) -> str:
-    """Whether a disturbance of the orbit dies out and, if it does not, which way it leaves."""
+    """Whether a disturbance of the orbit dies out and, if not, in which way it grows."""
     leading = complex(orbit.multipliers[0])
     size = abs(leading)
     if orbit.multiplier_errors is not None and not orbit.stability_certain:
@@ -79,7 +79,7 @@ def verdict(orbit: Orbit) -> str:
 
 
 def _observed(orbit: Orbit) -> str:
-    """The observer's stability, where it was asked for."""
+    """The observer's stability, if it was asked for."""
     if orbit.observer_multipliers is None:
         return ""
     size = float(np.abs(orbit.observer_multipliers).max())
@@ -117,7 +117,7 @@ def multiplier_sentence(orbit: Orbit, rank: int) -> str:
     return f"ringed: μ = {value}, |μ| {modulus}"
 
 
-def evidence(picture: Settled, analysis: Analysis | None, section: Section | None) -> list[dict[str, str]]:
+def evidence(picture: Settled, analysis: OrbitAnalysis | None, section: Section | None) -> list[dict[str, str]]:
     """Name, value and meaning of everything on which the verdict rests; what was not computed has no row."""
     regime, rows = picture.regime, []
 
@@ -153,7 +153,7 @@ def evidence(picture: Settled, analysis: Analysis | None, section: Section | Non
     return rows
 
 
-def _orbit_rows(row: Any, picture: Settled, analysis: Analysis) -> None:
+def _orbit_rows(row: Any, picture: Settled, analysis: OrbitAnalysis) -> None:
     orbit = analysis.orbit
     size = abs(orbit.multipliers[0])
     seen = picture.regime.decay

@@ -16,20 +16,20 @@ from granchain_core.steady.poincare import Section, iter_section
 from granchain_core.steady.settling.regime_decisions import EXAMINED_AFTER
 from granchain_core.stop import Stop
 
+#: Phases of the drive period at which the section is kept.
 PHASES = 48
-"""Phases of the drive period at which the section is kept."""
+#: Fewest periods of a section, and those of one whose motion is not periodic.
 _FEWEST, _CLOUD = 24, 1200
-"""Fewest periods of a section, and those of one whose motion is not periodic."""
+#: Values of one mode; beyond it its samples lie farther apart.
 _MODE_VALUES = 60_000
-"""Values of one mode; beyond it its samples lie farther apart."""
+#: A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8.
 _TRUSTED = 1e-4
-"""A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8."""
+#: If Newton's method ends farther than this from a settled motion, it has found another orbit.
 _SAME_ORBIT = 1e-3
-"""If Newton's method ends farther than this from a settled motion, it has found another orbit."""
 
 
 @dataclass(frozen=True)
-class Target:
+class OrbitTarget:
     """The orbit asked for, near `start`: the one that is followed, or one that a search found with these residuals."""
 
     scene: Scene
@@ -40,10 +40,10 @@ class Target:
 
 
 @dataclass(frozen=True, eq=False)
-class Analysis:
+class OrbitAnalysis:
     """An orbit, one of its modes, its points, its distance from the start of the search, and the time taken [s]."""
 
-    target: Target
+    target: OrbitTarget
     orbit: Orbit
     mode: Mode
     points: Section
@@ -51,7 +51,7 @@ class Analysis:
     wall_s: float
 
 
-def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
+def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> OrbitAnalysis:
     """Multipliers, the mode at place `rank` and the points of one orbit.
 
     Raises `BadInput` for a scene without multipliers, `NumbersFailed` where Newton's method ends elsewhere, or where a
@@ -70,7 +70,8 @@ def analyse(target: Target, observer: bool, rank: int, stop: Stop) -> Analysis:
     if not found.closure <= _TRUSTED * max(1.0, abs(found.multiplier)):
         raise NumbersFailed("No multipliers are shown: after one orbit a small disturbance differs from their "
                             f"prediction by {found.closure:.1g} of its size.", "contradicted")
-    return Analysis(target, orbit, found, orbit_section(orbit, PHASES, stop), distance, time.perf_counter() - began)
+    section = orbit_section(orbit, PHASES, stop)
+    return OrbitAnalysis(target, orbit, found, section, distance, time.perf_counter() - began)
 
 
 def _apart(one: State, other: State) -> float:
@@ -93,7 +94,7 @@ def transient(picture: Settled, section: Section) -> int:
     return min(EXAMINED_AFTER, section.periods)
 
 
-def search(picture: Settled, section: Section | None, period: int, stop: Stop) -> Target:
+def search(picture: Settled, section: Section | None, period: int, stop: Stop) -> OrbitTarget:
     """An orbit near the motion shown, which it does not follow.
 
     Raises what `search_orbit` raises, and `NumbersFailed` where the search ends on the orbit that is followed.
@@ -108,4 +109,4 @@ def search(picture: Settled, section: Section | None, period: int, stop: Stop) -
     if picture.regime.name == "periodic" and min(_apart(found.state, state) for state in here) < _SAME_ORBIT:
         raise NumbersFailed(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
                             f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
-    return Target(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)
+    return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)

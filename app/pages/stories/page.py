@@ -13,7 +13,7 @@ from ...serve.queues import ANALYSES
 from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import whole
-from ...session.stories import Step, Story, state_before, stories, told_words
+from ...session.stories import Story, StoryStep, state_before, stories, told_words
 from ...session.task import Job, Task
 
 
@@ -27,7 +27,7 @@ def story_places() -> tuple[str, ...]:
     return tuple(f"{story.name}.{number}" for story in _told()[0] for number in range(1, len(story.steps) + 1))
 
 
-def story_step(place: str) -> Step:
+def story_step(place: str) -> StoryStep:
     """The step that has this name in a link."""
     name, _, number = place.partition(".")
     return next(story for story in _told()[0] if story.name == name).steps[int(number) - 1]
@@ -63,10 +63,6 @@ class StoriesPage(Page):
         name, _, number = self._host.session.story.partition(".")
         self._view.update_state(story=self._words(self._stories[name], int(number)) if name else None)
 
-    def close(self) -> None:
-        """The visitor left."""
-        self._task.cancel()
-
     def _close(self) -> None:
         self._host.session.story = ""
         self.address_taken()
@@ -92,10 +88,10 @@ class StoriesPage(Page):
             self._task.cancel()
             self._show(step, None)
 
-    def _through(self, step: Step, job: Job) -> None:
+    def _through(self, step: StoryStep, job: Job) -> None:
         """In a worker thread: settle the chain where it comes from."""
         job.compile(step.scene, *PICTURE_PIECES)
         job.next_tick(self._show, step, state_before(step, job.stop))
 
-    def _show(self, step: Step, state: State | None) -> None:
+    def _show(self, step: StoryStep, state: State | None) -> None:
         self._host.open(step.scene, state, step.curves)

@@ -37,7 +37,7 @@ from .step import (
     workspace,
 )
 
-#: Power of the overlap in g(δ), times four.
+#: Power of the overlap in g(δ), times four; not taken from granchain_core, which is judged by this.
 _POWER = {"linear": 0, "tsuji": 1, "kuwabara-kono": 2, "none": 0}
 #: A step is at most this part of a period. It grows and shrinks at most by these factors.
 _LONGEST, _GROWS, _SHRINKS, _SAFETY = 1.0 / 16.0, 6.0, 0.2, 0.9

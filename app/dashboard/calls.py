@@ -1,0 +1,61 @@
+"""Calls with the document of one visitor locked, until the visitor leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from bokeh.document import Document
+
+from ..serve.changes import gathered
+from ..serve.channel import Channel
+from ..serve.document_lock import with_document_lock
+
+
+class Calls:
+    """Calls actions with the document locked. Their changes leave as one message; `failed` takes their errors."""
+
+    def __init__(self, document: Document, failed: Callable[[Exception], None]) -> None:
+        self._document = document
+        self._failed = failed
+        self._channel = Channel(document)
+        self._closing: list[Callable[[], object]] = []
+        self._closed = False
+
+    def now(self, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` as soon as the document may be changed; on the event loop."""
+        with_document_lock(self._document, partial(self.guarded, action, *arguments))
+
+    def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` in the next turn of the event loop; from any thread."""
+        if not self._closed:
+            self._channel.call_soon(partial(self.guarded, action, *arguments))
+
+    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` so many seconds from now; on the event loop."""
+        if not self._closed:
+            self._channel.call_later(seconds, partial(self.guarded, action, *arguments))
+
+    def guarded(self, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` with the document locked already."""
+        if self._closed:
+            return
+        with gathered(self._document):
+            try:
+                action(*arguments)
+            except Exception as error:
+                self._failed(error)
+
+    def on_close(self, action: Callable[[], object]) -> None:
+        """Call `action` when the visitor leaves."""
+        self._closing.append(action)
+
+    def close(self) -> None:
+        """The visitor left: call what was given to `on_close`, and nothing from then on."""
+        if self._closed:
+            return
+        self._closed = True
+        self._channel.close()
+        for action in self._closing:
+            action()
+        self._closing.clear()

@@ -1,0 +1,151 @@
+"""Another scene or other knobs, as the visitor, a page or an address asks, and what follows from them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from granchain_core import Scene, State
+
+from ..curve.page import CurveController
+from ..parts.knobs import beside_knobs, knob_state
+from ..session.hooks import Actions, Page
+from ..session.session import Session, clicked_frequency
+from .addresses import take_address
+from .layout import Views
+from .main_picture import Pictures
+from .pinned import Pinned
+
+
+class SceneChanges:
+    """Turns the knobs of one visitor, opens scenes, and informs the pages and the other parts of the dashboard."""
+
+    def __init__(self, session: Session, views: Views, pictures: Pictures, curves: CurveController, pinned: Pinned,
+                 pages: Sequence[Page], say: Callable[[str], None]) -> None:
+        self._session = session
+        self._views = views
+        self._pictures = pictures
+        self._curves = curves
+        self._pinned = pinned
+        self._pages = pages
+        self._say = say
+        self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
+
+    def show(self, scene: Scene, state: State | None, mode: str) -> None:
+        """Turn the knobs to `scene` and show its motion; see `Host.show`."""
+        self._session.set_mode(mode)
+        self._session.scene = scene
+        self._follow_mode(state)
+        self._knobs_turned(state)
+
+    def open(self, scene: Scene, state: State | None, curves: str) -> None:
+        """Open a scene, maybe another preset; see `Host.open`."""
+        session = self._session
+        another = scene.name != session.scene.name
+        session.open(scene)
+        self._pictures.end_live()
+        self._say("")
+        if another:
+            session.curves = curves or "auto"
+            self.opened(state)
+            return
+        if curves:
+            session.curves = self._curves.select(scene, curves)
+        self._knobs_turned(state)
+
+    def opened(self, start: State | None = None) -> None:
+        """Another preset is the session's scene: the whole dashboard shows it, its motion from `start`."""
+        scene = self._session.scene
+        self._views.scales.forget()
+        self._views.knobs.state = knob_state(scene)
+        self._views.tabs.update_state(look_at=scene.look_at, paper=scene.paper)
+        self._tell_pages()
+        self._session.curves = self._curves.open(scene, self._session.curves)
+        self._views.header.show_session(self._session)
+        if self._session.mode == "live":
+            self._pictures.begin_live()
+        self.compute(start)
+
+    def choose_frequency(self, frequency: object) -> None:
+        """Turn the knob f to a place on the curve."""
+        self._session.change("f", clicked_frequency(self._session.scene, frequency))
+        self._send_knob_values()
+        self._changed()
+
+    def compute(self, start: State | None = None) -> None:
+        """Request a picture of the knobs as they are."""
+        for page in self._pages:
+            page.picture_requested()
+        self._pictures.compute(start)
+
+    # What the visitor does
+
+    def _set(self, message: dict[str, Any]) -> None:
+        try:
+            self._session.change(str(message.get("name")), message.get("value"))
+            self._changed()
+        finally:
+            self._send_knob_values(message.get("seq"))
+
+    def _restore(self, message: dict[str, Any]) -> None:
+        self._session.restore(str(message.get("name")))
+        self._send_knob_values(message.get("seq"))
+        self._changed()
+
+    def _scene(self, message: dict[str, Any]) -> None:
+        self._session.choose(message.get("name"))
+        self._session.curves = "auto"
+        self._say("")
+        self.opened()
+
+    def _go(self, message: dict[str, Any]) -> None:
+        """A step back or forward: the session becomes what the address says, its picture to the last digit."""
+        session, name, curves = self._session, self._session.scene.name, self._session.curves
+        start, refused = take_address(session, str(message.get("query", "")))
+        self._follow_mode()
+        for page in self._pages:
+            page.address_taken()
+        self._pinned.show()
+        if session.scene.name != name:
+            self.opened(start)
+        else:
+            if session.curves != curves:
+                session.curves = self._curves.select(session.scene, session.curves)
+            self._knobs_turned(start)
+        self._say(" ".join(refused))
+        self._views.header.send(type="address-applied", query=session.link)
+
+    # What follows
+
+    def _follow_mode(self, state: State | None = None) -> None:
+        """In live mode there is a live run, a new one if it is to begin from `state`; otherwise there is none."""
+        if self._session.mode == "settled":
+            self._pictures.end_live()
+        elif state is not None or self._pictures.live is None:
+            self._pictures.begin_live(state)
+
+    def _knobs_turned(self, start: State | None) -> None:
+        """The knobs were turned, but not by the visitor: the bar and the knobs show it, too."""
+        self._views.header.show_session(self._session)
+        self._send_knob_values()
+        self._changed(start)
+
+    def _changed(self, start: State | None = None) -> None:
+        self.compute(start)
+        if self._session.sentence:
+            self._say("")
+        self._tell_pages()
+        self._curves.moved(self._session.scene)
+
+    def _tell_pages(self) -> None:
+        scene = self._session.scene
+        self._pinned.scene_changed()
+        for page in self._pages:
+            page.scene_changed()
+        self._views.equation.update_state(latex=scene.equation_latex())
+        self._views.tabs.update_state(validity=list(scene.validity()))
+
+    def _send_knob_values(self, seq: object = None) -> None:
+        scene = self._session.scene
+        self._views.knobs.send(type="values", seq=seq, values=dict(scene.knobs), **beside_knobs(scene),
+                               query=self._session.link)
