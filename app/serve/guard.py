@@ -207,7 +207,7 @@ class GuardedSocket(Guard):
 
 
 def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:
-    """The handler with a guard before it; a handler of files also compresses them."""
+    """The handler class with a guard before it; a handler of files also sends them compressed."""
     guard = GuardedSocket if issubclass(handler, WSHandler) else Guard
     files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
     return type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})

@@ -35,10 +35,10 @@ class _Computation(Generic[Item]):
 
 
 class Shared(Generic[Item]):
-    """Computations by their keys. Of a finished one, `kept` selects the items that are kept; `size` is their memory.
+    """Computations by their keys. `kept` chooses which items of a finished one are kept; `size` gives their memory.
 
-    Finished ones take at most `memory` bytes; the least recently used is dropped first. With `turns` the computations
-    take turns (turns.py).
+    Finished computations take at most `memory` bytes; the least recently used is dropped first. With `turns` the
+    computations take turns (turns.py).
     """
 
     def __init__(self, queue: Queue, memory: int, size: Callable[[Item], int],

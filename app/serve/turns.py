@@ -28,12 +28,13 @@ _BEGINNING = 0.03
 #: How long a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
 #: another thread costs some waits for the interpreter.
 _SLICE = 0.02
-#: Waits are averaged over so many beginnings, in the last so many seconds.
+#: Waits are averaged over at most so many computations that began, in the last so many seconds.
 _REMEMBERED, _LATELY = 200, 10.0
 #: A computation that has waited this long gets a slice although others use all cores [s].
 _LONGEST_WAIT = 0.5
-#: Time between two checks whether there is room, which may come merely because time passes [s]. The more threads wait,
-#: the less often each of them checks; the time grows up to this many times.
+#: Time between two checks of a waiting computation whether it may begin [s]. It may when a turn ends, but also when a
+#: turn has grown too old or the wait too long. The more computations wait, the longer this time, up to so many times
+#: as long.
 _LOOK, _MOST_LOOKS = 0.05, 20
 
 #: Time in which half of what a visitor has used is forgotten [s].
@@ -278,7 +279,7 @@ class TurnFlag(Flag):
             yield result
 
     def _give_way(self) -> None:
-        """Lower the priority of a thread whose computation no longer counts as just begun."""
+        """Lower the priority of this thread, unless its computation has only just begun."""
         if not self.begins:
             give_way()
 
