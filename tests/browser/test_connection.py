@@ -152,12 +152,12 @@ def test_what_the_server_never_heard_of_comes_back_too(server: Server, page: Pag
     type_into(page, "k", "100")
     expect(page.locator("#knobs .aside")).to_contain_text("Hz")
     server.process.send_signal(signal.SIGSTOP)
-    for knob, typed in moved.items():
-        type_into(page, knob, typed)
+    for name, typed in moved.items():
+        type_into(page, name, typed)
     looks_lost(page)
-    assert {knob: value(page, knob) for knob in moved} == moved
+    assert {name: value(page, name) for name in moved} == moved
     server.kill()
     starts_again(server, page)
-    for knob, typed in moved.items():
-        expect(field(page, knob)).to_have_value(typed)
+    for name, typed in moved.items():
+        expect(field(page, name)).to_have_value(typed)
     page.wait_for_function(BELONGS, arg=float(value(page)))
