@@ -50,6 +50,7 @@ class _JobsInBatch:
         self.draft = draft
         self.stop = stop
         self.latest = self.batch.example
+        self.resting = self.latest.from_si(rest(first.scene))  # the same for scenes that differ by their frequency
         self.starts = itertools.chain([first], starts)
         self.waiting: list[Job] = []
         self.jobs: dict[int, Job] = {}
@@ -76,9 +77,11 @@ class _JobsInBatch:
         start = next(self.starts, None)
         if start is None:
             return None
-        self.latest = scaled = scale_like(self.latest, start.scene)
-        state = rest(start.scene) if start.state is None else start.state
-        return Job(start.scene, scaled, scaled.from_si(state), number=start.number)
+        before, self.latest = self.latest, scale_like(self.latest, start.scene)
+        if self.latest.slots.chain is not before.slots.chain:
+            self.resting = self.latest.from_si(rest(start.scene))
+        y = self.resting if start.state is None else self.latest.from_si(start.state)
+        return Job(start.scene, self.latest, y, number=start.number)
 
     def _start(self, member: int, job: Job) -> None:
         """The coarse run is checked once it may have settled, the finer one once the difference has decayed.
