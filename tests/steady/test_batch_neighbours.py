@@ -73,4 +73,23 @@ def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int, lost: st
         batch.empty(member + 1)
     assert finite == {wrong: lost == "shadow", 2 - wrong: True}
     assert np.isfinite(growth[2 - wrong]).all() and len(growth[2 - wrong]) == 4
-    assert np.isnan(growth[wrong]).all()
+    assert np.isnan(growth[wrong]).all() and len(growth[wrong]) == 1  # it is given back at once
+
+
+def test_the_lanes_of_a_pair_are_free_for_any_scene_afterwards() -> None:
+    chain = scene("sec2").evolve(f=1130.0)
+    scaled, batch = scale_chain(chain), Batch(chain, Stop())
+    rest, offset = np.zeros(2 * scaled.bodies), scaled.embed(np.full(2 * scaled.beads, 1e-9))
+    batch.put(2, scaled, rest, 1, return_at=3, earliest=NEVER)
+    batch.put_pair(0, 1, scaled, rest, offset, float(np.linalg.norm(offset)), 2)
+    assert batch.run() == (0, True)
+    for lane in (0, 1):
+        batch.put(lane, scaled, rest, 1, return_at=3, earliest=NEVER)
+    found = {}
+    for _ in range(3):
+        lane, finite = batch.run()
+        found[lane] = batch.strobes(lane).copy()
+        assert finite
+        batch.empty(lane)
+    for lane in (0, 1):  # as the scene in lane 2, which was never one of a pair
+        np.testing.assert_array_equal(found[lane], found[2])

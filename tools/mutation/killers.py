@@ -55,6 +55,7 @@ UNLIKE_BATCH = ("tests/kernels/batch/test_unlike_beads.py", "-k", "unlike_beads"
 BATCH_PHASE = ("tests/kernels/batch/test_unlike_beads.py", "-k", "phase")
 BATCH_CHECKS = ("tests/kernels/batch/test_period_end.py",)
 REFILL = ("tests/kernels/batch/test_refill.py",)
+SHADOWS = ("tests/steady/test_batch_neighbours.py", "-k", "pair")
 LYAPUNOV = ("tests/steady/test_lyapunov.py", "-k", "chaotic_chain")
 
 #: Tangents: their columns, and their determinant, which does not see a missing saltation.

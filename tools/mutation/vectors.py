@@ -62,6 +62,10 @@ IN_BATCHES = (
            "from its second period on the next scene in a place has the steps of the one before", k.REFILL),
     Mutant("refill-with-old-verdict", _BATCH, "state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0",
            "state.testing[member], state.due[member] = 0, 0", "the next scene in a place is checked as the finer run of the one before", k.REFILL),
+    Mutant("refill-with-old-shadow", _BATCH, "        state.shadow[member] = kernels.NO_SHADOW\n", "",
+           "the next scene in a lane is a shadow, or has one, because the one before was", k.SHADOWS),
+    Mutant("batch-shadow-lost-unnoticed", _BATCH_RUN, "if not (np.isfinite(y[1, member]) and np.isfinite(y[1, shadow])):",
+           "if not np.isfinite(y[1, member]):", "a shadow that is not finite is not told from a growing distance", k.SHADOWS),
 )
 
 IN_ROWS = (
