@@ -5,6 +5,7 @@ the order in which workers begin.
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -49,8 +50,22 @@ LONG = (
     "test_add_a_page::test_the_new_page_fits_into_the_dashboard",
     "test_add_an_effect::test_the_tests_that_know_every_scene_and_knob_know_the_new_ones",
 )
+#: Folders whose tests may have a server in another thread, with documents of its own.
+SERVERS = ("serve", "public", "browser")
 #: How many other tests of the browser take as long as a long one.
 _LONG_IS = 5
+
+
+@pytest.fixture(autouse=True)
+def current_document(request: pytest.FixtureRequest) -> None:
+    """Begin without a current document of Bokeh's. A server or an error leaves that of a page behind, and then Panel puts
+    off whatever a test asks of its dashboard, until that page is loaded."""
+    if "bokeh.io.doc" in sys.modules and request.path.parent.name not in SERVERS:
+        from bokeh.document import Document
+        from bokeh.io.doc import _PATCHED_CURDOCS, set_curdoc
+
+        _PATCHED_CURDOCS.clear()
+        set_curdoc(Document())
 
 
 @pytest.hookimpl(optionalhook=True)
