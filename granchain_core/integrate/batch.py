@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from ..kernels.width import BATCH_SIZE
 from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop
+from .entry import entry
 
 #: A period that no member reaches.
 NEVER = int(np.iinfo(np.int64).max)
@@ -51,6 +53,7 @@ class Batch:
     def __init__(self, example: Scene, stop: Stop) -> None:
         self.example = scaled = scale_chain(example)
         self.stop = stop
+        self._run: Any = None
         n, slots = example.N, scaled.slots
         dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
         self.members = kernels.Members(
@@ -140,7 +143,10 @@ class Batch:
 
     def run(self) -> tuple[int, bool]:
         """Run until a member is due for a check; its number, and whether it is finite."""
-        status, member = kernels.run_batch(self.members, self.state, self.stop.flag)
+        arguments = self.members, self.state, self.stop.flag
+        if self._run is None:
+            self._run = entry(kernels.run_batch, *arguments)
+        status, member = self._run(*arguments)
         if status == CANCELLED:
             raise Cancelled
         return int(member), status == DONE

@@ -29,6 +29,7 @@ from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
 from ..stop import Stop
+from .entry import Entries, structure
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
 from .stepper import Start, empty_samples
 
@@ -36,6 +37,8 @@ from .stepper import Start, empty_samples
 _LARGEST_TABLE = 200_000
 #: Tables that are kept: a branch of orbits makes ten chains in turn with the same number of steps.
 _TABLES_KEPT = 4
+#: Kernels that are called many times a second: a branch runs thousands of single periods.
+_RUN_STEPS, _PLACE = Entries(run_steps), Entries(place)
 
 
 class FixedStep:
@@ -54,6 +57,7 @@ class FixedStep:
         self.drive = self._driver_table(scaled)
         self.work: Any = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
                                       np.zeros((ENDS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
+        self._structure = structure((method, scaled.slots, self.work))
 
     def _driver_table(self, scaled: ScaledChain) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
@@ -77,6 +81,7 @@ class FixedStep:
         self._no_samples = empty_samples(scaled, 0)
         self.drive = self._driver_table(scaled)
         self.work = self.work._replace(forces=scaled.forces(), simd=self.new_simd_workspace())
+        self._structure = structure((self.method, scaled.slots, self.work))
 
     def move(self, scaled: ScaledChain) -> None:
         """Become the stepper of another scene with the same effects and as many steps a period."""
@@ -96,7 +101,7 @@ class FixedStep:
 
     def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute driver state and dy/dt for y."""
-        place(self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
+        _PLACE(self._structure, self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from step `first`, filling the samples; returns status and number of rows filled."""
@@ -112,13 +117,13 @@ class FixedStep:
         if self.grid > part:
             return periods_in_parts(self, y, part, strobes, maxima, out)
         record = RunRecord(self._no_samples, strobes, maxima)
-        status, done = run_steps(self.method, self.trajectory(y), 0, self.grid, record, out)
+        status, done = _RUN_STEPS(self._structure, self.method, self.trajectory(y), 0, self.grid, record, out)
         return status, done
 
     def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: Output) -> tuple[int, int]:
         """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
         record = RunRecord(samples, *self._no_periods)
-        status, done = run_steps(self.method, self.trajectory(y), first, stride, record, out)
+        status, done = _RUN_STEPS(self._structure, self.method, self.trajectory(y), first, stride, record, out)
         return status, done
 
     def step_at(self, grid_index: int) -> int | None:

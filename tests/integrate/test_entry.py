@@ -1,0 +1,68 @@
+"""Kernels that are called past Numba's dispatcher get arguments of the types they were compiled for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+
+from granchain_core import continue_branch, resonance_curve, scene
+from granchain_core.integrate import Engine, State, entry
+from granchain_core.integrate.methods import FIXED_STEP, METHODS, Setting
+from granchain_core.kernels.samples import first_not_finite
+
+#: Chains of one vector and of blocks, and effects in every slot.
+CHAINS = [{}, {"N": 2}, {"N": 40}, {"dissipation": "none"}, {"dissipation": "tsuji", "tension": "cut"},
+          {"kappa": 0.5, "F0": 1.0}]
+
+
+@pytest.fixture(autouse=True)
+def checked(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Compare the types at every call."""
+    monkeypatch.setattr(entry, "CHECKED", True)
+    yield
+
+
+def advance(method: str, changes: dict, balance: bool = False) -> None:
+    chain = scene("sec2").evolve(f=2000.0, **changes)
+    engine = Engine(chain, Setting(method), 4, balance)
+    engine.start(State(np.zeros(chain.N), np.full(chain.N, 0.01)))
+    engine.record(6)
+    engine.record(2)
+    engine.periods(2)
+    assert np.isfinite(engine.maxima).all()
+
+
+@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if not method.adaptive])
+def test_every_method(method: str) -> None:
+    advance(method, {})
+
+
+@pytest.mark.parametrize("changes", CHAINS, ids=str)
+def test_every_kind_of_chain(changes: dict) -> None:
+    advance(FIXED_STEP, changes)
+    advance(FIXED_STEP, changes, balance=True)
+
+
+def test_curves_and_branches() -> None:
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    assert len(resonance_curve(chain, np.linspace(500.0, 3000.0, 12)).points) == 12
+    assert continue_branch(chain, "f", 1900.0, 2100.0, most_points=5).arms[0].points
+
+
+def test_another_type_is_told() -> None:
+    compiled = entry.entry(first_not_finite, np.zeros(8), 4)
+    assert compiled(np.array([0.0, 0.0, np.nan, *[0.0] * 5]), 4) == 2
+    with pytest.raises(TypeError, match="first_not_finite is called with"):
+        compiled(np.zeros((8, 2))[:, 0], 4)
+
+
+def test_what_makes_a_type_is_in_the_key() -> None:
+    plain, tuples = np.zeros((2, 3)), (1.0, None)
+    different = [plain, plain.T, plain[:, :2], plain[0], plain.astype(np.float32), tuples, (1, None), (1.0, 1.0),
+                 [*tuples]]
+    frozen = plain.copy()
+    frozen.flags.writeable = False
+    keys = [entry.structure(one) for one in (*different, frozen)]
+    assert len(set(keys)) == len(keys) - 1, "a transposed array and one with gaps are both neither"
