@@ -1,4 +1,4 @@
-"""From a scene in SI to scaled arrays and one slot per effect; nothing else converts between the two.
+"""From a scene in SI to scaled arrays and one slot per effect; all scales come from here.
 
 Scales (Zhang et al. 2016, section 2): length A0, time 1/φ with φ² = K√A0/m, force K A0^{3/2}, m and K those of
 bead 1. The state holds displacements, never positions; the drive phase is never computed as 2πf times a large time.

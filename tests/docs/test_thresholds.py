@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ast
 import importlib
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +23,11 @@ MODEL, OBSERVERS, DESIGN, REGIMES = (" ".join((ROOT / "docs" / f"{name}.md").rea
                                      for name in ("model", "observers", "design", "regimes"))
 #: Rows of the table of thresholds: the number, the constant's name and its file.
 ROWS = re.findall(r"\| ([\d.e-]+) \| `(\w+)` in `([\w/]+)\.py` \|", REGIMES)
+#: Numbers in the same files that decide nothing: columns of an array, sizes of a record, how a difference is computed.
+NO_THRESHOLDS = {
+    "CHECK_PERIOD", "CHECK_DECAY", "CHECK_DISTANCE", "CHECK_COLUMNS", "FINE_PERIOD", "FINE_DECAY", "FINE_FORCES",
+    "FINE_ORBITS_BETWEEN", "FINE_EXTRAPOLATIONS", "FINE_COLUMNS", "STROBES_KEPT", "NEVER",
+    "_REFINE", "_TOLERANCE", "_DIFFERENCE", "_TO_ONE_SIDE", "_ENOUGH"}
 
 
 def number(value: float) -> str:
@@ -39,8 +46,20 @@ def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
     assert len(ROWS) == REGIMES.count(".py` |") > 20
     assert {file for _, _, file in ROWS} == {
         "kernels/strobes/periodicity", "kernels/batch/period_end", "steady/regime_criteria", "steady/lyapunov",
-        "steady/settling/regime_decisions", "steady/steady_state", "regime",
-        "steady/settling/nearby_orbit", "steady/batch/settle"}
+        "steady/settling/regime_decisions", "steady/settling/settling", "steady/settling/finite_difference_map",
+        "steady/steady_state", "regime", "steady/settling/nearby_orbit", "steady/batch/settle", "integrate/batch"}
+
+
+def test_every_number_with_a_name_in_these_files_is_on_the_page() -> None:
+    """A new threshold is one that the page does not have yet."""
+    for file in {file for _, _, file in ROWS}:
+        module = importlib.import_module("granchain_core." + file.replace("/", "."))
+        source = Path(str(module.__file__)).read_text(encoding="utf-8")
+        named = {name.id for statement in ast.parse(source).body if isinstance(statement, ast.Assign)
+                 for target in statement.targets for name in ast.walk(target) if isinstance(name, ast.Name)}
+        numbers = {name for name in named if name.isupper() and isinstance(getattr(module, name), int | float)}
+        missing = {name for name in numbers - NO_THRESHOLDS if f"`{name}`" not in REGIMES}
+        assert not missing, f"{file}.py: {missing}"
 
 
 def test_a_batch_keeps_the_strobes_on_which_a_decision_is_based() -> None:

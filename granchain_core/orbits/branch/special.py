@@ -1,7 +1,7 @@
 """Special points of a branch: changes between two neighbouring orbits, enclosed in a narrow interval of the knob.
 
 fold             the knob turns; a real multiplier passes +1
-period_doubling  a real multiplier passes −1
+period_doubling  a real multiplier passes −1; at the end of a doubled branch one of its own passes +1 (ends.py)
 neimark_sacker   a complex pair passes the unit circle
 grazing          a contact touches or separates once more, or once less, along the orbit
 
@@ -42,9 +42,9 @@ _DEEPEST = 60
 
 @dataclass(frozen=True, eq=False)
 class SpecialPoint:
-    """A special point: its kind, the knob there, the interval that holds it, and the two orbits around it.
+    """A special point: its kind, the interval of the knob that holds it, and the two orbits around it.
 
-    `kind` is one of `SPECIAL_KINDS`.
+    `kind` is one of `SPECIAL_KINDS`, `knob` the middle of the interval.
     `contact` and `event` ("touch" or "separation") belong to a grazing; `multiplier` is the one that passes the unit
     circle.
     """

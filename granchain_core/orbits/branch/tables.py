@@ -81,7 +81,8 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
     return Table("special", axis("special", np.arange(len(special)), "1", "special point along the branch"), {
         "kind": Column(words([s.kind for s in special]), along, "",
                        f"{', '.join(BIFURCATIONS)} or grazing"),
-        "knob": Column(number([s.knob for s in special]), along, unit, "knob at the special point"),
+        "knob": Column(number([s.knob for s in special]), along, unit,
+                       "knob at the special point, the middle of its interval"),
         "knob_low": Column(number([s.interval[0] for s in special]), along, unit,
                            "lower end of the interval that holds it"),
         "knob_high": Column(number([s.interval[1] for s in special]), along, unit, "upper end of that interval"),
