@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `curve`."""
-    add_result(parser)
+    add_result(parser, "; a batch does not use it, a point settled alone is computed to 1e-5 at best")
     parser.add_argument("--from", dest="low", type=number, required=True, metavar="F", help="lowest frequency [Hz]")
     parser.add_argument("--to", dest="high", type=number, required=True, metavar="F", help="highest frequency [Hz]")
     parser.add_argument("--points", type=whole, required=True, metavar="n")

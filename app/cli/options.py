@@ -38,10 +38,10 @@ def add_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print one JSON object on stdout")
 
 
-def add_result(parser: argparse.ArgumentParser) -> None:
-    """Add a scene, the accuracy asked for, and the file that keeps the result."""
+def add_result(parser: argparse.ArgumentParser, accuracy: str = "") -> None:
+    """Add a scene, the accuracy asked for, of which `accuracy` says what uses it, and the file that keeps the result."""
     add_scene(parser)
-    parser.add_argument("--accuracy", metavar="E", help="the same as --set accuracy=E")
+    parser.add_argument("--accuracy", metavar="E", help=f"the same as --set accuracy=E{accuracy}")
     parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")
     add_json(parser)
 

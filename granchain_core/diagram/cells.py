@@ -116,7 +116,10 @@ class Diagram(Labelled):
         return (Table("map", axes, columns, both),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Both knobs, cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""
+        """Both knobs, cost, and where it comes from; `accuracy_reached` is the largest error of an output force.
+
+        Only cells that were settled alone were computed to `accuracy_asked`, and at best to `CURVE_ACCURACY`.
+        """
         errors = self.cells["error_estimate"]
         known = errors[np.isfinite(errors)]
         return {**provenance(self.scene, "rk4 in batches", float(known.max()) if len(known) else None),

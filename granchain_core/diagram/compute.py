@@ -90,6 +90,8 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
             workers: int | None = None, amplitude: Amplitude | None = None) -> Diagram:
     """Regime and largest forces over two knobs, every cell from rest, on all cores.
 
+    Cells are computed in batches with fixed steps, whatever the scene's `accuracy`, and state the error they have.
+
     Parameters
     ----------
     scene : Scene

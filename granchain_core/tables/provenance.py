@@ -19,7 +19,10 @@ Attribute = str | int | float
 
 
 def provenance(scene: Scene, method: str, reached: float | None) -> dict[str, Attribute]:
-    """The attributes that every result carries; `reached` is the accuracy, None where there is none to state."""
+    """The attributes that every result carries; `reached` is the accuracy, None where there is none to state.
+
+    `accuracy_asked` is the scene's own; batches of curves and maps do not use it.
+    """
     found = {
         **made(), "scene_name": scene.name, "scene": json.dumps(scene.to_json()), "scene_digest": scene.digest,
         "method": method, "accuracy_asked": scene.accuracy, "accuracy_reached": or_nan(reached)}

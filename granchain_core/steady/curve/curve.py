@@ -140,7 +140,10 @@ class Curve(Labelled):
             "status": Column(outcomes, along, "", "done, or how the computation failed")}),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Start and cost, and where it comes from; `accuracy_reached` is the largest error of an output force."""
+        """Start and cost, and where it comes from; `accuracy_reached` is the largest error of an output force.
+
+        Only points that were settled alone were computed to `accuracy_asked`, and at best to `CURVE_ACCURACY`.
+        """
         single = f"{FIXED_STEP} or {ADAPTIVE} point by point"
         method = f"rk4 in batches, {single}" if can_share_batch(self.scene) else single
         reached = [p.error_estimate for p in self.points if p.error_estimate is not None]

@@ -163,6 +163,9 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
                     amplitude: Amplitude | None = None, scheduler: Any = None) -> Curve:
     """The resonance curve: largest forces of the steady state over the drive frequency.
 
+    Points from rest are computed in batches with fixed steps, whatever the scene's `accuracy`, and state the error they
+    have. Points that are settled alone are computed to `accuracy`, at best to 1e-5.
+
     Parameters
     ----------
     scene : Scene

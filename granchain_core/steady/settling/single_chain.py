@@ -16,7 +16,8 @@ from ..steady_state import IRREGULAR_PERIODS, SteadyState
 from .refine_orbit import refined_orbit
 from .settling import Settling, run_until_settled
 
-#: Points of a curve are computed to this relative accuracy at best, even if the scene asks for more.
+#: Points of curves and maps that are settled alone are computed to this relative accuracy at best, even if the scene
+#: asks for more. A batch does not read the scene's accuracy.
 CURVE_ACCURACY = 1e-5
 
 
