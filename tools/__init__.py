@@ -1,1 +1,1 @@
-"""Long programs about the tests and the core that no test run needs: mutation testing and fuzzing."""
+"""Programs about the project that no test run needs: long checks, pictures, the site, the lock file."""

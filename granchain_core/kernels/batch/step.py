@@ -1,7 +1,8 @@
 """One Runge–Kutta step of several chains, one in each SIMD lane: four stages, each a sweep along the chains.
 
-In a sweep no contact waits for another one, so that the processor computes several at once. One root in three is taken
-by the square-root instruction and the others by multiplications, which keeps both units busy.
+In a sweep no contact waits for another one, so that the processor computes several at once. In batches of eight on
+AVX-512 one root in three is taken by the square-root instruction and the others by multiplications, which keeps both
+units busy; in all other batches the instruction takes every root.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ def by_divider(d):
 
 @inline_llvm
 def by_multipliers(d):
-    """√d, d > 0, by multiplications (simd/functions.py)."""
+    """√d, d > 0, by multiplications where simd/functions.py has them, else by the instruction."""
     return root_by_series(d)
 
 

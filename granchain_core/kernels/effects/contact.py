@@ -1,5 +1,7 @@
 """Hertz contact of spheres, always present.
 
+Some kernels and closed forms repeat the exponent 3/2; docs/design.md, "The exponent 3/2", lists them.
+
 Equation   F_el = K [δ]_+^{3/2},  potential (2/5) K [δ]_+^{5/2}
 Source     Zhang et al. 2016, eqs. (1), (2)
 Values     inverse_mass (N+2,) with 0 for driver and wall; stiffness (N+1,) of contacts 0..N, in units of K and m

@@ -1,8 +1,8 @@
 """Square root, gate, maximum and peak choice for a number or for every lane of a vector.
 
-A vector's root is computed in one of two ways: by the square-root instruction, which runs on the divider, or, on
-processors with AVX-512, from the 14 bits of the instruction `vrsqrt14pd` and two terms of the binomial series, which
-run on the multipliers. The second way has more than twice the throughput (measured: 1.8 ns against 4.4 ns for eight
+A vector's root is computed in one of two ways: by the square-root instruction, which runs on the divider, or, in
+vectors of eight on processors with AVX-512, from the 14 bits of the instruction `vrsqrt14pd` and two terms of the
+binomial series, which run on the multipliers. The second way has more than twice the throughput (measured: 1.8 ns against 4.4 ns for eight
 roots). Used alternately, the two keep both units busy.
 """
 
@@ -60,7 +60,7 @@ def _vector_root(typingctx, value):
 
 @intrinsic
 def root_by_series(typingctx, value):
-    """√ of every lane, all above zero; without the divider on processors that have `vrsqrt14pd`."""
+    """√ of every lane, all above zero; without the divider in vectors of eight where the processor has `vrsqrt14pd`."""
 
     def codegen(context, builder, sig, args):
         if _HAS_RSQRT14 and sig.return_type.width == VECTOR_WIDTH:
