@@ -39,7 +39,7 @@ def add_json(parser: argparse.ArgumentParser) -> None:
 
 
 def add_result(parser: argparse.ArgumentParser, accuracy: str = "") -> None:
-    """Add a scene, the accuracy asked for, of which `accuracy` says what uses it, and the file that keeps the result."""
+    """Add a scene, the accuracy asked for (its help ends with `accuracy`), and the file that keeps the result."""
     add_scene(parser)
     parser.add_argument("--accuracy", metavar="E", help=f"the same as --set accuracy=E{accuracy}")
     parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")

@@ -2,8 +2,8 @@
 
 A vector's root is computed in one of two ways: by the square-root instruction, which runs on the divider, or, in
 vectors of eight on processors with AVX-512, from the 14 bits of the instruction `vrsqrt14pd` and two terms of the
-binomial series, which run on the multipliers. The second way has more than twice the throughput (measured: 1.8 ns against 4.4 ns for eight
-roots). Used alternately, the two keep both units busy.
+binomial series, which run on the multipliers. The second way has more than twice the throughput (measured: 1.8 ns
+against 4.4 ns for eight roots). Used alternately, the two keep both units busy.
 """
 
 from __future__ import annotations
