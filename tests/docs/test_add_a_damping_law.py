@@ -24,7 +24,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_edits_two_files_and_writes_none() -> None:
     edits, new = files_of(PAGE)
     assert (len(edits), len(new)) == (2, 0)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a damping law: edit 2 files"
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a damping law: edit 2 files, mention it in 6"
 
 
 def test_the_new_law_is_right_in_every_kernel(tree: Path) -> None:

@@ -16,7 +16,7 @@ PAGE = ROOT / "docs" / "add-a-page.md"
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made, and the tests of its architecture."""
     copy = tmp_path_factory.mktemp("page") / "tree"
-    for part in ("docs", "granchain"):
+    for part in ("docs", "granchain", "granchain_start"):
         shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copytree(ROOT / "tests" / "architecture", copy / "tests" / "architecture",
                     ignore=shutil.ignore_patterns("__pycache__"))
