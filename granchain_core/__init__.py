@@ -43,8 +43,8 @@ if TYPE_CHECKING:
     from .state import State
     from .steady.curve.curve import Curve, CurvePoint
     from .steady.curve.resonance_curve import iter_curve, resonance_curve
+    from .steady.settling.outcome import Settled
     from .steady.settling.settle import settle, settled, settling
-    from .steady.settling.settled import Settled
     from .stop import Stop
     from .store import load, save
 
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
 _MODULES = {
     "run.run": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",), "result": ("Cost", "Run"),
     "state": ("State",), "stop": ("Stop",),
-    "steady.settling.settle": ("settle", "settled", "settling"), "steady.settling.settled": ("Settled",),
+    "steady.settling.settle": ("settle", "settled", "settling"), "steady.settling.outcome": ("Settled",),
     "regime": ("Regime",),
     "steady.curve.curve": ("Curve", "CurvePoint"),
     "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),

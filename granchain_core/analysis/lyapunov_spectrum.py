@@ -22,8 +22,8 @@ from ..integrate import State
 from ..integrate.methods import ADAPTIVE
 from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene
+from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
-from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute

@@ -21,7 +21,7 @@ from ..regime import Regime
 from ..scene import Scene
 from ..steady.batch.threads import on_all_cores
 from ..steady.curve.order import CURVE_STARTS, coarse_first
-from ..steady.settling.settling import run_until_settled
+from ..steady.settling.advance import run_until_settled
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, provenance, regime_columns
 from ..tables.provenance import Attribute

@@ -104,7 +104,7 @@ class Grid:
 
     @property
     def digest(self) -> str:
-        """Hash of everything that changes the cells: the scene but for the accuracy of its pictures, and both axes."""
+        """Hash of what the cells are: the scene and both axes. Its accuracy is left out: a batch does not use it."""
         described = {"scene": self.scene.evolve(accuracy=1e-6).digest, "x": [self.x.knob, self.x.values],
                      "y": [self.y.knob, self.y.values],
                      **({} if self.amplitude is None else {"amplitude": self.amplitude.to_json()})}

@@ -1,7 +1,7 @@
 """Safety factors on the difference of two computations, from which the stated error follows.
 
 Two errors of displacements have no factor. That of a settled orbit is the difference over 1 − |μ|
-(steady/settling/pictures.py); that of a motion without a drive, as the page shows it, is at least the method's typical
+(steady/settling/recording.py); that of a motion without a drive, as the page shows it, is at least the method's typical
 error (steady/settling/undriven.py).
 
 Where the error falls with the method's order, the difference is itself a bound: with half the step at order 4 it is

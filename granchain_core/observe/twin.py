@@ -19,7 +19,7 @@ from ..integrate.methods import ADAPTIVE
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
-from ..steady.settling.settling import run_until_settled
+from ..steady.settling.advance import run_until_settled
 from ..stop import Stop
 from .drift import is_drift, share_of_translation
 from .pair import Pair

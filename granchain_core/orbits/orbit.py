@@ -21,8 +21,8 @@ from ..scaling import scales_of
 from ..scene import Scene
 from ..steady.regime_criteria import LONGEST_PERIOD
 from ..steady.returns import relative_change
+from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
-from ..steady.settling.settling import run_until_settled
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
 from ..tables.provenance import Attribute

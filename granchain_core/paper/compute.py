@@ -17,8 +17,8 @@ from ..scene import Scene, scene
 from ..state import rest
 from ..steady.curve.curve import Curve
 from ..steady.curve.resonance_curve import resonance_curve
+from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
-from ..steady.settling.settled import Settled
 from ..stop import Stop
 from .given import Given, behind, moved
 from .results import (

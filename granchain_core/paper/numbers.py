@@ -19,8 +19,8 @@ from ..state import rest
 from ..steady.curve.curve import Curve
 from ..steady.curve.resonance import pushes
 from ..steady.curve.resonance_curve import resonance_curve
+from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
-from ..steady.settling.settled import Settled
 from .compute import SECTION_2, STATES
 from .features import dips, peaks
 

@@ -14,7 +14,7 @@ from ..observe import Figure11
 from ..result import Run
 from ..scene import Scene
 from ..steady.curve.curve import Curve
-from ..steady.settling.settled import Settled
+from ..steady.settling.outcome import Settled
 
 Row = dict[str, Any]
 #: Time shown of force trains [s]: six periods at 60 Hz, nine at 90 Hz, five at 50 Hz.

@@ -14,7 +14,7 @@ from ..result import Run
 from ..scene import Scene
 from ..scheduler import results
 from ..steady.batch.threads import on_all_cores
-from ..steady.settling.settled import Settled
+from ..steady.settling.outcome import Settled
 from ..stop import Stop
 from ..tables import MAXIMA, Column, Labelled, Table, axis, error_columns, force_columns, regime_columns
 from ..tables.provenance import Attribute, made

@@ -10,7 +10,7 @@ import pytest
 from granchain_core import BadInput, Cancelled, LyapunovSpectrum, lyapunov_spectrum, orbit, scene
 from granchain_core.integrate import Engine, fixed_step_setting
 from granchain_core.steady.lyapunov import exponents
-from granchain_core.steady.settling.settling import run_until_settled
+from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.stop import Stop
 
 PERIODS = 200

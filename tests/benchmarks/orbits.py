@@ -9,7 +9,7 @@ import numpy as np
 from granchain_core import scene
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
-from granchain_core.steady.settling.settling import run_until_settled
+from granchain_core.steady.settling.advance import run_until_settled
 
 from . import problem
 from .machine import timed

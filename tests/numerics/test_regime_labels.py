@@ -9,9 +9,9 @@ from granchain_core import resonance_curve, run, scene, settled
 from granchain_core.orbits import periodic_orbit
 from granchain_core.scaling import scale_chain
 from granchain_core.steady.returns import sizes
+from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.settling.finite_difference_map import FiniteDifferenceMap, fixed_point
 from granchain_core.steady.settling.nearby_orbit import NearbyOrbit, orbit_of
-from granchain_core.steady.settling.settling import run_until_settled
 from granchain_core.stop import Stop
 from tests.numerics.regime_labels import judged
 

@@ -17,8 +17,7 @@ from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, compared_methods
 from granchain_core.accuracy.naive import lesson
 from granchain_core.integrate import METHODS, Setting
-from granchain_core.steady.settling import pictures, refine_orbit
-from granchain_core.steady.settling import settling as settling_module
+from granchain_core.steady.settling import advance, recording, refine_orbit
 from granchain_core.stop import Stop
 
 
@@ -26,13 +25,13 @@ from granchain_core.stop import Stop
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """The rule in app/session/active_setting.py is the one of steady/settling/refine_orbit.py: the finest engine of a final picture."""
     used: list[Setting] = []
-    engine = pictures.Engine
+    engine = recording.Engine
 
     def noting(shown: Any, setting: Setting, *rest: Any, **options: Any) -> Any:
         used.append(setting)
         return engine(shown, setting, *rest, **options)
 
-    for module in (settling_module, refine_orbit, pictures):
+    for module in (advance, refine_orbit, recording):
         monkeypatch.setattr(module, "Engine", noting)
     shown = scene("sec2").evolve(accuracy=accuracy)
     picture = settled(shown)

@@ -9,7 +9,7 @@ from granchain_core import scene
 from granchain_core.kernels.batch import period_end
 from granchain_core.steady.batch import settle as batch_settle
 from granchain_core.steady.curve.resonance_curve import draft_curve, resonance_curve
-from granchain_core.steady.settling.settling import run_until_settled
+from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 

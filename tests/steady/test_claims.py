@@ -11,9 +11,9 @@ from granchain_core import State, resonance_curve, run, scene, settled
 from granchain_core.integrate import Engine, Setting, adaptive_setting
 from granchain_core.kernels.strobes import periodicity
 from granchain_core.steady import regime_criteria
-from granchain_core.steady.settling import pictures, refine_orbit, single_chain
+from granchain_core.steady.settling import recording, refine_orbit, single_chain
+from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.settling.regime_decisions import Decisions
-from granchain_core.steady.settling.settling import run_until_settled
 
 
 def turning(rate: float, count: int = 420) -> np.ndarray:
@@ -128,11 +128,11 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     settling = run_until_settled(scene("sec2"), None, None)
     engine = Engine(settling.scene, Setting("rk4-split"), 16)
     engine.start(settling.engine.state)
-    monkeypatch.setattr(pictures, "refined_orbit", lambda *words: (engine, 0.0))
+    monkeypatch.setattr(recording, "refined_orbit", lambda *words: (engine, 0.0))
     stated = []
     for decay in (0.1, 0.9):
         monkeypatch.setattr(regime_criteria.Regime, "contraction", decay)
-        stated.append(pictures.orbit_picture(settling, 16, 0.0, "rest").run.error_estimate)
+        stated.append(recording.recorded_orbit(settling, 16, 0.0, "rest").run.error_estimate)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 

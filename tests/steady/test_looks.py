@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.steady.settling.settling import Settling, run_until_settled
+from granchain_core.steady.settling.advance import Settling, run_until_settled
 
 
 @pytest.mark.parametrize("f", [340.0, 620.0, 1130.0])

@@ -12,7 +12,7 @@ from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scaling import ScaledChain, scale_chain
 from granchain_core.steady.lyapunov import Measured, exponents, exponents_of, put_with_shadow
-from granchain_core.steady.settling.settling import run_until_settled
+from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.stop import Stop
 
 CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `rig` without flexures (docs/model.md)

@@ -12,15 +12,15 @@ from granchain_core import CurvePoint, iter_curve, scene
 from granchain_core.errors import Cancelled
 from granchain_core.integrate import Engine
 from granchain_core.steady.batch import job as batch_job
-from granchain_core.steady.batch.settle import batch_results
-from granchain_core.steady.settling import settling as settling_module
+from granchain_core.steady.batch.jobs import batch_results
+from granchain_core.steady.settling import advance
 from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize("start", ["up", "down"])
 def test_a_stop_ends_a_carried_point_that_would_run_for_ever(start: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Ten seconds of drive a period and no budget of steps: one point is hours of work. It is given up, without a result."""
-    monkeypatch.setattr(settling_module, "MOST_SETTLING_STEPS", 10**15)
+    monkeypatch.setattr(advance, "MOST_SETTLING_STEPS", 10**15)
     stop, begun, points = Stop(), threading.Event(), list[CurvePoint]()
     real = Engine.periods
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_SECTION, _REGIME, _PICTURES = "kernels/strobes/periodicity.py", "steady/regime_criteria.py", "steady/settling/pictures.py"
+_SECTION, _REGIME, _RECORDING = "kernels/strobes/periodicity.py", "steady/regime_criteria.py", "steady/settling/recording.py"
 _RUN, _STATED, _METHODS = "run/run.py", "integrate/stated.py", "integrate/methods.py"
 
 STEADY = (
@@ -24,9 +24,9 @@ STEADY = (
            "a slow approach with an exponent near zero is called quasi-periodic", k.CLAIMS),
     Mutant("drift-is-quasi-periodic", _REGIME, " and distance < limit else", " else",
            "a section that never comes back is called a closed curve", k.CLAIMS),
-    Mutant("settled-error-without-distance", _PICTURES, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",
+    Mutant("settled-error-without-distance", _RECORDING, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",
            "a settled picture states no error of its integration", k.SETTLED),
-    Mutant("settled-error-not-amplified", _PICTURES, "    integration /= 1.0 - motion.regime.contraction\n", "",
+    Mutant("settled-error-not-amplified", _RECORDING, "    integration /= 1.0 - motion.regime.contraction\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
     Mutant("relaxed-by-change", "steady/settling/refine_orbit.py", "unproved, bound = None, change * rate / (1.0 - rate)", "unproved, bound = None, change",
            "the converged orbit is left too early", k.CLAIMS_SETTLED),

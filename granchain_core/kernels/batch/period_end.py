@@ -4,7 +4,7 @@ A coarse member is extrapolated to at most three times the distance that its dec
 (`FARTHEST_EXTRAPOLATION`). The extrapolation is undone if the change per orbit is not smaller after it than before. A
 chain may approach an unstable orbit before it leaves it, and an extrapolation could end there. So an orbit found by
 extrapolation is disturbed, and accepted only if the disturbance decays; if it decays slowly, multipliers decide
-(steady/batch/settle.py). A fine member starts on the coarse orbit and is extrapolated to its own, each extrapolation
+(steady/batch/jobs.py). A fine member starts on the coarse orbit and is extrapolated to its own, each extrapolation
 checked in the same way.
 """
 

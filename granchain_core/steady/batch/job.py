@@ -19,8 +19,8 @@ from ...state import rest
 from ...stop import Stop
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
 from ..regime_criteria import SLOW_RECORD, some_changes_shrink
+from ..settling.advance import MOST_SETTLING_STEPS
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
-from ..settling.settling import MOST_SETTLING_STEPS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
 #: Steps of the finer run of a batch for one of the coarse run.

@@ -8,8 +8,8 @@ from ...integrate import Engine, Setting, State, method_for
 from ...kernels.strobes.extrapolation import ORBITS
 from ...scene import Scene
 from ..regime_criteria import changes
+from .advance import Settling
 from .reduced_rank import reduced_rank, within_reach
-from .settling import Settling
 
 #: Parts of the error asked for: of the integration over an orbit, and of the distance left to the orbit.
 INTEGRATION_PART, _DISTANCE_PART = 0.1, 0.3

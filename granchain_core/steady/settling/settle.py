@@ -1,4 +1,4 @@
-"""`settle` and `settling`: the steady state of a chain, at once or with pictures on the way."""
+"""`settle` and `settling`: the steady state of a chain, at once or with the motion so far on the way."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ from ...integrate import State
 from ...result import start_words
 from ...scene import Scene
 from ...stop import Stop
-from .pictures import live_picture, orbit_picture
-from .settled import Settled
-from .settling import Settling, run_until_settled
+from .advance import Settling, run_until_settled
+from .outcome import Settled
+from .recording import motion_so_far, recorded_orbit
 from .undriven import undriven_motion
 
-#: Samples a period of a picture.
+#: Samples a period of the recorded motion.
 PICTURE_SAMPLES = 96
-#: Time after which a first picture is shown although nothing is decided yet [s].
+#: Time after which a first result is given although nothing is decided yet [s].
 _PREVIEW_AFTER = 0.012
 
 
 def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
              stop: Stop | None = None) -> Iterator[Settled]:
-    """Successive pictures of a settling chain: a quick preview first, the refined steady state last.
+    """Successive results of a settling chain: a quick preview first, the refined steady state last.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     start : State, optional
         Where the motion begins; at rest if not given.
     samples : int
-        Samples a drive period of each picture.
+        Samples a drive period of each result.
     stop : Stop, optional
         Ends the computation when another thread sets it.
 
@@ -50,7 +50,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     Examples
     --------
     >>> from granchain_core import scene, settling
-    >>> [picture.final for picture in settling(scene("sec2").evolve(N=2, f=2000.0))][-1]
+    >>> [found.final for found in settling(scene("sec2").evolve(N=2, f=2000.0))][-1]
     True
     """
     began = time.perf_counter()
@@ -61,12 +61,12 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     motion = Settling(scene, start, stop)
     motion.run(_PREVIEW_AFTER)
     while not motion.decided:
-        yield live_picture(motion, samples, began, origin, final=False)
+        yield motion_so_far(motion, samples, began, origin, final=False)
         motion.go_on(0.1)
     if motion.regime.name == "periodic":
-        yield orbit_picture(motion, samples, began, origin)
+        yield recorded_orbit(motion, samples, began, origin)
     else:
-        yield live_picture(motion, samples, began, origin, final=True)
+        yield motion_so_far(motion, samples, began, origin, final=True)
 
 
 def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
@@ -115,8 +115,8 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
     motion = run_until_settled(scene, start, stop)
     origin = start_words(scene, start)
     if motion.regime.name == "periodic":
-        return orbit_picture(motion, samples, began, origin)
-    return live_picture(motion, samples, began, origin, final=True)
+        return recorded_orbit(motion, samples, began, origin)
+    return motion_so_far(motion, samples, began, origin, final=True)
 
 
 #: The longer name of `settle`.

@@ -13,8 +13,8 @@ from ...scene import Scene
 from ...stop import Stop
 from ..orbit_errors import errors_between
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
+from .advance import Settling, run_until_settled
 from .refine_orbit import refined_orbit
-from .settling import Settling, run_until_settled
 
 #: Points of curves and maps that are settled alone are computed to this relative accuracy at best, even if the scene
 #: asks for more. A batch does not read the scene's accuracy.

@@ -14,7 +14,7 @@ from ...scene import Scene
 from ...state import rest
 from ...stop import Stop
 from ..orbit_errors import errors_between
-from .settled import Settled
+from .outcome import Settled
 
 #: Finest steps: how many of them take the place of one default step.
 _MOST_REFINED = 64

@@ -2,7 +2,7 @@
 
 The fixed-step method runs from the start until the distance bound is small (steady/regime_criteria.py) or the regime
 is decided otherwise (regime_decisions.py). A periodic orbit is then computed again with finer steps (refine_orbit.py);
-pictures.py records what was reached.
+recording.py records what was reached.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Pictures of a settling chain: the motion so far, or its refined periodic orbit with an error.
+"""The motion of a settling chain as a result: the motion so far, or its refined periodic orbit with an error.
 
 Motions that are not periodic are recorded by the fixed-step method, without a claim on their error. `origin` is where
 the motion began, in the words of a run's `start`.
@@ -13,15 +13,15 @@ from ...integrate import Engine
 from ...integrate.stated import relative_difference
 from ...result import Cost, run_from
 from ..orbit_errors import errors_between
+from .advance import Settling
+from .outcome import Settled
 from .refine_orbit import refined_orbit
-from .settled import Settled
-from .settling import Settling
 
 #: Periods shown of a motion that is not periodic.
 _SHOWN = 4
 
 
-def live_picture(motion: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
+def motion_so_far(motion: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
     """The present motion by fixed steps, over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
     state = motion.engine.state
@@ -34,7 +34,7 @@ def live_picture(motion: Settling, samples: int, began: float, origin: str, fina
     return Settled(run, motion.regime, state, preview=not final, final=final)
 
 
-def orbit_picture(motion: Settling, samples: int, began: float, origin: str) -> Settled:
+def recorded_orbit(motion: Settling, samples: int, began: float, origin: str) -> Settled:
     """The periodic orbit by the finer method, with its error: integration plus distance from the orbit.
 
     An error e of the n-period map moves its fixed point by e/(1 − |μ|).
