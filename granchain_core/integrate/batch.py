@@ -115,15 +115,15 @@ class Batch:
         state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0
         state.shadow[member] = kernels.NO_SHADOW
 
-    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, rate: float,
+    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, contraction: float,
                  maxima: np.ndarray) -> None:
-        """Make a scene a member, on the orbit y of a coarser run, of `period` and decay `rate` per orbit.
+        """Make a scene a member, on the orbit y of a coarser run, of `period` and with a factor of `contraction` per orbit.
 
         It is checked once the difference from that orbit has decayed.
         """
-        orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(COARSE_ERROR_LEFT) / math.log(rate))))
+        orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(COARSE_ERROR_LEFT) / math.log(contraction))))
         self.put(member, scaled, y, refine, NEVER, orbits * period)
-        self.state.fine_record[member] = period, rate, *maxima, orbits, 0.0
+        self.state.fine_record[member] = period, contraction, *maxima, orbits, 0.0
 
     def put_pair(self, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, offset: np.ndarray,
                  distance: float, periods: int) -> None:

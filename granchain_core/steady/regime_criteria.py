@@ -43,7 +43,7 @@ class SlowDecay:
     """A motion on its way to an orbit: its period, the decay per orbit and the present change over it."""
 
     period: int
-    rate: float
+    decay: float
     change: float
 
 
@@ -59,7 +59,7 @@ def regime_and_approach(strobes: np.ndarray, longest: int = LONGEST_PERIOD, roun
     """Periodic with the smallest n whose distance bound holds, else unsettled and the orbit approached, if any.
 
     Strobes (P + 1, 2, N). Changes below `rounding` are the method's own and count as none; `slowest` is a
-    rate of decay per drive period that is known to be there.
+    decay per drive period that is known to be there.
     """
     workspace = np.zeros(max(periodicity.LEAST_WINDOW, 3 * longest))
     seen = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding, SETTLED_DISTANCE, slowest,
@@ -74,12 +74,12 @@ def regime_from_numbers(seen: Sequence[float] | np.ndarray, run: int,
     Changes that are lost in rounding may still be those of a slow approach: the distance is no better known than
     rounding·r/(1 − r) with the decay r.
     """
-    period, rate, distance, approached, approach_rate, approach_change = seen
+    period, decay, distance, approached, approach_decay, approach_change = seen
     if period > 0:
-        if 0.0 < rate < 1.0:
-            distance = max(distance, rounding * rate / (1.0 - rate))
-        return Regime("periodic", int(period), None if rate < 0.0 else float(rate), float(distance), run), None
-    approach = SlowDecay(int(approached), float(approach_rate), float(approach_change)) if approached else None
+        if 0.0 < decay < 1.0:
+            distance = max(distance, rounding * decay / (1.0 - decay))
+        return Regime("periodic", int(period), None if decay < 0.0 else float(decay), float(distance), run), None
+    approach = SlowDecay(int(approached), float(approach_decay), float(approach_change)) if approached else None
     return Regime.unsettled(run), approach
 
 

@@ -145,8 +145,8 @@ def outcome_of_coarse_run(job: Job, batch: Batch, member: int) -> SteadyState | 
 
 def _periodic(batch: Batch, member: int, run: int) -> Regime:
     """The periodic regime of a coarse member; `followed` where extrapolations led to it."""
-    period, rate, distance = batch.state.last_check[member]
-    return Regime("periodic", int(period), float(rate) if rate >= 0.0 else None, float(distance), run,
+    period, decay, distance = batch.state.last_check[member]
+    return Regime("periodic", int(period), float(decay) if decay >= 0.0 else None, float(distance), run,
                   followed=bool(batch.state.slowest[member] > 0.0))
 
 

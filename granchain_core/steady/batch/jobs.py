@@ -98,8 +98,8 @@ class _JobsInBatch:
             return
         regime, maxima = job.coarse
         assert regime.period is not None
-        rate = max(1e-3, regime.contraction)
-        self.batch.put_fine(member, job.scaled, job.y, FINER, regime.period, rate, maxima)
+        contraction = max(1e-3, regime.contraction)
+        self.batch.put_fine(member, job.scaled, job.y, FINER, regime.period, contraction, maxima)
 
     def step(self) -> SteadyState | None:
         """Run until a member is due for a check, and check it."""

@@ -21,8 +21,8 @@ def reduced_rank(states: np.ndarray) -> np.ndarray:
     return limit
 
 
-def within_reach(here: np.ndarray, there: np.ndarray, change: float, rate: float) -> bool:
+def within_reach(here: np.ndarray, there: np.ndarray, change: float, contraction: float) -> bool:
     """Whether `there` is at most `FARTHEST_EXTRAPOLATION` times as far from `here` as the decay predicts."""
-    if not np.isfinite(there).all() or not 0.0 < rate < 1.0:
+    if not np.isfinite(there).all() or not 0.0 < contraction < 1.0:
         return False
-    return float(np.abs(there - here).max()) <= FARTHEST_EXTRAPOLATION * change / (1.0 - rate)
+    return float(np.abs(there - here).max()) <= FARTHEST_EXTRAPOLATION * change / (1.0 - contraction)

@@ -23,13 +23,13 @@ _STALLED = 0.3
 _MOST_ROUNDS = 12
 
 
-def orbit_setting(scene: Scene, accuracy: float, rate: float) -> Setting:
-    """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − rate).
+def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> Setting:
+    """The first setting for an orbit to `accuracy`: one period's error e moves it by e/(1 − contraction).
 
     It is rk4-split with finer steps; dop853 if tension is cut, or if one period's error must be below
     `FIXED_STEP_IS_CHEAPER` (integrate/methods.py).
     """
-    one_period = INTEGRATION_PART * min(accuracy, LEAST_ACCURATE) * (1.0 - rate)
+    one_period = INTEGRATION_PART * min(accuracy, LEAST_ACCURATE) * (1.0 - contraction)
     return method_for(max(_LEAST_ERROR, one_period), scene.cuts_tension)
 
 
@@ -43,8 +43,8 @@ def refined_orbit(settling: Settling, accuracy: float, samples: int = 1) -> tupl
     """
     scene, n = settling.scene, settling.regime.period
     assert n is not None
-    rate = settling.regime.contraction
-    setting = orbit_setting(scene, accuracy, rate)
+    contraction = settling.regime.contraction
+    setting = orbit_setting(scene, accuracy, contraction)
     engine = Engine(scene, setting, samples, stop=settling.stop)
     engine.start(settling.engine.state)
     bound, unproved = np.inf, None
@@ -57,7 +57,7 @@ def refined_orbit(settling: Settling, accuracy: float, samples: int = 1) -> tupl
             change = float(changes(states, 1, 1)[0])
             if unproved is not None and change >= unproved[1]:
                 break
-            unproved, bound = None, change * rate / (1.0 - rate)
+            unproved, bound = None, change * contraction / (1.0 - contraction)
             if bound <= _DISTANCE_PART * accuracy:
                 return engine, bound
         if unproved is not None:  # the extrapolation did not lead nearer: back to where it began
@@ -70,15 +70,15 @@ def refined_orbit(settling: Settling, accuracy: float, samples: int = 1) -> tupl
             engine.start(state)
         elif rounds < _MOST_ROUNDS - 1:  # after the last extrapolation there must be a change that proves it
             here = engine.state
-            unproved = (here, change) if move_to_limit(engine, states, change, rate) else None
+            unproved = (here, change) if move_to_limit(engine, states, change, contraction) else None
     return engine, bound
 
 
-def move_to_limit(engine: Engine, states: np.ndarray, change: float, rate: float) -> bool:
+def move_to_limit(engine: Engine, states: np.ndarray, change: float, contraction: float) -> bool:
     """Put the engine where successive states (k, 2, N) lead, if that is within reach; returns whether it was."""
     there = reduced_rank(states)
     largest = np.abs(states).max(axis=(0, 2))[:, None]
-    if not within_reach(states[-1] / largest, there / largest, change, rate):
+    if not within_reach(states[-1] / largest, there / largest, change, contraction):
         return False
     scales = engine.scaled.scales
     engine.start(State(there[0] * scales.length, there[1] * scales.velocity))
