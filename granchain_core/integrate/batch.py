@@ -117,7 +117,7 @@ class Batch:
 
     def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, contraction: float,
                  maxima: np.ndarray) -> None:
-        """Make a scene a member, on the orbit y of a coarser run, of `period` and with a factor of `contraction` per orbit.
+        """Make a scene a member, on the orbit y of a coarser run, with its `period` and its `contraction` per orbit.
 
         It is checked once the difference from that orbit has decayed.
         """
