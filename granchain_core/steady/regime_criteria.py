@@ -119,10 +119,10 @@ def undecided(exponents: np.ndarray) -> bool:
 def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
 
-    Chaotic: the mean is above three standard errors and 0.01 a period. Quasi-periodic: it is zero within three standard
-    errors or 5e-4 (`is_neutral` limits the error), the section comes back near itself (`return_limit`), and the
-    record is long enough to show that changes neither shrink nor grow. Anything else is unsettled. Where the exponent
-    is zero the regime has the numbers on which the other two conditions rest, met or not.
+    Chaotic: the mean is above its error and a least value (`grows`). Quasi-periodic: it is zero within its error, which
+    is limited (`is_neutral`), the section comes back near itself (`return_limit`), and the record is long enough to
+    show that changes neither shrink nor grow. Anything else is unsettled. Where the exponent is zero the regime has the
+    numbers on which the other two conditions rest, met or not.
     """
     mean, error = _mean_and_error(exponents)
     if grows(mean, error):
