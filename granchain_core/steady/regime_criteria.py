@@ -8,8 +8,6 @@ settling/regime_decisions.py and batch/jobs.py confirm it.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -38,15 +36,6 @@ _RETURNS_NEAR = 5.0
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
 
-@dataclass(frozen=True)
-class SlowDecay:
-    """A motion on its way to an orbit: its period, the decay per orbit and the present change over it."""
-
-    period: int
-    decay: float
-    change: float
-
-
 def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
     """The last `count` relative changes of the state over `period` drive periods; strobes (P + 1, 2, N)."""
     out = np.zeros(count)
@@ -54,38 +43,20 @@ def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
     return out
 
 
-def regime_and_approach(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING,
-                        slowest: float = 0.0) -> tuple[Regime, SlowDecay | None]:
-    """Periodic with the smallest n whose distance bound holds, else unsettled and the orbit approached, if any.
-
-    Strobes (P + 1, 2, N). Changes below `rounding` are the method's own and count as none; `slowest` is a
-    decay per drive period that is known to be there.
-    """
-    workspace = np.zeros(max(periodicity.LEAST_WINDOW, 3 * longest))
-    seen = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding, SETTLED_DISTANCE, slowest,
-                                     np.zeros(2), workspace)
-    return regime_from_numbers(seen, len(strobes) - 1, rounding)
-
-
-def regime_from_numbers(seen: Sequence[float] | np.ndarray, run: int,
-                        rounding: float = ROUNDING) -> tuple[Regime, SlowDecay | None]:
-    """The six numbers of `periodicity.detect_period` after `run` periods as a regime and the orbit approached, if any.
-
-    Changes that are lost in rounding may still be those of a slow approach: the distance is no better known than
-    rounding·r/(1 − r) with the decay r.
-    """
-    period, decay, distance, approached, approach_decay, approach_change = seen
-    if period > 0:
-        if 0.0 < decay < 1.0:
-            distance = max(distance, rounding * decay / (1.0 - decay))
-        return Regime("periodic", int(period), None if decay < 0.0 else float(decay), float(distance), run), None
-    approach = SlowDecay(int(approached), float(approach_decay), float(approach_change)) if approached else None
-    return Regime.unsettled(run), approach
-
-
 def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING) -> Regime:
-    """The regime that `regime_and_approach` sees."""
-    return regime_and_approach(strobes, longest, rounding)[0]
+    """Periodic with the smallest n whose distance bound holds, else unsettled; strobes (P + 1, 2, N).
+
+    Changes below `rounding` are the method's own and count as none. Those that are lost in it may still be those of a
+    slow approach: the distance is no better known than rounding·r/(1 − r) with the decay r.
+    """
+    run, workspace = len(strobes) - 1, np.zeros(max(periodicity.LEAST_WINDOW, 3 * longest))
+    period, decay, distance, *_ = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding,
+                                                            SETTLED_DISTANCE, 0.0, np.zeros(2), workspace)
+    if period == 0:
+        return Regime.unsettled(run)
+    if 0.0 < decay < 1.0:
+        distance = max(distance, rounding * decay / (1.0 - decay))
+    return Regime("periodic", int(period), None if decay < 0.0 else float(decay), float(distance), run)
 
 
 def grows(mean: float, error: float) -> bool:
