@@ -23,6 +23,7 @@ COPY granchain_core ./granchain_core
 COPY granchain_start ./granchain_start
 COPY app ./app
 COPY assets ./assets
+COPY docs/glossary.md ./docs/
 RUN pip install --require-hashes -r requirements.lock && pip install --no-deps .
 
 # Work from another folder, so that the installed package is compiled and not the source beside it.

@@ -21,9 +21,8 @@ from granchain_core.experiment import (
     Unclear,
     answers_of,
     read_data,
-    read_experiment,
 )
-from granchain_core.experiment.labelled import HDF5
+from granchain_core.experiment.labelled import HDF5, read_labelled
 from granchain_core.experiment.measured import MOST_BYTES, MOST_ROWS
 from granchain_core.experiment.reader import TABLE_KINDS
 from granchain_core.experiment.units import QUANTITIES, UNITS
@@ -203,7 +202,7 @@ def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "data.h5"
             path.write_bytes(content)
-            found = read_experiment(path, answers)
+            found = read_labelled(path, answers, TABLE_KINDS, name)
     else:
         try:
             found = read_data(content, answers, TABLE_KINDS, name, MOST_BYTES, MOST_ROWS)

@@ -26,9 +26,11 @@ def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str],
                   source: str) -> Series | Shaker | Measured:
     """The measurement in a file. Columns are its rows of equal length; of several lengths those with an axis count.
 
+    HDF5 parses the file in a child process: the dashboard gets it from a visitor.
+
     Raises `Unclear` and `BadInput`.
     """
-    with opened(path, "is not a measurement that can be read") as file:
+    with opened(path, "is not a measurement that can be read", called="The file", foreign=True) as file:
         stored, refused = _rows(file)
         if not stored:
             raise Refused(refused or "it has no two rows of numbers of one length")

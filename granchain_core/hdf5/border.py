@@ -132,19 +132,22 @@ class File:
 
 
 @contextlib.contextmanager
-def opened(path: str | Path, fault: str) -> Iterator[File]:
-    """Open the file at `path`; every error becomes a `BadInput`: the file's name, then `fault`, then the reason.
+def opened(path: str | Path, fault: str, *, called: str = "", foreign: bool = False) -> Iterator[File]:
+    """Open the file at `path`; every error becomes a `BadInput`: what it is `called` (its path if not
+    given), then `fault`, then the reason.
 
     A file whose seal fits is what granchain wrote, and is read here. One of an earlier version has no seal: HDF5
-    parses it in a child, because a single damaged bit can keep HDF5 busy for ever or end its process.
+    parses it in a child, because a single damaged bit can keep HDF5 busy for ever or end its process. A file that may
+    be anybody's (`foreign`) needs no seal and is parsed in a child even with one, which anybody can forge.
     """
     source: Plain | Child | None = None
     try:
-        source = Plain(str(path)) if is_sealed(Path(path)) else Child(str(path))
+        sealed = is_sealed(Path(path), required=not foreign)
+        source = Plain(str(path)) if sealed and not foreign else Child(str(path))
         yield File(source)
     except _LIBRARIES as problem:  # Refused and BadInput are ValueErrors
         cause = str(problem) if isinstance(problem, BadInput) else reason(problem)
-        raise BadInput(f"{str(path)[:200]} {fault}: {cause.rstrip('.')}.") from None
+        raise BadInput(f"{called or str(path)[:200]} {fault}: {cause.rstrip('.')}.") from None
     finally:
         if source is not None:
             source.close()

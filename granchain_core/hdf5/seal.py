@@ -36,8 +36,11 @@ def seal(path: Path) -> None:
         os.fsync(file.fileno())
 
 
-def is_sealed(path: Path) -> bool:
-    """Whether a file has its seal, which fits; False for a file of an earlier version. Raises `Refused` for damage."""
+def is_sealed(path: Path, required: bool = True) -> bool:
+    """Whether a file has its seal, which fits; False for a file of an earlier version. Raises `Refused` for damage.
+
+    If a seal is not `required`, a file of another program may have any version of HDF5's superblock.
+    """
     if not path.is_file():
         path.stat()  # says why, if it is not there
         raise Refused("it is not a file")
@@ -49,7 +52,7 @@ def is_sealed(path: Path) -> bool:
         file.seek(max(size, 0))
         found = _PATTERN.fullmatch(file.read(_LENGTH))
         if found is None:
-            if head[-1] == 0:
+            if head[-1] == 0 or not required:
                 return False
             raise Refused("the line with its checksum is missing: the file is damaged, cut short, or was changed by "
                           "another program")

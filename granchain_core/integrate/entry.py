@@ -51,7 +51,7 @@ class Entries:
 
 
 def structure(value: Any) -> Any:
-    """A key for what decides a value's Numba type: classes of nested tuples, layout of arrays, type of the rest."""
+    """A key for a value's Numba type: classes of nested tuples, kind and layout of arrays, type of the rest."""
     if isinstance(value, tuple):
         return type(value), *map(structure, value)
     if isinstance(value, np.ndarray):

@@ -54,10 +54,22 @@ class FixedStep:
         self._simd = simd
         self._no_samples = empty_samples(scaled, 0)
         self._no_periods = np.zeros((0, 2, 0)), np.zeros((0, 3))
+        self._work: Any = None
+        self._structure: Any = None
         self.drive = self._driver_table(scaled)
-        self.work: Any = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
-                                      np.zeros((ENDS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
-        self._structure = structure((method, scaled.slots, self.work))
+        self.work = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
+                                 np.zeros((ENDS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
+
+    @property
+    def work(self) -> Any:
+        """The workspace of the kernels."""
+        return self._work
+
+    @work.setter
+    def work(self, work: Any) -> None:
+        """Use another workspace, maybe of another type: another version of the kernels is called then."""
+        self._work = work
+        self._structure = structure((self.method, self.scaled.slots, work))
 
     def _driver_table(self, scaled: ScaledChain) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
@@ -81,7 +93,6 @@ class FixedStep:
         self._no_samples = empty_samples(scaled, 0)
         self.drive = self._driver_table(scaled)
         self.work = self.work._replace(forces=scaled.forces(), simd=self.new_simd_workspace())
-        self._structure = structure((self.method, scaled.slots, self.work))
 
     def move(self, scaled: ScaledChain) -> None:
         """Become the stepper of another scene with the same effects and as many steps a period."""

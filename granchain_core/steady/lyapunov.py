@@ -5,6 +5,7 @@ Source     Benettin, Galgani & Strelcyn 1976, Phys. Rev. A 14, 2338
 
 from __future__ import annotations
 
+import functools
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,6 +53,7 @@ def exponents_of(batch: Batch, member: int, block: int) -> Measured:
                     state.maxima[member, last, :3].copy(), strobes[-1].ravel().copy())
 
 
+@functools.cache
 def _offset(bodies: int) -> np.ndarray:
     """From a chain to its neighbouring trajectory, (2(N+2),): random, `_DISTANCE` long.
 
@@ -59,7 +61,9 @@ def _offset(bodies: int) -> np.ndarray:
     """
     offset = np.random.default_rng(0).standard_normal(2 * bodies)
     offset[[0, bodies - 1, bodies, 2 * bodies - 1]] = 0.0
-    return np.asarray(offset * (_DISTANCE / np.linalg.norm(offset)))
+    offset *= _DISTANCE / np.linalg.norm(offset)
+    offset.flags.writeable = False
+    return offset
 
 
 def exponents(engine: Engine, blocks: int, block: int) -> tuple[np.ndarray, np.ndarray]:

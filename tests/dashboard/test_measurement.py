@@ -5,8 +5,10 @@ from __future__ import annotations
 import base64
 import re
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 import pytest
 from headless_dashboard import Dashboard
@@ -17,6 +19,7 @@ from app.frames import samples_for
 from app.pictures.measured import measured_columns
 from granchain_core import CurvePoint, Scene, scene, settle
 from granchain_core.experiment import Measured, compared, read_data
+from granchain_core.hdf5 import VERSIONS, seal
 from granchain_core.regime import Regime
 from granchain_core.result import ForceErrors
 from granchain_core.state import rest
@@ -42,6 +45,34 @@ def test_every_byte_of_a_file_arrives(dashboard: Dashboard) -> None:
     assert "UTF-16" in after(dashboard, sent(text), "understood")
     dashboard.received({"do": "csv", "content": "???"})
     assert "did not arrive" in dashboard.session.sentence
+
+
+@pytest.mark.parametrize("sealed", [True, False])
+def test_hdf5_never_parses_an_upload_in_the_server(sealed: bool, dashboard: Dashboard, tmp_path: Path,
+                                                   monkeypatch: pytest.MonkeyPatch) -> None:
+    """A seal is no signature: a stranger can seal a file as well."""
+    path = tmp_path / "data.h5"
+    with h5py.File(path, "w", libver=VERSIONS if sealed else None) as file:
+        for name, unit in (("frequency", "Hz"), ("force", "N")):
+            file[name] = [40.0, 60.0]
+            file[name].attrs["units"] = unit
+    if sealed:
+        seal(path)
+    monkeypatch.setattr(h5py, "File", lambda *_: pytest.fail("parsed in the server's process"))
+    assert "2 points" in after(dashboard, sent(path.read_bytes()), "understood")
+
+
+def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, tmp_path: Path) -> None:
+    """What is said of it names no folder of the server."""
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["frequency"] = [40.0]
+    sentence = after(dashboard, sent((tmp_path / "a.h5").read_bytes()), "understood")
+    assert sentence == "The file is not a measurement that can be read: it has no two rows of numbers of one length."
+    with h5py.File(tmp_path / "a.h5", "a") as file:
+        file["f"] = file["F"] = [40.0, 60.0]
+    dashboard.received(sent((tmp_path / "a.h5").read_bytes()))
+    dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("question")))
+    assert dashboard.views.tabs.state["question"]["reason"].startswith("What 'F'")
 
 
 def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> None:

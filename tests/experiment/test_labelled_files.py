@@ -33,6 +33,26 @@ def test_rows_with_units(tmp_path: Path) -> None:
     np.testing.assert_allclose([found.frequency, found.force], [F, FORCE])
 
 
+@pytest.mark.parametrize("layout", ["earliest", "v108", "latest"])
+def test_every_version_of_hdf5s_layout_is_read(layout: str, tmp_path: Path) -> None:
+    """Other programs, netCDF's library among them, write the superblock that sealed files have, and no seal."""
+    with h5py.File(tmp_path / "a.h5", "w", libver=layout) as file:
+        file["f"], file["force"] = F, FORCE
+        for name, unit in (("f", "Hz"), ("force", "N")):
+            file[name].attrs["units"] = unit
+    found = read_experiment(tmp_path / "a.h5")
+    assert isinstance(found, Measured) and list(found.force) == list(FORCE)
+
+
+def test_a_seal_that_does_not_fit_is_damage(tmp_path: Path) -> None:
+    path = save_curve(resonance_curve(scene("sec2").evolve(N=2), [1800.0, 2000.0]), tmp_path / "curve.h5")
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 1
+    path.write_bytes(content)
+    with pytest.raises(BadInput, match="its checksum does not fit"):
+        read_experiment(path)
+
+
 def test_netcdf_of_xarray(tmp_path: Path) -> None:
     data = xarray.Dataset({"amplitude": ("frequency", np.float32([7, 8, 6]), {"units": "µm"})},
                           coords={"frequency": ("frequency", F, {"units": "Hz"})})

@@ -45,6 +45,14 @@ def test_every_kind_of_chain(changes: dict) -> None:
     advance(FIXED_STEP, changes, balance=True)
 
 
+def test_a_workspace_of_another_type_has_a_version_of_its_own() -> None:
+    """Tests take its vectors away from a stepper that has run with them."""
+    engine = Engine(scene("sec2"), Setting(FIXED_STEP), 4)
+    engine.record(2)
+    engine.stepper.work = engine.stepper.work._replace(simd=None)
+    assert np.isfinite(engine.record(2).force).all()
+
+
 def test_curves_and_branches() -> None:
     chain = scene("sec2").evolve(N=2, f=2000.0)
     assert len(resonance_curve(chain, np.linspace(500.0, 3000.0, 12)).points) == 12

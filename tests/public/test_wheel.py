@@ -1,4 +1,4 @@
-"""The wheel installs only names that are ours, and works without the tree."""
+"""The wheel installs only names that are ours, can be built from what the Docker image gets, and works without the tree."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from docker_context import ROOT, copy_context, let_through
 
-ROOT = Path(__file__).resolve().parents[2]
 #: What the hook in hatch_build.py is asked, without a network to fetch hatchling.
 PLACES = """
 import sys, types
@@ -31,19 +31,28 @@ for here, there in standard["force_include"].items():
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder with what a wheel has, where pip would put it."""
-    folder = tmp_path_factory.mktemp("wheel")
-    said = subprocess.run([sys.executable, "-c", PLACES], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    """A folder with what a wheel has, where pip would put it, made from the files that the Docker image gets."""
+    source, folder = tmp_path_factory.mktemp("context"), tmp_path_factory.mktemp("wheel")
+    copy_context(source)
+    said = subprocess.run([sys.executable, "-c", PLACES], cwd=source, capture_output=True, text=True, check=True).stdout
     places = [(name, name) for name in ("granchain", "granchain_core", "granchain_start")]
     places += [(here, there) for here, there in map(str.split, said.splitlines())]
     for here, there in places:
         target = folder / there
         target.parent.mkdir(parents=True, exist_ok=True)
-        if (ROOT / here).is_dir():
-            shutil.copytree(ROOT / here, target, ignore=shutil.ignore_patterns("__pycache__"))
+        if (source / here).is_dir():
+            shutil.copytree(source / here, target)
         else:
-            shutil.copy(ROOT / here, target)
+            shutil.copy(source / here, target)  # hatchling ends as well where a file is missing
     return folder
+
+
+def test_the_docker_image_gets_nothing_else() -> None:
+    """Neither what has no part in it, nor what Python leaves behind."""
+    sent = {name: let_through(ROOT / name) for name in (
+        "app/server.py", "docs/glossary.md", "docs/model.md", "tests/conftest.py", ".git/config", "app/x.pyc",
+        "granchain_core/kernels/__pycache__/x.pyc", "secret")}
+    assert [name for name, is_sent in sent.items() if is_sent] == ["app/server.py", "docs/glossary.md"]
 
 
 def test_the_wheel_has_only_names_that_are_ours_and_runs(wheel: Path) -> None:
@@ -70,6 +79,7 @@ def test_every_module_of_the_wheel_is_found_under_its_name_there(wheel: Path) ->
             "names = [found.name for found in pkgutil.walk_packages(granchain_app.__path__, 'granchain_app.')]\n"
             "for name in names: importlib.import_module(name)\n"
             "from granchain_app.dashboard import measurement, scales; from granchain_app.session import stories\n"
+            "from granchain_app.session import terms; assert 'resonance' in terms.definitions()\n"
             "assert scales.FILE.is_file() and measurement.SAMPLES.is_dir() and stories.FOLDER.is_dir()\n"
             "print(len(names) > 100, 'app' in sys.modules)")
     ran = subprocess.run([sys.executable, "-c", code, str(wheel)], cwd=wheel, text=True, capture_output=True, check=False)

@@ -39,10 +39,12 @@ FORCE_FREE_ENERGY = ("tests/numerics/test_force_free.py", "tests/physics/test_en
 CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.
-SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (changes8 or changes9)")
-SIMD_LAWS = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (changes9 or changes10)")
-SIMD_PLAIN = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and changes0")
-SIMD_LONG = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and changes6")
+SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-light or tsuji-pressed)")
+SIMD_LAWS = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-pressed or kuwabara-rigid)")
+SIMD_PLAIN = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and plain")
+SIMD_LONG = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and hundred")
+SIMD_LONG_FOUNDED = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and long-founded")
+SIMD_LONG_PRESSED = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and long-pressed")
 
 #: Eight chains at once: their order, their forces, unlike beads, the drive's phase, what they believe.
 BATCH = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and sec2")

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..equations.motion import copy
 from ..forces.peaks import row_of, row_of_jump
-from ..jit import inline_numba, internal
+from ..jit import inline_llvm, inline_numba, internal
 from ..strobes.extrapolation import ORBITS, reduced_rank
 from ..strobes.periodicity import (
     LONGEST_PERIOD,
@@ -62,20 +62,20 @@ FINE_PERIOD, FINE_DECAY, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, 
 
 
 @internal
-def keep_member_strobe(state, member):
+def keep_member_strobe(strobes, strobe_count, y, member):
     """Append the state to the strobes, dropping their older half if they are full; returns whether it is finite."""
-    strobes, y, bodies = state.strobes, state.y, state.y.shape[0] // 2
-    if state.strobe_count[member] == strobes.shape[1]:
+    bodies = y.shape[0] // 2
+    if strobe_count[member] == strobes.shape[1]:
         half = strobes.shape[1] // 2
         for p in range(half):
             copy(strobes[member, half + p, 0], strobes[member, p, 0])
             copy(strobes[member, half + p, 1], strobes[member, p, 1])
-        state.strobe_count[member] = half
-    finite, row = True, state.strobe_count[member]
+        strobe_count[member] = half
+    finite, row = True, strobe_count[member]
     for i in range(bodies):
         strobes[member, row, 0, i], strobes[member, row, 1, i] = y[i, member], y[bodies + i, member]
         finite = finite and np.isfinite(y[i, member]) and np.isfinite(y[bodies + i, member])
-    state.strobe_count[member] += 1
+    strobe_count[member] += 1
     return finite
 
 
@@ -90,7 +90,7 @@ def move_member(state, member, there):
     for row in range(4):
         state.ends[row, member] = 1.0  # counts as closed, so that no closing is recorded here
     state.strobe_count[member] = 0
-    keep_member_strobe(state, member)
+    keep_member_strobe(state.strobes, state.strobe_count, state.y, member)
 
 
 @internal
@@ -239,12 +239,12 @@ def check_fine(state, member):
     return False
 
 
-@internal
+@inline_llvm
 def end_period(state, member):
     """Record a member's strobe and largest forces, set its phase to 0 exactly; returns whether a check is due."""
     state.periods[member] += 1
     periods = state.periods[member]
-    finite = keep_member_strobe(state, member)
+    finite = keep_member_strobe(state.strobes, state.strobe_count, state.y, member)
     maxima = state.maxima[member, periods % STROBES_KEPT]
     for q in range(3):
         maxima[q] = state.peaks[row_of(q), member]

@@ -15,7 +15,7 @@ import numpy as np
 from ..effects.dissipation import batch_values
 from ..effects.foundation import batch_foundation
 from ..effects.preload import batch_overlap
-from ..jit import inline_numba, kernel
+from ..jit import inline_llvm, inline_numba, kernel
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import load_batch, store
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
@@ -113,9 +113,12 @@ class BatchState(NamedTuple):
     stages: tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-@kernel
-def batch_steps(members, state, count):
-    """Take `count` steps in all members."""
+@inline_llvm
+def take_steps(members, state, count):
+    """Take `count` steps in all members.
+
+    Inlined, because a call would copy the 45 arrays of both arguments each time that a period of a member ends.
+    """
     y, before = state.y, flush_subnormals()
     last = y.shape[0] // 2 - 2
     values = Values(load_batch(members.wall, 0), batch_values(members.dissipation),
@@ -155,26 +158,40 @@ def bring_back(state, member):
 
 
 @kernel
+def batch_steps(members, state, count):
+    """Take `count` steps in all members, whose periods do not end."""
+    take_steps(members, state, count)
+
+
+@kernel
 def run_batch(members, state, stop):
     """Run until a member is due for a check; returns (status, member).
 
     Every member that is due is returned before any of them continues.
     """
+    left, due, shadow = state.left, state.due, state.shadow
+    some_due, some_shadow = True, False
+    for member in range(BATCH_SIZE):
+        some_shadow = some_shadow or shadow[member] >= 0
     while True:
-        for member in range(BATCH_SIZE):
-            if state.due[member] != 0:
-                state.due[member] = 0
-                return (DONE if np.isfinite(state.y[1, member]) else NOT_FINITE), member
+        if some_due:
+            for member in range(BATCH_SIZE):
+                if due[member] != 0:
+                    due[member] = 0
+                    return (DONE if np.isfinite(state.y[1, member]) else NOT_FINITE), member
+            some_due = False
         if stop[0] != 0:
             return CANCELLED, -1
         count = STEPS_BETWEEN_STOP_CHECKS
         for member in range(BATCH_SIZE):
-            count = min(count, state.left[member])
-        batch_steps(members, state, count)
+            count = min(count, left[member])
+        take_steps(members, state, count)
         for member in range(BATCH_SIZE):
-            state.left[member] -= count
-            if state.left[member] == 0 and end_period(state, member) and state.shadow[member] != IS_SHADOW:
-                state.due[member] = 1
-        for member in range(BATCH_SIZE):
-            if state.shadow[member] >= 0 and state.left[member] == state.steps[member]:
-                bring_back(state, member)
+            left[member] -= count
+            if left[member] == 0 and end_period(state, member) and shadow[member] != IS_SHADOW:
+                due[member], some_due = 1, True
+        if some_shadow:
+            for member in range(BATCH_SIZE):
+                if shadow[member] >= 0 and left[member] == state.steps[member]:
+                    bring_back(state, member)
+                    some_due = some_due or due[member] != 0
