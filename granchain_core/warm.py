@@ -38,6 +38,7 @@ from .pieces import (
     COST_KERNELS,
     CURVE_KERNELS,
     FIXED_STEP_KERNELS,
+    MOTION_KERNELS,
     OBSERVER_KERNELS,
     ORBIT_KERNELS,
 )
@@ -132,7 +133,7 @@ def compile_piece(shown: Scene, piece: str) -> None:
             _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 
-def is_warm(shown: Scene, pieces: Iterable[str] = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)) -> bool:
+def is_warm(shown: Scene, pieces: Iterable[str] = MOTION_KERNELS) -> bool:
     """Whether these pieces of the scene's structure have been compiled on this machine."""
     if CACHE_FOLDER is None:
         return False
