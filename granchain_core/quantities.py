@@ -115,8 +115,6 @@ TENSION = ("allowed", "cut")
 DRIVES = ("harmonic", "rest")
 ENDS = ("first", "last")
 
-#: Most beads of a chain.
-_MOST_BEADS = 10_000
 _TABLE = (
     Quantity("f", "f", "Hz", "f", "drive frequency", "Oscillations of the driver per second.",
              0.1, 1e6, "log", 0.1, main=True),
@@ -133,7 +131,7 @@ _TABLE = (
              "k divided by K·√A₀, the contact stiffness at one drive amplitude of overlap.",
              0.0, 100.0, "cubic", 1e-5, main=True, short="k / (K√A₀)"),
     Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
-             1, _MOST_BEADS, "linear", 1, whole=True, short="beads"),
+             1, 10_000, "linear", 1, whole=True, short="beads"),
     Quantity("F0", "F₀", "N", "F_0", "preload",
              "Force at rest in every contact; the wall stays in place. 0 is the sonic vacuum.",
              0.0, 1e4, "linear", 0.1, at_zero="nothing presses the beads"),
@@ -147,7 +145,7 @@ _TABLE = (
              "Mass of bead 1 (the striker) relative to a regular bead at its place.",
              1e-3, 1e3, "log", short="striker"),
     Quantity("site", "j", "1", "j", "place of the impurity", "Index j of the impurity bead.",
-             1, _MOST_BEADS, "linear", 1, whole=True, short="impurity’s place"),
+             1, 10_000, "linear", 1, whole=True, short="impurity’s place"),
     Quantity("impurity", "mⱼ/m", "1", "m_j/m", "mass of the impurity",
              "Mass of bead j relative to a regular bead at its place; 1 means no impurity.", 1e-3, 1e3, "log",
              short="impurity"),
