@@ -8,7 +8,7 @@ import subprocess
 import sys
 
 import pytest
-from source import ROOT
+from documents import ROOT
 
 from tools.mutation.table import BROAD, MUTANTS
 
