@@ -22,7 +22,7 @@ from .accuracy.work_precision import compile_methods
 from .child_processes import pool, starting
 from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting
 from .integrate.batch import Batch, can_share_batch, is_uniform
-from .kernels.cache import CACHE_FOLDER
+from .kernels.cache import CACHE_FOLDER, MARK
 from .kernels.rk4.short_chain import WIDTHS
 from .observe.pair import Pair
 from .orbits.branch.axis import KnobAxis
@@ -141,7 +141,7 @@ def is_warm(shown: Scene, pieces: Iterable[str] = MOTION_KERNELS) -> bool:
 
 
 def _marker(folder: Path, name: str, piece: str) -> Path:
-    return folder / f"compiled-{sys.implementation.cache_tag}-{name}-{piece}".replace(" ", "-").replace(",", "")
+    return folder / f"{MARK}{sys.implementation.cache_tag}-{name}-{piece}".replace(" ", "-").replace(",", "")
 
 
 def _compile(job: tuple[Scene, str]) -> str:

@@ -48,6 +48,8 @@ else:
 _NEEDED = ("_load_overload", "_index_key", "_guard_against_spurious_io_errors", "_impl_class")
 #: Where messages for the user go: to stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
+#: How the names of the files begin by which warm.py marks what is compiled.
+MARK = "compiled-"
 #: Bytes of a checksum.
 _DIGEST = 32
 #: Folders of other versions are removed when they have not been used for this long [s].
@@ -208,14 +210,18 @@ class _Files:
 
 
 def whole(path: Path) -> bytes:
-    """The content of a file. One with a wrong checksum is deleted, and `FileNotFoundError` raised."""
+    """The content of a file. One with a wrong checksum is deleted, and `FileNotFoundError` raised.
+
+    It may belong to anything that is marked as compiled, so all marks are deleted with it.
+    """
     stored = path.read_bytes()
     digest, content = stored[:_DIGEST], stored[_DIGEST:]
     if hashlib.sha256(content).digest() == digest:
         return content
     say_once(f"Damaged kernels in {path.parent.parent} are dropped and compiled again.")
-    with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
-        os.unlink(path)
+    for file in (path, *path.parent.parent.glob(f"{MARK}*")):
+        with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
+            os.unlink(file)
     raise FileNotFoundError(path)
 
 

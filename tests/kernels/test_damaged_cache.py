@@ -135,10 +135,13 @@ def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage,
     (file,) = cache_folder.rglob("*.nbc")
     whole = file.read_bytes()
     file.write_bytes(damage(whole))
+    mark = next(cache_folder.glob("kernels-*")) / "compiled-all"
+    mark.touch()
     answer, messages = used(cache_folder)
     assert answer["right"] and answer["loaded"] == 0
     assert len(messages) == 1 and "Damaged kernels" in messages[0] and "compiled again" in messages[0]
     assert cache.whole(file) == file.read_bytes()[32:] and len(file.read_bytes()) > len(whole) // 2
+    assert not mark.exists(), "a server would compile in its own process what is marked as compiled"
 
 
 def test_a_whole_kernel_is_loaded(filled: Path) -> None:
