@@ -17,8 +17,6 @@ from bokeh.server.server import Server
 from bokeh.settings import settings
 from tornado.web import ErrorHandler
 
-from granchain_core.experiment.measured import MOST_BYTES
-
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
@@ -26,6 +24,7 @@ from .serve import logs
 from .serve.bokeh_defaults import remember_defaults
 from .serve.compiler import COMPILER
 from .serve.guard import Rules, guard_handlers, guarded
+from .serve.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.meters import METERS, Liveness, Metrics
 from .serve.panel_pages import remember_resources
 from .serve.queues import PICTURES, SWEEPS
@@ -34,7 +33,7 @@ from .serve.turns import TURNS
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
-LARGEST_MESSAGE = 4 * MOST_BYTES // 3 + 100_000
+LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: For how long a thread of Python may keep the interpreter from the event loop [s]; 5 ms if not said. A move needs it
 #: some ten times. Measured with 60 visitors: 95 % answered within 0.84 s, and within 1.55 s with 5 ms.
 SWITCH = 5e-4
@@ -59,7 +58,7 @@ class Access:
 
     origins: tuple[str, ...] = ()
     secret: bytes | None = None
-    most_visitors: int = 200
+    most_visitors: int = USUAL_VISITORS
     embedding: tuple[str, ...] = ()
     proxy: bool = False
     sign_in: tuple[tuple[str, str], ...] = ()

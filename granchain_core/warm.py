@@ -22,7 +22,7 @@ from .accuracy.work_precision import compile_methods
 from .child_processes import pool, starting
 from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting
 from .integrate.batch import Batch, can_share_batch, is_uniform
-from .kernels.cache import CACHE_FOLDER
+from .kernels.cache import CACHE_FOLDER, MARK
 from .kernels.rk4.short_chain import WIDTHS
 from .observe.pair import Pair
 from .orbits.branch.axis import KnobAxis
@@ -38,6 +38,7 @@ from .pieces import (
     COST_KERNELS,
     CURVE_KERNELS,
     FIXED_STEP_KERNELS,
+    MOTION_KERNELS,
     OBSERVER_KERNELS,
     ORBIT_KERNELS,
 )
@@ -132,7 +133,7 @@ def compile_piece(shown: Scene, piece: str) -> None:
             _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 
-def is_warm(shown: Scene, pieces: Iterable[str] = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)) -> bool:
+def is_warm(shown: Scene, pieces: Iterable[str] = MOTION_KERNELS) -> bool:
     """Whether these pieces of the scene's structure have been compiled on this machine."""
     if CACHE_FOLDER is None:
         return False
@@ -140,7 +141,7 @@ def is_warm(shown: Scene, pieces: Iterable[str] = (FIXED_STEP_KERNELS, ADAPTIVE_
 
 
 def _marker(folder: Path, name: str, piece: str) -> Path:
-    return folder / f"compiled-{sys.implementation.cache_tag}-{name}-{piece}".replace(" ", "-").replace(",", "")
+    return folder / f"{MARK}{sys.implementation.cache_tag}-{name}-{piece}".replace(" ", "-").replace(",", "")
 
 
 def _compile(job: tuple[Scene, str]) -> str:

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from granchain_core import BadInput
 
+from ..serve.limits import MOST_VISITORS, USUAL_VISITORS
 from .options import whole
 from .waiting import Waiting
 
@@ -35,7 +36,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="sign sessions with a secret of this process's own")
     parser.add_argument("--allow-embedding", action="append", metavar="ORIGIN",
                         help="an origin, such as https://courses.example.org, whose pages may show it in a frame")
-    parser.add_argument("--most-visitors", type=whole, default=200, help="pages that may be open at once")
+    parser.add_argument("--most-visitors", type=whole, default=USUAL_VISITORS, help="pages that may be open at once")
     parser.add_argument("--behind-proxy", action="store_true",
                         help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets")
     parser.add_argument("--basic-auth", metavar="FILE",
@@ -50,8 +51,9 @@ def do(arguments: argparse.Namespace) -> None:
     """Open the dashboard."""
     if not 0 <= arguments.port <= 65535:
         raise BadInput(f"port {arguments.port} is outside 0 to 65535; the usual one is 5006.")
-    if not 1 <= arguments.most_visitors <= 10_000:
-        raise BadInput(f"--most-visitors {arguments.most_visitors} is outside 1 to 10000; the usual number is 200.")
+    if not 1 <= arguments.most_visitors <= MOST_VISITORS:
+        raise BadInput(f"--most-visitors {arguments.most_visitors} is outside 1 to {MOST_VISITORS}; the usual number "
+                       f"is {USUAL_VISITORS}.")
     with contextlib.closing(Waiting(arguments.address, arguments.port)) as waiting:
         _serve(arguments, waiting.close)
 

@@ -14,6 +14,7 @@ from panel.io import unlocked
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Difference, Measured, stated_features
 from granchain_core.pieces import CURVE_KERNELS
+from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..pictures.curve import WORDS
@@ -31,7 +32,7 @@ from ..session.share import joined
 from ..session.task import Task
 from .bar import CHOICES, CurveBar
 from .chapters import Chapters, stated_name
-from .sweep import COARSE, DIRECTIONS, Progress, Sweep, grid
+from .sweep import COARSE, Progress, Sweep, grid
 from .view import CurveFigure
 
 
@@ -182,7 +183,7 @@ class CurveController:
     def activities(self) -> list[Activity]:
         """Name, state and detail of every direction, as it is at this moment."""
         found = []
-        for name in DIRECTIONS:
+        for name in CURVE_STARTS:
             title = f"resonance curve, {WORDS[name]}"
             if not self._wanted[name]:
                 found.append((title, OFF, "not selected"))
@@ -208,18 +209,18 @@ class CurveController:
     def complete(self, scene: Scene) -> dict[str, list[CurvePoint]]:
         """The curves of a scene that are drawn and complete, by their starts."""
         key = without_frequency(scene)
-        return {name: self._figure.points(name) for name in DIRECTIONS
+        return {name: self._figure.points(name) for name in CURVE_STARTS
                 if self._wanted[name] and self._computed.get(name) == key}
 
     def _begin(self, scene: Scene) -> None:
         """Compute the selected directions that are missing; a change of f alone needs no new curve."""
         key = without_frequency(scene)
-        missing = [name for name in DIRECTIONS
+        missing = [name for name in CURVE_STARTS
                    if self._visible and self._wanted[name] and self._computed.get(name) != key]
         for name in missing:
             self._computed.pop(name, None)
         self._key = key
-        shown = [name for name in DIRECTIONS if self._wanted[name]]
+        shown = [name for name in CURVE_STARTS if self._wanted[name]]
         with unlocked():
             self._figure.show_directions(shown)
             self._figure.begin(missing)

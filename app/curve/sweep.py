@@ -18,7 +18,6 @@ from ..serve.turns import CpuTime
 from ..session.session import slider_range, without_frequency
 from ..session.task import Job
 
-DIRECTIONS = ("rest", "up", "down")
 COARSE, _SWEEP = 75, 150
 _PASSES = 2
 

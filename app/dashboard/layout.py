@@ -13,7 +13,6 @@ from bokeh.models import Range1d
 from panel.io import unlocked
 
 from granchain_core import Settled
-from granchain_core.experiment.measured import MOST_BYTES
 
 from ..curve.bar import KINDS, CurveBar
 from ..curve.view import CurveFigure
@@ -30,6 +29,7 @@ from ..pictures.curve import KEY
 from ..pictures.energies import ENERGY_COLOURS
 from ..pictures.theme import Theme, style_sheet
 from ..scripts import IN_PAGE, modules
+from ..serve.limits import LARGEST_UPLOAD
 from ..session.session import Session
 from ..session.terms import definitions
 from .scales import Scales
@@ -57,7 +57,7 @@ class Views:
         self.curve = CurveFigure(choose)
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
-            "largest_file": MOST_BYTES, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
+            "largest_file": LARGEST_UPLOAD, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
             "pages": watched_pages(), "regimes": KINDS})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)

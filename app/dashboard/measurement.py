@@ -22,16 +22,17 @@ from granchain_core.experiment import (
     answers_of,
     read_data,
 )
-from granchain_core.experiment.labelled import HDF5, read_labelled
-from granchain_core.experiment.measured import MOST_BYTES, MOST_ROWS
+from granchain_core.experiment.labelled import read_labelled
 from granchain_core.experiment.reader import TABLE_KINDS
 from granchain_core.experiment.units import QUANTITIES, UNITS
+from granchain_core.hdf5 import SIGNATURE
 from granchain_core.scene import ASSETS
 from granchain_core.scene.driven import refuse_undriven
 
 from ..curve.page import CurveController
 from ..format import in_words, signed_in_words
 from ..serve.compiler import PICTURE_PIECES
+from ..serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from ..serve.queues import FILES
 from ..session.budget import check_first_picture
 from ..session.hooks import Actions
@@ -53,7 +54,7 @@ _ROWS = 100
 #: Sample files, computed by granchain with noise; their comments say so.
 SAMPLES = ASSETS / "samples"
 
-_TOO_LARGE = (f"The measurement is larger than {MOST_BYTES / 1e6:g} MB; a curve of frequency and force needs a few "
+_TOO_LARGE = (f"The measurement is larger than {LARGEST_UPLOAD / 1e6:g} MB; a curve of frequency and force needs a few "
               "kB.")
 
 
@@ -190,7 +191,7 @@ def _content(message: dict[str, Any]) -> bytes:
         content = base64.b64decode(coded if isinstance(coded, str) else "!", validate=True)
     except (binascii.Error, ValueError):
         raise BadInput("The measurement did not arrive as a file; choose it again.") from None
-    if len(content) > MOST_BYTES:
+    if len(content) > LARGEST_UPLOAD:
         raise BadInput(_TOO_LARGE)
     return content
 
@@ -198,16 +199,16 @@ def _content(message: dict[str, Any]) -> bytes:
 def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
     """The curve or the series in a file. Raises `Unclear` and `BadInput`."""
     found: Measured | Series | Shaker
-    if content.startswith(HDF5):
+    if content.startswith(SIGNATURE):
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "data.h5"
             path.write_bytes(content)
             found = read_labelled(path, answers, TABLE_KINDS, name)
     else:
         try:
-            found = read_data(content, answers, TABLE_KINDS, name, MOST_BYTES, MOST_ROWS)
+            found = read_data(content, answers, TABLE_KINDS, name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
         except Unclear:  # asked again for a curve alone, which is what the page offers
-            found = read_data(content, answers, ("curve",), name, MOST_BYTES, MOST_ROWS)
+            found = read_data(content, answers, ("curve",), name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
     if isinstance(found, Shaker):
         raise BadInput(f"{name} is the shaker's amplitude, and the page draws curves of frequency and force, and "
                        "series of forces; use granchain curve --amplitude FILE.")
@@ -215,8 +216,8 @@ def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
         if found.input_force is None and found.output_force is None:
             raise BadInput(f"{name} is a time series without a force; the page draws input and output force.")
         return found
-    if len(found.frequency) > MOST_ROWS:
-        raise BadInput(f"{name} has {len(found.frequency)} points, and the page draws up to {MOST_ROWS}.")
+    if len(found.frequency) > MOST_UPLOADED_POINTS:
+        raise BadInput(f"{name} has {len(found.frequency)} points, and the page draws up to {MOST_UPLOADED_POINTS}.")
     return found
 
 

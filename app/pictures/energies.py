@@ -1,4 +1,7 @@
-"""The colour scale of kinetic energy, the same for the page, files and notebooks, and its colour bar."""
+"""The colours of kinetic energy from 0 to the largest that a picture is drawn to, and their bar.
+
+The page, files and notebooks share the colours, and choose that largest value each in their way.
+"""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from concurrent.futures import Future, wait
 from pathlib import Path
 
 from granchain_core import Scene
-from granchain_core.pieces import ADAPTIVE_KERNELS, CURVE_KERNELS, FIXED_STEP_KERNELS
+from granchain_core.pieces import CURVE_KERNELS, MOTION_KERNELS
 from granchain_core.stop import Stop
 from granchain_core.warm import compile_piece, is_warm, structure
 
@@ -25,9 +25,8 @@ from .queues import COMPILATIONS, LOADING
 
 log = logging.getLogger("granchain")
 
-#: The kernels of a run, and those of the main picture and its curve.
-MOTION_PIECES = (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS)
-PICTURE_PIECES = (*MOTION_PIECES, CURVE_KERNELS)
+#: The kernels of the main picture and its curve.
+PICTURE_PIECES = (*MOTION_KERNELS, CURVE_KERNELS)
 _ROOT = Path(__file__).resolve().parents[2]
 
 

@@ -21,6 +21,7 @@ from bokeh.util.token import get_session_id
 from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 
 from .compressed import CompressedFiles
+from .limits import USUAL_VISITORS
 from .message_rules import RefusedMessage, check
 from .meters import METERS
 from .part_messages import take
@@ -39,7 +40,7 @@ class Rules:
     """What is allowed: hosts (all if empty), most visitors at once, and the origins whose pages may embed this one."""
 
     hosts: frozenset[str] = frozenset()
-    most_visitors: int = 200
+    most_visitors: int = USUAL_VISITORS
     embedding: tuple[str, ...] = ()
     #: Ids of sessions that had their connection, and when [s].
     connected: dict[str, float] = field(default_factory=dict)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 
 from granchain_core import BadInput, Scene
-from granchain_core.run.budget import check_picture, picture_seconds
+from granchain_core.run.budget import picture_seconds, refuse_long_picture
 
 from ..frames import PERIODS, samples_for
 from .session import slider_range
@@ -25,7 +25,7 @@ _CURVE_PERIODS = 10_000
 
 def check_first_picture(scene: Scene) -> None:
     """Raise `OverBudget` if the first picture would take too long; the sentence says what would fit."""
-    check_picture(scene, _PERIODS, samples_for(scene), FIRST_PICTURE)
+    refuse_long_picture(scene, _PERIODS, samples_for(scene), FIRST_PICTURE)
 
 
 class RefusedPicture(BadInput):

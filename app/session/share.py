@@ -15,10 +15,11 @@ from urllib.parse import parse_qsl, urlencode
 from granchain_core import BadInput, Scene, scene, scene_names
 from granchain_core.errors import unknown_name
 from granchain_core.quantities import QUANTITIES
+from granchain_core.steady.curve.order import CURVE_STARTS
 
 VERSION = "1"
 #: What the curve's figure may draw: curves from rest and by sweeps, and the paper's stated features.
-CURVES = ("rest", "up", "down", "features")
+CURVES = (*CURVE_STARTS, "features")
 
 
 def joined(names: Iterable[str]) -> str:

@@ -11,15 +11,10 @@ from ..errors import BadInput
 from ..hdf5 import File, opened
 from ..hdf5.plain import Refused, Stored
 from .columns import Asked, chosen_columns, in_si
-from .measured import Measured
+from .measured import MOST_ROWS, Measured
 from .question import Answers, Guess
 from .series import Series, Shaker
 from .units import heading, unit_named
-
-#: What every HDF5 file, and so every netCDF-4 file, begins with.
-HDF5 = b"\x89HDF\r\n\x1a\n"
-#: Most rows of a measurement.
-_MOST_ROWS = 1_000_000
 
 
 def read_labelled(path: str | Path, answers: Answers, wanted: Sequence[str],
@@ -63,7 +58,7 @@ def _rows(file: File) -> tuple[dict[str, Stored], str]:
         except Refused as problem:
             refused = refused or str(problem)
             continue
-        if len(stored.shape) == 1 and 2 <= stored.shape[0] <= _MOST_ROWS and stored.type != "text":
+        if len(stored.shape) == 1 and 2 <= stored.shape[0] <= MOST_ROWS and stored.type != "text":
             found[name] = stored
     return found, refused
 

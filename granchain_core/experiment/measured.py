@@ -6,10 +6,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-#: Largest file that the page takes [bytes].
-MOST_BYTES = 2_000_000
-#: Most points that it draws.
-MOST_ROWS = 20_000
+#: Largest file with a measurement [bytes], and most rows of it.
+MOST_BYTES, MOST_ROWS = 50_000_000, 1_000_000
 #: The words at the beginning of the note of data that were computed (granchain_core/virtual).
 VIRTUAL = "virtual experiment"
 

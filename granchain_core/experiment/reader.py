@@ -12,17 +12,16 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import BadInput
+from ..hdf5 import SIGNATURE
 from .columns import NO_CONVENTION, Asked, Convention, answered, in_si
 from .digitizer import datasets_in, is_project, is_two_headed
 from .grid import Row, grid_of
-from .labelled import HDF5, read_labelled
-from .measured import Measured
+from .labelled import read_labelled
+from .measured import MOST_BYTES, MOST_ROWS, Measured
 from .question import Answers, Guess, Question, Unclear, first_rows
 from .series import Series, Shaker
 from .text_table import decimal_of, number_of, read_text_table
 
-#: Largest file accepted [bytes] and most rows of it.
-MOST_BYTES, MOST_ROWS = 50_000_000, 1_000_000
 #: What a file can hold: a resonance curve, the shaker's amplitudes over frequency, a time series.
 TABLE_KINDS = ("curve", "shaker", "series")
 
@@ -40,7 +39,7 @@ def read_experiment(path: str | Path, answers: Answers | None = None,
     except OSError as problem:
         raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
     try:
-        if content.startswith(HDF5):
+        if content.startswith(SIGNATURE):
             found = read_labelled(path, answers or Answers(), wanted, path.name)
         else:
             found = read_data(content, answers, wanted, path.name)

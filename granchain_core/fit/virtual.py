@@ -1,4 +1,7 @@
-"""Synthetic data: curves and series of a model with known parameters and noise, marked as synthetic."""
+"""Curves and series of a model with known parameters and normal noise, marked as virtual, to test fits with.
+
+granchain_core/virtual simulates sensors and writes files.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from ..experiment import Measured, Series
+from ..experiment.measured import VIRTUAL
 from ..scene import Scene
 from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.settle import settle
 from .trains import Train
 
-SOURCE = "virtual experiment"
 #: Samples of the model for one of a series.
 _FINER = 16
 
@@ -24,7 +27,7 @@ def virtual_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, error
     exact = curve.column("max_output_force")
     force = np.maximum(exact * (1.0 + error * random.standard_normal(len(exact))), 1e-12)
     return Measured(curve.column("frequency"), force, error * exact,
-                    f"virtual: {scene.name} with noise of {100 * error:g} %", source=SOURCE,
+                    f"virtual: {scene.name} with noise of {100 * error:g} %", note=VIRTUAL,
                     units={"frequency": "Hz", "force": "N"})
 
 
@@ -35,4 +38,4 @@ def virtual_series(scene: Scene, periods: int, samples: int, error: float, rando
     begun, width = random.random() * float(found.time[-1] - found.time[0]), 1.0 / (samples * scene.f)
     forces = [Train.of(found, name).mean_over(time + begun, width) + error * random.standard_normal(len(time))
               for name in ("input_force", "output_force")]
-    return Series(time, None, forces[0], forces[1], f"virtual: {scene.name} with noise of {error:g} N", source=SOURCE)
+    return Series(time, None, forces[0], forces[1], f"virtual: {scene.name} with noise of {error:g} N", note=VIRTUAL)

@@ -1,6 +1,6 @@
 """Reading and writing HDF5 files safely: files are sealed, and nothing in a file is trusted."""
 
 from .border import File, opened
-from .seal import VERSIONS, seal
+from .seal import SIGNATURE, VERSIONS, seal
 
-__all__ = ["VERSIONS", "File", "opened", "seal"]
+__all__ = ["SIGNATURE", "VERSIONS", "File", "opened", "seal"]

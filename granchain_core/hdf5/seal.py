@@ -20,7 +20,8 @@ from .plain import Refused
 
 #: Bounds of the HDF5 version whose superblock (version 2) tells sealed files from older ones; since HDF5 1.8 (2008).
 VERSIONS = ("v108", "v108")
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+#: What every HDF5 file, and so every netCDF-4 file, begins with.
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _LINE = "\ngranchain: SHA-256 of the {:020d} bytes before this line is {}\n"
 _PATTERN = re.compile(rb"\ngranchain: SHA-256 of the (\d{20}) bytes before this line is ([0-9a-f]{64})\n")
 _LENGTH = len(_LINE.format(0, "0" * 64))
@@ -45,8 +46,8 @@ def is_sealed(path: Path, required: bool = True) -> bool:
         path.stat()  # says why, if it is not there
         raise Refused("it is not a file")
     with path.open("rb") as file:
-        head = file.read(len(_SIGNATURE) + 1)
-        if head[:-1] != _SIGNATURE:
+        head = file.read(len(SIGNATURE) + 1)
+        if head[:-1] != SIGNATURE:
             raise Refused("it is not an HDF5 file, or its beginning is damaged")
         size = file.seek(0, os.SEEK_END) - _LENGTH
         file.seek(max(size, 0))

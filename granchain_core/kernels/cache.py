@@ -26,22 +26,30 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core import caching
-from numba.core.runtime import rtsys
-from numba.core.serialize import dumps
 
 from .compile_lock import CompileLock
 from .sources import FOLDER, constants_hash, hash_of_code, sources_hash, wording_hash
 
-#: Numba's classes; where one is missing, no kernel is kept on disk.
-_CLASSES = ("FunctionCache", "CompileResultCacheImpl", "UserProvidedCacheLocator")
-_FunctionCache: Any = getattr(caching, "FunctionCache", object)
-_Impl: Any = getattr(caching, "CompileResultCacheImpl", object)
-_UserProvidedLocator: Any = getattr(caching, "UserProvidedCacheLocator", object)
-#: Private methods of `FunctionCache` that `KernelCache` calls.
-_NEEDED = ("_load_overload", "_index_key", "_guard_against_spurious_io_errors")
+_FunctionCache: Any
+_Impl: Any
+_UserProvidedLocator: Any
+try:
+    from numba.core.caching import CompileResultCacheImpl as _Impl
+    from numba.core.caching import FunctionCache as _FunctionCache
+    from numba.core.caching import UserProvidedCacheLocator as _UserProvidedLocator
+    from numba.core.runtime import rtsys
+    from numba.core.serialize import dumps
+except ImportError as missing:  # `keep_on_disk` says so
+    _FunctionCache = _Impl = _UserProvidedLocator = object
+    _IMPORT_PROBLEM = str(missing)
+else:
+    _IMPORT_PROBLEM = ""
+#: Private attributes of `FunctionCache` that `KernelCache` uses or replaces.
+_NEEDED = ("_load_overload", "_index_key", "_guard_against_spurious_io_errors", "_impl_class")
 #: Where messages for the user go: to stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
+#: How the names of the files begin by which warm.py marks what is compiled.
+MARK = "compiled-"
 #: Bytes of a checksum.
 _DIGEST = 32
 #: Folders of other versions are removed when they have not been used for this long [s].
@@ -202,14 +210,18 @@ class _Files:
 
 
 def whole(path: Path) -> bytes:
-    """The content of a file. One with a wrong checksum is deleted, and `FileNotFoundError` raised."""
+    """The content of a file. One with a wrong checksum is deleted, and `FileNotFoundError` raised.
+
+    It may belong to anything that is marked as compiled, so all marks are deleted with it.
+    """
     stored = path.read_bytes()
     digest, content = stored[:_DIGEST], stored[_DIGEST:]
     if hashlib.sha256(content).digest() == digest:
         return content
     say_once(f"Damaged kernels in {path.parent.parent} are dropped and compiled again.")
-    with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
-        os.unlink(path)
+    for file in (path, *path.parent.parent.glob(f"{MARK}*")):
+        with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
+            os.unlink(file)
     raise FileNotFoundError(path)
 
 
@@ -221,8 +233,11 @@ class _Locator(_UserProvidedLocator):
     another environment, installed again or with other comments, find what is compiled already.
     """
 
+    _cache_path: str
+
     def __init__(self, py_func: Any, py_file: str) -> None:
         super().__init__(py_func, py_file)
+        _ = self._cache_path  # AttributeError where Numba does not look there
         self._cache_path = str(Path(numba.config.CACHE_DIR) / py_func.__module__)
         self._constants = constants_hash(py_func)
 
@@ -253,14 +268,17 @@ class KernelCache(_FunctionCache):
 
     def __init__(self, function: Any) -> None:
         for name in _NEEDED:
-            getattr(self, name)
-        _ = _Impl._locator_classes
+            getattr(_FunctionCache, name)
+        _ = _Impl._locator_classes, rtsys.initialize
         before = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = str(CACHE_FOLDER)
         try:
             super().__init__(function)
         finally:
             numba.config.CACHE_DIR = before
+        _ = self._cache_file  # Numba's own, which is replaced
+        if not isinstance(self._impl.locator, _Locator):
+            raise AttributeError("its cache has a place of its own")
         files = _Files(self.cache_path, self._impl.filename_base, self._impl.locator.get_source_stamp())
         self._cache_file: Any = files
         self._locks: dict[Path, CompileLock] = {}
@@ -318,8 +336,8 @@ def keep_on_disk(compiled: Any) -> None:
     if CACHE_FOLDER is None:
         return
     try:
-        for name in _CLASSES:
-            getattr(caching, name)
+        if _IMPORT_PROBLEM:
+            raise AttributeError(_IMPORT_PROBLEM)
         _ = compiled._cache
         compiled._cache = KernelCache(compiled.py_func)
     except AttributeError as missing:

@@ -16,7 +16,8 @@ from typing import Any
 from numba.core import codegen, compiler
 
 #: What is used of Numba's class for a compiled function's code, beyond its documentation.
-_NEEDED = ("_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols", "codegen")
+_NEEDED = ("_finalize_final_module", "_finalize_dynamic_globals", "_verify_declare_only_symbols", "_ensure_finalized",
+           "_finalized", "codegen")
 
 
 class _NoAddresses:
@@ -60,7 +61,9 @@ class _LinkOnlyCompiler(compiler.Compiler):
 
     def define_pipelines(self) -> Any:
         state = self.state
-        state["library"] = _LinkOnly(state.targetctx.codegen(), state.func_id.func_qualname)
+        library = _LinkOnly(state.targetctx.codegen(), state.func_id.func_qualname)
+        if hasattr(library, "_codegen"):  # which only an instance has
+            state["library"] = library
         return super().define_pipelines()
 
 

@@ -11,16 +11,13 @@ from pathlib import Path
 
 from ..errors import BadInput, unknown_name
 from ..experiment import Answers, Convention, Series, read_data
+from ..experiment.measured import MOST_BYTES, MOST_ROWS
 from ..experiment.units import UNITS, unit_named
-from ..hdf5 import File, opened
+from ..hdf5 import SIGNATURE, File, opened
 from ..hdf5.plain import Refused
 from ..integrate import State
 from .record import ForceRecord, checked
 
-#: Largest file accepted [bytes].
-MOST_BYTES = 50_000_000
-#: Most rows accepted.
-MOST_ROWS = 1_000_000
 #: Endings of the names of HDF5 files, whose beginning may be damaged.
 _HDF5 = (".h5", ".hdf5")
 
@@ -38,7 +35,7 @@ def read_force(path: str | Path, time_unit: str | None = None, force_unit: str |
             content = file.read(MOST_BYTES + 1)
     except OSError as problem:
         raise BadInput(f"Cannot read {str(path)[:200]}: {problem.strerror or problem}.") from None
-    if content.startswith(b"\x89HDF") or path.suffix in _HDF5:
+    if content.startswith(SIGNATURE[:4]) or path.suffix in _HDF5:
         if time_unit is not None or force_unit is not None:
             raise BadInput(f"{path.name} is an HDF5 file, whose units are s and N; they are chosen for CSV only.")
         return checked(_from_hdf5(path))

@@ -65,14 +65,15 @@ class CompilerClock(event.Listener):
             self._own.seconds = self.seconds + self._clock() - self._own.began
 
 
-COMPILER = CompilerClock()
-event.register("numba:compiler_lock", COMPILER)
+COMPILER_CLOCK = CompilerClock()
+event.register("numba:compiler_lock", COMPILER_CLOCK)
 
 
 class Stopwatch:
     """Time of a computation in this thread, without that of compiling kernels at their first use."""
 
-    def __init__(self, clock: Callable[[], float] = time.perf_counter, compiler: CompilerClock = COMPILER) -> None:
+    def __init__(self, clock: Callable[[], float] = time.perf_counter,
+                 compiler: CompilerClock = COMPILER_CLOCK) -> None:
         self._clock, self._compiler = clock, compiler
         self._began, self._compiled = clock(), compiler.seconds
 
@@ -126,7 +127,7 @@ def picture_seconds(scene: Scene, periods: int, samples: int) -> float:
     return steps * (cost.fixed + cost.each * (scene.N + 1)) * machine_factor()
 
 
-def check_picture(scene: Scene, periods: int, samples: int, budget: float) -> None:
+def refuse_long_picture(scene: Scene, periods: int, samples: int, budget: float) -> None:
     """Raise `OverBudget`, whose sentence says what fits, if a picture would take longer than `budget` [s]."""
     seconds = picture_seconds(scene, periods, samples)
     if seconds <= budget:

@@ -29,8 +29,8 @@ from .sensors import Sensors
 _FINER, _PER_BANDWIDTH, _LEAST = 4, 32, 96
 #: Relative error of the state that a record begins with, and steps of the record for one default step.
 _ACCURACY, _REFINE = 1e-5, 2
-#: Most samples of a series, records of a curve, and values of the model's motion behind one of them.
-MOST_SAMPLES, MOST_RECORDS, MOST_VALUES = 1_000_000, 10_000, 20_000_000
+#: Most samples of a series, records of a curve, values of the model's motion behind one of them, and drive periods.
+MOST_SAMPLES, MOST_RECORDS, MOST_VALUES, MOST_PERIODS = 1_000_000, 10_000, 20_000_000, 10_000
 
 
 def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None) -> str:
@@ -72,7 +72,7 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     (True, 150)
     """
     refuse_undriven(scene)
-    check_range("periods =", periods, 1, 10_000)
+    check_range("periods =", periods, 1, MOST_PERIODS)
     count = round(periods * sensors.rate / scene.f)
     check_range("samples (periods · rate / f) =", count, 8, MOST_SAMPLES)
     random = np.random.default_rng(seed)
@@ -134,7 +134,7 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     refuse_undriven(scene)
     check_range("repeats =", repeats, 1, 100)
     check_range("scatter =", scatter, 0.0, 0.5)
-    check_range("periods =", periods, 1, 10_000)
+    check_range("periods =", periods, 1, MOST_PERIODS)
     count = len(frequencies) * repeats
     check_range("records (frequencies · repeats) =", count, 1, MOST_RECORDS)
     random, rows = np.random.default_rng(seed), []

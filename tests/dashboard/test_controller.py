@@ -22,12 +22,12 @@ from app.dashboard.table import PAGES, watched_pages
 from app.frames import Extremes, settled_frames
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
+from app.serve.limits import LARGEST_UPLOAD
 from app.serve.meters import METERS
 from app.session.budget import RefusedPicture
 from app.session.hooks import all_actions
 from app.session.message_checks import listed, whole
 from granchain_core import BadInput, run, scene, settle
-from granchain_core.experiment.measured import MOST_BYTES
 from granchain_core.result import GIVEN_STATE
 
 
@@ -62,7 +62,7 @@ def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence(dashbo
 
 @pytest.mark.parametrize(("text", "sentence", "understood"), [
     ("frequency_Hz,force_N\n40,5.5\n60,12.1\n", "", "mine.csv: 2 points"),
-    ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (MOST_BYTES + 1), "larger than 2 MB", "")])
+    ("frequency_Hz,force_N\n40,five\n", "Line 2", ""), ("4" * (LARGEST_UPLOAD + 1), "larger than 2 MB", "")])
 def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str, sentence: str, understood: str,
                                                  monkeypatch: pytest.MonkeyPatch) -> None:
     """Reading 2 MB with the document locked would hold up every visitor."""
@@ -75,7 +75,7 @@ def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str
     dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
     assert sentence in dashboard.session.sentence
     assert dashboard.views.tabs.state.get("understood", "").startswith(understood)
-    assert all(name.startswith("files") for name in threads) and bool(threads) == (len(text) <= MOST_BYTES)
+    assert all(name.startswith("files") for name in threads) and bool(threads) == (len(text) <= LARGEST_UPLOAD)
 
 
 def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -241,7 +241,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
     monkeypatch.setattr(server.gc, "freeze", lambda: None)
     monkeypatch.setattr(server.settings.perform_document_validation, "set_value", lambda value: None)
     server.serve()
-    message = json.dumps({"do": "csv", "name": "x" * 1000, "content": base64.b64encode(bytes(MOST_BYTES)).decode()})
+    message = json.dumps({"do": "csv", "name": "x" * 1000, "content": base64.b64encode(bytes(LARGEST_UPLOAD)).decode()})
     assert len(message) < given["websocket_max_message_size"] < 3_000_000
     assert given["websocket_ping_interval"] == given["websocket_ping_timeout"] == 20
     assert given["http_server_kwargs"]["idle_connection_timeout"] == 60 and given["http_server_kwargs"]["body_timeout"] == 30

@@ -14,6 +14,7 @@ import pytest
 
 from granchain_core import Amplitude, BadInput, Cancelled, Fit, Stop, fit, resonance_curve, scene
 from granchain_core.experiment import Feature, Measured, Series, read_data
+from granchain_core.experiment.measured import VIRTUAL
 from granchain_core.fit import CurveTarget, FeatureTarget, Free, SeriesTarget, virtual_curve, virtual_series
 from granchain_core.fit.parameters import free_of, per_frequency, stiffened, with_values
 from granchain_core.fit.search import Problem
@@ -70,6 +71,11 @@ def test_a_series_gives_back_what_made_it() -> None:
     found = fit(CHAIN.evolve(f=1800.0), SeriesTarget(series, error), [Free("D", 60.0, 200.0)])
     assert found.profiles[0].low < 115.0 < found.profiles[0].high and found.verdict == "can"
     assert found.profiles[0].high - found.profiles[0].low < 10.0
+
+
+def test_what_was_computed_is_not_called_measured() -> None:
+    series = virtual_series(CHAIN, 1, 48, 0.0, np.random.default_rng(1))
+    assert measured().virtual and series.virtual and measured().word == series.word == VIRTUAL
 
 
 def test_the_model_cannot_what_no_parameters_can() -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 import pytest
 
 from granchain_core.hard.long_runs import cut_and_gone_on, uninterrupted
+from granchain_core.integrate import METHODS
 
 
-@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
+@pytest.mark.parametrize("method", METHODS)
 def test_cuts_change_no_number(method: str) -> None:
     assert cut_and_gone_on(method, 8, 5) == 0.0
     assert uninterrupted(method, 8, 5) == 0.0

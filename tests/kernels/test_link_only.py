@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from operator import attrgetter
+from pathlib import Path
 from typing import Any
 
 import numba
 import pytest
 
+from granchain_core.kernels import link_only
 from granchain_core.kernels.jit import Internal
 from granchain_core.kernels.link_only import compiler_options
 
@@ -17,6 +20,11 @@ code_of = attrgetter("library")
 
 class AnotherLibrary:
     """A class of Numba's for compiled code that lacks what link_only.py uses."""
+
+
+#: The private names in the row of docs/design.md.
+NAMES = re.findall(r"`(_\w+)`", re.findall(r"^\| ([^|]+) \| `kernels/link_only.py` \|", (
+    Path(__file__).parents[2] / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)[0])
 
 
 def sum_of_squares(options: dict[str, Any]) -> tuple[Any, Any]:
@@ -51,6 +59,28 @@ def test_only_the_kernel_is_translated() -> None:
     assert code_of(whole).get_pointer_to_function(whole.fndesc.llvm_cpython_wrapper_name) != 0
     assert code_of(part).get_pointer_to_function(name) == 0
     assert name in code_of(part).get_llvm_str()
+
+
+@pytest.mark.parametrize("name", [name for name in NAMES if name != "_codegen"])
+def test_without_any_attribute_of_the_class_every_function_is_translated(name: str) -> None:
+    assert len(NAMES) == 6
+    held = [one for one in (*link_only._NEEDED, "get_pointer_to_function") if one != name]
+    assert "pipeline_class" not in compiler_options(type("Library", (), dict.fromkeys(held)))
+    assert "pipeline_class" in compiler_options(type("Library", (), dict.fromkeys([*held, name])))
+
+
+def test_without_the_attribute_of_an_instance_every_function_is_translated(monkeypatch: pytest.MonkeyPatch) -> None:
+    begin = link_only._LinkOnly.__init__
+
+    def init(self: Any, *arguments: Any) -> None:
+        begin(self, *arguments)
+        del self._codegen
+
+    monkeypatch.setattr(link_only._LinkOnly, "__init__", init)
+    kernel, square = sum_of_squares(compiler_options())
+    assert kernel(3.0, 4.0) == 25.0
+    (part,) = square.dispatcher.overloads.values()
+    assert code_of(part).get_pointer_to_function(part.fndesc.llvm_func_name) != 0
 
 
 def test_where_numba_is_another_every_function_is_translated() -> None:

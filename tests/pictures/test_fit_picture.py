@@ -34,6 +34,7 @@ def test_a_curve_with_its_residuals_and_its_landscape() -> None:
     shown = plots(drawn(found, THEMES["dark"]))
     assert set(shown) == {"data", "residuals", "landscape of D"}
     assert list(source(shown["data"], "measured")["frequency"]) == [1800.0, 2000.0, 2200.0]
+    assert "virtual experiment" in [item.label.value for item in shown["data"].legend[0].items]
     assert source(shown["residuals"], "residuals")["residual"] == pytest.approx(found.evaluation.residuals)
     assert "95 %" in shown["landscape of D"].title.text and "degrees of freedom" in shown["data"].title.text
     squares = [glyph for glyph in shown["data"].renderers if getattr(getattr(glyph, "glyph", None), "marker", "") == "square"]

@@ -6,10 +6,13 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
 from docker_context import ROOT, copy_context, let_through
+
+from granchain_core import __version__
 
 #: What the hook in hatch_build.py is asked, without a network to fetch hatchling.
 PLACES = """
@@ -45,6 +48,14 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         else:
             shutil.copy(source / here, target)  # hatchling ends as well where a file is missing
     return folder
+
+
+def test_the_citation_and_the_list_of_changes_name_the_version() -> None:
+    """The wheel's is read from granchain_core/version.py."""
+    told = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    assert told["project"]["dynamic"] == ["version"] and (ROOT / told["tool"]["hatch"]["version"]["path"]).is_file()
+    assert f"\nversion: {__version__}\n" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"\n## [{__version__}]" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
 def test_the_docker_image_gets_nothing_else() -> None:

@@ -20,18 +20,24 @@ from listening import Listening
 from app import server
 from app.curve.sweep import CURVES_SHARED
 from app.dashboard.main_picture import PICTURES_SHARED
+from app.pages.analysis import questions
 from app.serve import guard
 from app.serve.compiler import Compiler
+from app.serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from app.server import Access
+from app.session import starts
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
-from app.session.share import LONGEST
-from granchain_core.experiment.measured import MOST_BYTES
+from app.session.share import LONGEST, PINS
+from granchain_core.orbits.branch.branch import MOST_POINTS
+from granchain_core.quantities import QUANTITIES
 
 SECRET = b"a secret of this test alone, long enough"
 
 
 LIMITS = dict(re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", (Path(__file__).parents[2] / "docs" / "security.md").read_text(
-    encoding="utf-8").split("| limit | value |")[1], re.MULTILINE))
+    encoding="utf-8").split("| limit | value |")[1].split("\n\n")[0], re.MULTILINE))
+ASKED = dict(re.findall(r"^\| ([^|]+) \| (\d+) \|$", (Path(__file__).parents[2] / "docs" / "security.md").read_text(
+    encoding="utf-8").split("| a visitor asks for | at most |")[1].split("\n\n")[0], re.MULTILINE))
 
 
 def test_the_limits_of_the_document_are_those_of_the_code() -> None:
@@ -41,7 +47,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
         "a request's body": f"{server.BODY} s, {server.LARGEST_BODY // 1000} kB",
         "a connection that sends nothing": f"{server.IDLE} s",
         "a websocket that does not answer pings": f"{server.PING} to {2 * server.PING} s",
-        "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {MOST_BYTES / 1e6:g} MB in base64",
+        "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {LARGEST_UPLOAD / 1e6:g} MB in base64",
         "websocket frames": f"{guard.FRAMES_A_SECOND:g} a second, {guard.FRAMES_AT_ONCE:g} at once; then the connection is closed "
                             "(1008)",
         "a link": f"{LONGEST} characters",
@@ -49,6 +55,16 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
     } == LIMITS
+
+
+def test_what_pages_may_be_asked_is_what_the_document_says() -> None:
+    assert {
+        "beads of a chain": QUANTITIES["N"].high, "pins": len(PINS), "beads whose state a link holds": starts.MOST_BEADS,
+        "points of a measurement": MOST_UPLOADED_POINTS, "points of a branch, each way": MOST_POINTS,
+        "Analysis: beads": questions.MOST_BEADS, "Analysis: values of a knob": questions.MOST_VALUES,
+        "Analysis: starts of each of two knobs": questions.MOST_STARTS, "Analysis: drive periods": questions.MOST_PERIODS,
+        "Analysis: strobes kept": questions.MOST_STROBES,
+    } == {name: int(value) for name, value in ASKED.items()}
 
 
 @pytest.fixture(scope="module")

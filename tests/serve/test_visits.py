@@ -20,7 +20,7 @@ from app.dashboard.controller import Controller
 from app.serve.queues import PICTURES, VISITORS
 from app.server import Access
 from granchain_core import OverBudget, scene
-from granchain_core.run.budget import check_picture
+from granchain_core.run.budget import refuse_long_picture
 from tools.visitors.viewer import Viewer, query_of
 
 
@@ -87,8 +87,8 @@ def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit()
 def test_what_is_said_to_fit_fits() -> None:
     chain = scene("sec2").evolve(N=10_000, f=0.5)
     with pytest.raises(OverBudget, match=r"N = (\d+) or f = ([\d.]+) Hz would fit") as refused:
-        check_picture(chain, 6, 384, 5.0)
+        refuse_long_picture(chain, 6, 384, 5.0)
     words = str(refused.value).split()
     beads, frequency = int(words[words.index("N") + 2]), float(words[words.index("f") + 2])
-    check_picture(chain.evolve(N=beads), 6, 384, 5.0)
-    check_picture(chain.evolve(f=frequency), 6, 384, 5.0)
+    refuse_long_picture(chain.evolve(N=beads), 6, 384, 5.0)
+    refuse_long_picture(chain.evolve(f=frequency), 6, 384, 5.0)

@@ -33,4 +33,4 @@ BROAD: tuple[str, ...] = ("tests/kernels", "tests/scene", "tests/physics", "test
                           "tests/steady", "tests/orbits", "tests/observe", "tests/diagram", "tests/hard/test_outcomes.py", "tests/hard/test_broken.py",
                           "tests/hard/test_cases.py", "tests/hard/test_fuzz.py",
                           "--deselect", "tests/kernels/test_machine_code.py", "--deselect", "tests/kernels/test_cache.py",
-                          "-k", "not timings and not stop_flag")
+                          "-k", "not stop_flag")

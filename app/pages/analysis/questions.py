@@ -14,7 +14,7 @@ from bokeh.models import LayoutDOM
 from granchain_core import BadInput, Scene, Stop, basins, lyapunov_spectrum, run, settle, spectrum, strobe_diagram
 from granchain_core.analysis.spectrum import FORCES
 from granchain_core.errors import check_range, unknown_name
-from granchain_core.pieces import CURVE_KERNELS, ORBIT_KERNELS
+from granchain_core.pieces import CURVE_KERNELS, MOTION_KERNELS, ORBIT_KERNELS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.text import number_in, whole_in
@@ -24,7 +24,6 @@ from ...pictures.lyapunov import lyapunov as draw_lyapunov
 from ...pictures.spectrum import spectrum as draw_spectrum
 from ...pictures.strobe_diagram import strobe_diagram as draw_strobes
 from ...pictures.theme import Theme
-from ...serve.compiler import MOTION_PIECES
 
 #: Most beads of a chain, values of a knob, starts along an axis, periods and strobes that the page computes; the
 #: commands take more.
@@ -170,7 +169,7 @@ def _spectrum_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
         return spectrum(run(chain, 0, _RECORD, _SAMPLES, start=settled.state, stop=stop), chosen["force"])
 
     return Plan(f"Spectrum of the {chosen['force']} force, {_about(chain)}",
-                _command("spectrum", chain, f"--force {chosen['force']}"), ((chain, MOTION_PIECES),), compute,
+                _command("spectrum", chain, f"--force {chosen['force']}"), ((chain, MOTION_KERNELS),), compute,
                 draw_spectrum)
 
 
@@ -187,7 +186,7 @@ def _lyapunov_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
         return lyapunov_spectrum(chain, periods, stop=stop, progress=progress)
 
     return Plan(f"Lyapunov exponents, {_about(chain)}", _command("lyapunov", chain, f"--periods {periods}"),
-                ((chain, (*MOTION_PIECES, ORBIT_KERNELS)),), compute, draw_lyapunov)
+                ((chain, (*MOTION_KERNELS, ORBIT_KERNELS)),), compute, draw_lyapunov)
 
 
 # Strobes over a knob
@@ -213,7 +212,7 @@ def _strobe_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
 
     words = f"--over {_axis(knob, (low, high), count)} --start {start} --keep {keep} --bead {bead}"
     return Plan(f"Strobes of bead {bead} over {knob}, {chain.name}", _command("strobes", chain, words),
-                tuple((one, MOTION_PIECES) for one in ends), compute,
+                tuple((one, MOTION_KERNELS) for one in ends), compute,
                 lambda found, theme: draw_strobes(found, bead, theme))
 
 
@@ -241,7 +240,7 @@ def _basin_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
 
     words = f"--x {_axis(x, x_ends, count)} --y {_axis(y, y_ends, count)}"
     return Plan(f"Basins over {x} and {y}, {_about(chain)}", _command("basins", chain, words),
-                ((chain, (*MOTION_PIECES, CURVE_KERNELS, ORBIT_KERNELS)),), compute, draw_basins)
+                ((chain, (*MOTION_KERNELS, CURVE_KERNELS, ORBIT_KERNELS)),), compute, draw_basins)
 
 
 QUESTIONS = {one.name: one for one in (

@@ -6,9 +6,8 @@ from typing import Any
 
 from granchain_core import scene
 from granchain_core.paper import PaperFigure, Result, compute, figure_of
-from granchain_core.pieces import CURVE_KERNELS, OBSERVER_KERNELS, ORBIT_KERNELS
+from granchain_core.pieces import CURVE_KERNELS, MOTION_KERNELS, OBSERVER_KERNELS, ORBIT_KERNELS
 
-from ...serve.compiler import MOTION_PIECES
 from ...serve.queues import LONG
 from ...session.hooks import Actions, Page
 from ...session.host import Host
@@ -16,13 +15,13 @@ from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .view import Paper
 
-_TRAINS = (("rig", MOTION_PIECES),)
-_FED = (("rig", (*MOTION_PIECES, CURVE_KERNELS, ORBIT_KERNELS, OBSERVER_KERNELS)),)
+_TRAINS = (("rig", MOTION_KERNELS),)
+_FED = (("rig", (*MOTION_KERNELS, CURVE_KERNELS, ORBIT_KERNELS, OBSERVER_KERNELS)),)
 #: The kernels of each figure: presets, and pieces of their structures. Figures without an entry need none.
 _KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
-    "2": (("sec2", (*MOTION_PIECES, CURVE_KERNELS)),), **dict.fromkeys(("3", "3a", "3b"), (("sec2", MOTION_PIECES),)),
-    "6": (("rig", (*MOTION_PIECES, CURVE_KERNELS)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
-    "11": tuple((name, (*MOTION_PIECES, ORBIT_KERNELS, OBSERVER_KERNELS)) for name in ("fig11-free", "fig11-founded")),
+    "2": (("sec2", (*MOTION_KERNELS, CURVE_KERNELS)),), **dict.fromkeys(("3", "3a", "3b"), (("sec2", MOTION_KERNELS),)),
+    "6": (("rig", (*MOTION_KERNELS, CURVE_KERNELS)),), "7": _TRAINS, "9": _FED, "10": _FED, "12": _TRAINS,
+    "11": tuple((name, (*MOTION_KERNELS, ORBIT_KERNELS, OBSERVER_KERNELS)) for name in ("fig11-free", "fig11-founded")),
 }
 #: The figure that the page begins with: the resonance curve of section 2, which takes a second.
 _FIRST = "2"

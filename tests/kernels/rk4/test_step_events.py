@@ -93,10 +93,17 @@ def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None
     (-1.0, -1.0, -1.0, 1.0, False), (1.0, 1.0, 1.0, -1.0, False), (-1.0, -1.0, 1.0, 1.0, False),
 ])
 def test_a_contact_that_turned_may_have_changed_in_between(before, after, rising, risen, seen) -> None:  # type: ignore[no-untyped-def]
-    """Overlap and rate at both ends of a step: towards zero first and away last is looked into."""
+    """Overlap and rate at both ends of a step: towards zero first and away last is looked into.
+
+    The copies of this test for one contact agree, where the rates are large enough for the cubic to cross zero. The two
+    in vectors are compared with this one in tests/kernels/simd/test_simd.py and tests/numerics/test_fixed_step_touches.py.
+    """
     slots = SimpleNamespace(preload=None, chain=SimpleNamespace(stiffness=np.ones(1)))
     state, slope = (lambda d: np.array([d, 0.0])), (lambda v: np.array([v, 0.0]))
     assert fixed_step.may_change.py_func(slots, state(before), slope(rising), state(after), slope(risen)) == seen
+    assert (contact_cubic.contact_root.py_func(before, 5.0 * rising, after, 5.0 * risen) < 1.0) == seen
+    if before == after:
+        assert dop853.may_turn.py_func(before, 5.0 * rising, after, 5.0 * risen, -before) == seen
 
 
 def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None:
