@@ -4,6 +4,7 @@ the order in which workers begin.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
@@ -72,6 +73,18 @@ def current_document(request: pytest.FixtureRequest) -> None:
 def pytest_xdist_auto_num_workers() -> int:
     """`-n auto`: two workers more than processors, because two test the dashboard and mostly wait for browser and server."""
     return (os.cpu_count() or 1) + 2
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection() -> Iterator[None]:
+    """What is imported and collected stays until the end, half a million objects: the garbage collector, which would look
+    through them again and again, waits meanwhile and leaves them out afterwards. That saves a twentieth of the time."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
