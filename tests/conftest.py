@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -57,16 +58,23 @@ SERVERS = ("serve", "public", "browser")
 _LONG_IS = 5
 
 
+#: The current document that was made last, while nothing is in it.
+_empty: list[Any] = []
+
+
 @pytest.fixture(autouse=True)
 def current_document(request: pytest.FixtureRequest) -> None:
-    """Begin without a current document of Bokeh's. A server or an error leaves that of a page behind, and then Panel puts
-    off whatever a test asks of its dashboard, until that page is loaded."""
+    """Begin with an empty current document of Bokeh's. A server or an error leaves that of a page behind, and then Panel
+    puts off whatever a test asks of its dashboard, until that page is loaded."""
     if "bokeh.io.doc" in sys.modules and request.path.parent.name not in SERVERS:
         from bokeh.document import Document
-        from bokeh.io.doc import _PATCHED_CURDOCS, set_curdoc
+        from bokeh.io.doc import _PATCHED_CURDOCS, curdoc, set_curdoc
 
         _PATCHED_CURDOCS.clear()
-        set_curdoc(Document())
+        now = curdoc()
+        if now not in _empty or now.roots or now.session_callbacks:
+            _empty[:] = [Document()]  # which takes a millisecond
+            set_curdoc(_empty[0])
 
 
 @pytest.hookimpl(optionalhook=True)
