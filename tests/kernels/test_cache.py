@@ -57,7 +57,7 @@ def copied_core(tree: Path) -> Path:
     """A copy of the core with its scenes, files with the same times, so that what Python has compiled holds for them."""
     root = Path(granchain_core.__path__[0]).parent
     for name in ("granchain_core", "assets"):
-        shutil.copytree(root / name, tree / name)
+        shutil.copytree(root / name, tree / name, ignore=shutil.ignore_patterns("*.pyc.*"))  # another process's, unfinished
     return tree
 
 

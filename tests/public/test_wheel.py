@@ -40,7 +40,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         target = folder / there
         target.parent.mkdir(parents=True, exist_ok=True)
         if (ROOT / here).is_dir():
-            shutil.copytree(ROOT / here, target, ignore=shutil.ignore_patterns("__pycache__"))
+            shutil.copytree(ROOT / here, target, ignore=shutil.ignore_patterns("*.pyc.*"))
         else:
             shutil.copy(ROOT / here, target)
     return folder
