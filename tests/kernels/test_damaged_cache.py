@@ -86,6 +86,14 @@ def test_a_whole_kernel_is_loaded(filled: Path) -> None:
     assert answer["right"] and answer["loaded"] == 1 and messages == []
 
 
+def test_a_full_disk_is_said_once_and_the_kernel_runs(filled: Path, tmp_path: Path) -> None:
+    answer, messages = used(filled, _FULL + PROGRAM)
+    assert answer["right"] and answer["loaded"] == 1 and messages == []  # what is there is used
+    answer, messages = used(tmp_path, _FULL + PROGRAM)
+    assert answer["right"] and not list(tmp_path.rglob("*.nbc"))
+    assert len(messages) == 1 and "cannot be kept" in messages[0] and "File too large" in messages[0]
+
+
 def test_every_flipped_bit_is_seen(filled: Path, tmp_path: Path) -> None:
     """The checksum is compared before anything is unpickled."""
     for path in shutil.copytree(filled, tmp_path / "cache").rglob("*.nbc"):
