@@ -4,11 +4,13 @@ the order in which workers begin.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -56,22 +58,41 @@ SERVERS = ("serve", "public", "browser")
 _LONG_IS = 5
 
 
+#: The current document that was made last, while nothing is in it.
+_empty: list[Any] = []
+
+
 @pytest.fixture(autouse=True)
 def current_document(request: pytest.FixtureRequest) -> None:
-    """Begin without a current document of Bokeh's. A server or an error leaves that of a page behind, and then Panel puts
-    off whatever a test asks of its dashboard, until that page is loaded."""
+    """Begin with an empty current document of Bokeh's. A server or an error leaves that of a page behind, and then Panel
+    puts off whatever a test asks of its dashboard, until that page is loaded."""
     if "bokeh.io.doc" in sys.modules and request.path.parent.name not in SERVERS:
         from bokeh.document import Document
-        from bokeh.io.doc import _PATCHED_CURDOCS, set_curdoc
+        from bokeh.io.doc import _PATCHED_CURDOCS, curdoc, set_curdoc
 
         _PATCHED_CURDOCS.clear()
-        set_curdoc(Document())
+        now = curdoc()
+        if now not in _empty or now.roots or now.session_callbacks:
+            _empty[:] = [Document()]  # which takes a millisecond
+            set_curdoc(_empty[0])
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
     """`-n auto`: two workers more than processors, because two test the dashboard and mostly wait for browser and server."""
     return (os.cpu_count() or 1) + 2
+
+
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection() -> Iterator[None]:
+    """What is imported and collected stays until the end, half a million objects: the garbage collector, which would look
+    through them again and again, waits meanwhile and leaves them out afterwards. That saves a twentieth of the time."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)

@@ -225,6 +225,10 @@ def whole(path: Path) -> bytes:
     raise FileNotFoundError(path)
 
 
+#: Numba asks twice for every function of a file.
+_hash_once = functools.cache(hash_of_code)
+
+
 class _Locator(_UserProvidedLocator):
     """Where a function's files are: always in the folder of kernels, even if that cannot be written.
 
@@ -244,7 +248,7 @@ class _Locator(_UserProvidedLocator):
     def get_source_stamp(self) -> str:
         """The folder's name, which stands for all its kernels; for one that is elsewhere also the hash of its file."""
         here = Path(self._py_file)
-        own = "" if here.is_relative_to(FOLDER) else hash_of_code(here)
+        own = "" if here.is_relative_to(FOLDER) else _hash_once(here)
         return f"{Path(numba.config.CACHE_DIR).name} {own}"
 
     def get_disambiguator(self) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 import scipy.integrate
 
+import granchain_core.accuracy
 from app.cli import main
 from granchain_core import Cancelled, NumbersFailed, scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, cheapest, compared_methods, work_precision
@@ -76,13 +77,15 @@ def test_a_failed_row_is_never_the_cheapest() -> None:
     assert cheapest([failed], 1e-6) is None
 
 
-def test_progress_reaches_the_end_and_json_has_its_keys(capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_reaches_the_end_and_json_has_its_keys(monkeypatch: pytest.MonkeyPatch,
+                                                        capsys: pytest.CaptureFixture[str]) -> None:
     told: list[float] = []
     grown: list[int] = []
-    work_precision(SHORT, progress=told.append, report=lambda found: grown.append(len(found.rows)))
+    monkeypatch.setattr(granchain_core.accuracy, "work_precision", lambda chosen, stop, progress: entry(
+        chosen, stop, told.append, lambda found: grown.append(len(found.rows))))
+    assert main(["accuracy", "sec2", "--set", "N=2", "--set", "f=2000", "--json"]) == 0
     assert told == sorted(told) and told[-1] == pytest.approx(1.0)
     assert grown == sorted(grown) and grown[-1] == len(list(measured_settings()))
-    assert main(["accuracy", "sec2", "--set", "N=2", "--set", "f=2000", "--json"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert set(data) >= {"reference", "rows"} and set(data["reference"]) >= {"method", "agreement"}
     assert all(set(row) >= {"method", "setting", "error", "wall_s", "rhs", "failure"} for row in data["rows"])
@@ -103,13 +106,20 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
 
     monkeypatch.setattr(module, "solve", solver)
     monkeypatch.setattr(module, "_ROW_LIMIT", 5.0)  # the other rows take tenths of a second on a quiet machine
-    found = work_precision(SHORT)
+    kept: list[WorkPrecision] = []
+
+    def measuring(*words: Any) -> WorkPrecision:
+        kept.append(entry(*words))
+        return kept[-1]
+
+    monkeypatch.setattr(granchain_core.accuracy, "work_precision", measuring)
+    assert main(["accuracy", "sec2", "--set", "N=2", "--set", "f=2000"]) == 0
+    assert "failed: SciPy's LSODA lost the motion." in capsys.readouterr().out
+    (found,) = kept
     failures = {row.method: row.failure for row in found.rows if row.failure}
     assert "lost the motion" in failures["scipy LSODA"] and "stopped" in failures["scipy RK45"]
     assert "scipy DOP853" not in failures
     assert all(np.isinf(row.error) for row in found.rows if row.failure)
-    assert main(["accuracy", "sec2", "--set", "N=2", "--set", "f=2000"]) == 0
-    assert "failed: SciPy's LSODA lost the motion." in capsys.readouterr().out
 
 
 def cancelled_in_the_middle(work: Callable[[Stop], object], reached: threading.Event) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+import functools
 from pathlib import Path
 from typing import NamedTuple
 
@@ -25,13 +25,16 @@ def parsed(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
-def imports_in(path: Path, everywhere: bool = True) -> Iterator[Import]:
+@functools.cache
+def imports_in(path: Path, everywhere: bool = True) -> tuple[Import, ...]:
     """What a file imports: everywhere, in functions and for type checking too, or only at its top."""
     tree, package = parsed(path), path.relative_to(ROOT).parts[:-1]
+    found: list[Import] = []
     for node in ast.walk(tree) if everywhere else tree.body:
         if isinstance(node, ast.Import):
-            yield from (Import(alias.name) for alias in node.names)
+            found += [Import(alias.name) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
             above = package[: len(package) - node.level + 1] if node.level else ()
-            yield Import(".".join([*above, *([node.module] if node.module else [])]),
-                         tuple((alias.name, alias.asname or alias.name) for alias in node.names))
+            found.append(Import(".".join([*above, *([node.module] if node.module else [])]),
+                                tuple((alias.name, alias.asname or alias.name) for alias in node.names)))
+    return tuple(found)

@@ -131,7 +131,9 @@ _OF_NAMED_TUPLES = {"_fields", "_replace", "_asdict", "_make"}
 def private_uses(module: str) -> Iterator[str]:
     """Private attributes of other objects than a class's own, by a dot or by name."""
     for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Attribute) and ast.unparse(node.value) not in ("self", "cls", "os"):
+        if isinstance(node, ast.Attribute):
+            if not node.attr.startswith("_") or ast.unparse(node.value) in ("self", "cls", "os"):
+                continue
             name = node.attr
         elif isinstance(node, ast.Call) and ast.unparse(node.func) in ("getattr", "hasattr", "setattr", "delattr") \
                 and isinstance(node.args[1], ast.Constant):

@@ -20,8 +20,10 @@ from granchain_core.steady.curve import resonance_curve as curves
 from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
 from tools.kills.finished import differing, finished_in
 from tools.kills.processes import Command
-from tools.kills.trial import COMMANDS
+from tools.kills.trial import COMMANDS as LONG
 
+#: A run that is long enough for two signals after a finished block each; the others are no longer than that.
+COMMANDS = {**LONG, "run": ("run", "sec2", "--periods", "1500", "--record", "5", "--samples", "16")}
 linux = pytest.mark.skipif(sys.platform != "linux", reason="descendants are found in /proc")
 
 

@@ -22,14 +22,22 @@ def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:
     return {block.path for block in found if not block.is_new_file}, {block.path for block in found if block.is_new_file}
 
 
+def _lasts(file: Path) -> bool:
+    """Whether a file is no unfinished one of Python's, nor one of pytest's, which knows where its source is."""
+    return "__pycache__" not in file.parts or (file.suffix == ".pyc" and "-pytest-" not in file.name)
+
+
 def copied(part: str, tree: Path) -> None:
-    """Copy a file or folder of the repository into a tree; what is there already stays."""
+    """Copy a file or folder of the repository into a tree; what is there already stays.
+
+    Files keep their times, so that what Python has compiled of them, which is copied too, need not be compiled again.
+    """
     source, target = ROOT / part, tree / part
-    for file in [source] if source.is_file() else sorted(one for one in source.rglob("*") if one.is_file() and "__pycache__" not in one.parts):
+    for file in [source] if source.is_file() else sorted(one for one in source.rglob("*") if one.is_file() and _lasts(one)):
         there = target / file.relative_to(source) if source.is_dir() else target
         if not there.exists():
             there.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copy(file, there)
+            shutil.copy2(file, there)
 
 
 def edited_copy(page: Path, copy: Path, until: str = "") -> Path:

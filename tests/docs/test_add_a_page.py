@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 
 import pytest
 from documents import ROOT
-from edited_tree import edited_copy, files_of, follow
+from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-page.md"
 
@@ -16,15 +15,9 @@ PAGE = ROOT / "docs" / "add-a-page.md"
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made, and the tests of its architecture."""
     copy = tmp_path_factory.mktemp("page") / "tree"
-    for part in ("docs", "granchain", "granchain_start"):
-        shutil.copytree(ROOT / part, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copytree(ROOT / "tests" / "architecture", copy / "tests" / "architecture",
-                    ignore=shutil.ignore_patterns("__pycache__"))
-    (copy / "tests" / "dashboard").mkdir()
-    for name in ("test_messages.py", "test_table.py"):
-        shutil.copy(ROOT / "tests" / "dashboard" / name, copy / "tests" / "dashboard")
-    for name in ("host.py", "waiting.py"):
-        shutil.copy(ROOT / "tests" / name, copy / "tests")
+    for part in ("docs", "granchain", "granchain_start", "tests/architecture", "tests/dashboard/test_messages.py",
+                 "tests/dashboard/test_table.py", "tests/host.py", "tests/waiting.py"):
+        copied(part, copy)
     return edited_copy(PAGE, copy)
 
 

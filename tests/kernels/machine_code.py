@@ -1,6 +1,5 @@
 """Program: what compiled kernels consist of, effect by effect, as JSON.
 
-    python machine_code.py types > types.pickle
     NUMBA_CPU_NAME=… NUMBA_CPU_FEATURES=… GRANCHAIN_CACHE=<empty folder> python machine_code.py < types.pickle
 
 {kernel: {case: counts}}. Of `chain` (one chain in a register, its split step included) and `batch` (eight chains) vector
@@ -9,8 +8,8 @@ instructions are counted in the machine code, with nothing but contacts and driv
 with all effects; `by_zero` are those by a constant 0. Only code that is fresh can be read: what comes
 from the cache has none.
 
-The first call runs kernels, to learn the types of their arguments; the second only compiles, for whatever processor it
-is told, and that need not be the one it runs on.
+Whoever calls it pickles `types_by_case()`, for which engines are made; the program only compiles, for whatever processor
+it is told, and that need not be the one it runs on.
 """
 
 from __future__ import annotations
@@ -37,9 +36,8 @@ from granchain_core.kernels.samples import Output
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.stop import Stop
 
-# A loop is read once: how many of its first rounds the compiler writes out is its own choice, case by case.
-llvmlite.binding.set_option("machine_code", "-unroll-allow-peeling=false")
-
+#: The types of the arguments by case and kernel, and those of the flow by case.
+Types = tuple[dict[str, dict[str, tuple]], dict[str, tuple]]
 EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
 NOTHING = {"dissipation": "none"}
 EVERYTHING = {knob: value for knobs in EFFECTS.values() for knob, value in knobs.items()}
@@ -122,13 +120,16 @@ def cases() -> dict[str, dict]:
 FLOWS = {"nothing": NOTHING, "everything": EVERYTHING}
 
 
+def types_by_case() -> Types:
+    """The types of all kernels' arguments."""
+    return ({case: argument_types(knobs) for case, knobs in cases().items()},
+            {case: flow_types(knobs) for case, knobs in FLOWS.items()})
+
+
 def main() -> None:
-    """Write the types, or read them and print the counts."""
-    if sys.argv[1:] == ["types"]:
-        types = {case: argument_types(knobs) for case, knobs in cases().items()}
-        flows = {case: flow_types(knobs) for case, knobs in FLOWS.items()}
-        sys.stdout.buffer.write(pickle.dumps((types, flows)))
-        return
+    """Read the types and print the counts."""
+    # A loop is read once: how many of its first rounds the compiler writes out is its own choice, case by case.
+    llvmlite.binding.set_option("machine_code", "-unroll-allow-peeling=false")
     kernels = {"chain": run_short_chain, "batch": batch_steps}
     signatures, flows = pickle.loads(sys.stdin.buffer.read())
     found = {name: {case: counts(kernel, signatures[case][name]) for case in signatures} for name, kernel in kernels.items()}

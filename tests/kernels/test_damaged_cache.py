@@ -33,6 +33,8 @@ reset_peaks(peaks)
 right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
 print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(reset_peaks.stats.cache_hits.values())}))
 """
+#: Says which folder is chosen, and compiles nothing.
+FOLDER = "import json\nfrom granchain_core.kernels.cache import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
 #: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as well.
 _FULL = "import resource, signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
 
@@ -149,6 +151,14 @@ def test_a_whole_kernel_is_loaded(filled: Path) -> None:
     assert answer["right"] and answer["loaded"] == 1 and messages == []
 
 
+def test_a_full_disk_is_said_once_and_the_kernel_runs(filled: Path, tmp_path: Path) -> None:
+    answer, messages = used(filled, _FULL + PROGRAM)
+    assert answer["right"] and answer["loaded"] == 1 and messages == []  # what is there is used
+    answer, messages = used(tmp_path, _FULL + PROGRAM)
+    assert answer["right"] and not list(tmp_path.rglob("*.nbc"))
+    assert len(messages) == 1 and "cannot be kept" in messages[0] and "File too large" in messages[0]
+
+
 def test_every_flipped_bit_is_seen(filled: Path, tmp_path: Path) -> None:
     """The checksum is compared before anything is unpickled."""
     for path in shutil.copytree(filled, tmp_path / "cache").rglob("*.nbc"):
@@ -245,7 +255,7 @@ def test_a_temporary_folder_of_another_owner_is_not_used(denied: Path, tmp_path:
     ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
     ours.mkdir(mode=0o700)
     os.chown(ours, 12345, 12345)
-    assert used(denied)[0]["folder"] == "None"
+    assert used(denied, FOLDER)[0]["folder"] == "None"
 
 
 def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path: Path) -> None:
@@ -255,6 +265,6 @@ def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path: Path) 
         folder.mkdir()
         (folder / "a.nbc").write_text("")
         os.utime(folder, (time.time() - 86400 * days,) * 2)
-    used(tmp_path)
+    used(tmp_path, FOLDER)
     assert {path.name for path in tmp_path.iterdir()} == {own.name, young.name, foreign.name}
     assert time.time() - own.stat().st_mtime < 3600.0  # the use is noted

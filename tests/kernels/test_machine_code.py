@@ -12,17 +12,16 @@ import functools
 import hashlib
 import json
 import os
+import pickle
 import platform
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-import llvmlite
-import numba
 import pytest
+from machine_code import Types, types_by_case
 
-import granchain_core
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
@@ -44,43 +43,33 @@ TARGET = {VARIABLE: "8", "NUMBA_CPU_NAME": "skylake-avx512", "NUMBA_CPU_FEATURES
 
 @functools.cache
 def code() -> dict:
-    """What machine_code.py finds in freshly compiled kernels; kept until the core, its scenes or the compiler change."""
+    """What machine_code.py finds in freshly compiled kernels; kept until what is compiled or the compiler changes."""
+    types = types_by_case()
     if CACHE_FOLDER is None:
-        return json.loads(measured())
-    kept = CACHE_FOLDER / f"machine-code-{all_that_decides()}.json"
+        return json.loads(measured(types))
+    kept = CACHE_FOLDER / f"machine-code-{all_that_decides(types)}.json"
     if not kept.exists():
         unfinished = kept.with_suffix(f".{os.getpid()}.tmp")
-        unfinished.write_bytes(measured())
+        unfinished.write_bytes(measured(types))
         unfinished.replace(kept)
     return json.loads(kept.read_bytes())
 
 
-def measured() -> bytes:
+def measured(types: Types) -> bytes:
     """What machine_code.py writes with an empty folder of kernels."""
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p)}
     with tempfile.TemporaryDirectory() as cache:
-        types = program("types", environment=environment)
-        return program(environment={**environment, **TARGET, "GRANCHAIN_CACHE": cache}, given=types)
-
-
-def all_that_decides() -> str:
-    """Hash of the core and the scenes, of the program that counts, of the processor it compiles for, and of the compiler."""
-    root = Path(granchain_core.__path__[0])
-    files = [*sorted(root.rglob("*.py")), *sorted((root.parent / "assets" / "scenes").glob("*.toml")), PROGRAM]
-    compiler = f"{TARGET} {numba.__version__} {llvmlite.__version__} {os.environ.get('NUMBA_OPT')} {sys.version_info[:2]}"
-    digest = hashlib.sha256(compiler.encode())
-    for file in files:
-        digest.update(f"{file.relative_to(root.parent) if file is not PROGRAM else file.name}\n".encode())
-        digest.update(hash_of_code(file).encode() if file.suffix == ".py" else file.read_bytes())
-    return digest.hexdigest()[:16]
-
-
-def program(*words: str, environment: dict, given: bytes = b"") -> bytes:
-    """What machine_code.py writes."""
-    done = subprocess.run([sys.executable, PROGRAM, *words], env=environment, input=given, capture_output=True,
-                          timeout=900, check=False)
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(p for p in sys.path if p), **TARGET, "GRANCHAIN_CACHE": cache}
+        done = subprocess.run([sys.executable, PROGRAM], env=environment, input=pickle.dumps(types), capture_output=True,
+                              timeout=900, check=False)
     assert done.returncode == 0, done.stderr.decode()
     return done.stdout
+
+
+def all_that_decides(types: Types) -> str:
+    """Hash of the types that the kernels are compiled for, of the program that counts, and of the processor. The folder of
+    kernels, in which it is a name, stands for their sources and the compiler."""
+    digest = hashlib.sha256(f"{types} {TARGET} {sys.version_info[:2]} {hash_of_code(PROGRAM)}".encode())
+    return digest.hexdigest()[:16]
 
 
 def added(kernel: str, effect: str) -> dict:

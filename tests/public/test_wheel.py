@@ -44,7 +44,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
         target = folder / there
         target.parent.mkdir(parents=True, exist_ok=True)
         if (source / here).is_dir():
-            shutil.copytree(source / here, target)
+            shutil.copytree(source / here, target, ignore=shutil.ignore_patterns("*.pyc.*"))
         else:
             shutil.copy(source / here, target)  # hatchling ends as well where a file is missing
     return folder

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import uuid
+from contextlib import suppress
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -73,6 +74,14 @@ class Command:
                 except OSError:  # it has just ended, or is another user's
                     continue
         return found
+
+    def processor_time(self) -> float:
+        """What it and its descendants have used so far [s], without those that have ended and not been waited for."""
+        used = 0
+        for pid in [self.process.pid, *self.descendants()]:
+            with suppress(OSError):  # it has just ended
+                used += sum(map(int, Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11:15]))
+        return used / os.sysconf("SC_CLK_TCK")
 
     def kill(self) -> None:
         """End it and everything it started."""

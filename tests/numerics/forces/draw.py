@@ -22,7 +22,7 @@ RANGES = {"f": (0.0, 3.7), "A0": (-9.0, -5.0), "lambda": (-2.3, 0.7), "kappa": (
 ACCURACIES = (1e-4, 1e-6, 1e-8)
 MOST_BEADS, MOST_PERIODS, MOST_RECORDED = 40, 20, 3
 #: A run of several periods is not longer than so many times 1/φ: its truth takes a hundred thousand steps.
-_LONGEST = 1e4
+LONGEST = 1e4
 _WALLS = ("bead", "same-material", "rigid")
 
 
@@ -36,8 +36,8 @@ class Draw:
     record: int
 
 
-def draw(seed: int, index: int, structures: list) -> Draw:
-    """Draw number `index` of a whole motion: the same for the same seed and structures."""
+def draw(seed: int, index: int, structures: list, longest: float = LONGEST) -> Draw:
+    """Draw number `index` of a whole motion, of several periods only within `longest`: the same for the same words."""
     rng = np.random.default_rng([seed, index])
     law, tension, founded, pressed = structures[rng.integers(len(structures))]
     chosen = scene("sec2").evolve(A0=_decade(rng, "A0"))
@@ -48,7 +48,7 @@ def draw(seed: int, index: int, structures: list) -> Draw:
     if rng.random() < 0.3:
         speed = _rate(chosen) * chosen.A0 * _decade(rng, "thrown") * rng.choice([-1.0, 1.0])
         chosen = replace(chosen, start_velocity=((int(rng.integers(1, chosen.N + 1)), float(speed)),))
-    return Draw(index, chosen, *_shortened(chosen, int(rng.integers(0, MOST_PERIODS + 1)), int(rng.integers(1, MOST_RECORDED + 1))))
+    return Draw(index, chosen, *_shortened(chosen, int(rng.integers(0, MOST_PERIODS + 1)), int(rng.integers(1, MOST_RECORDED + 1)), longest))
 
 
 def draw_steady(seed: int, index: int, structures: list) -> Scene:
@@ -64,9 +64,9 @@ def draw_steady(seed: int, index: int, structures: list) -> Scene:
     return chosen.evolve(kappa=kappa, **({"F0": _decade(rng, "F0")} if pressed else {}))
 
 
-def _shortened(chosen: Scene, periods: int, record: int) -> tuple[int, int]:
+def _shortened(chosen: Scene, periods: int, record: int, longest: float) -> tuple[int, int]:
     """Periods discarded and recorded, at least one of these, within the longest time."""
-    most = max(1, int(_LONGEST * chosen.f / _rate(chosen)))
+    most = max(1, int(longest * chosen.f / _rate(chosen)))
     record = min(record, most)
     return min(periods, most - record), record
 

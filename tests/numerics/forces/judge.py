@@ -15,7 +15,7 @@ from granchain_core.diagram.grid import Axis, Grid
 from granchain_core.errors import OverBudget
 from granchain_core.integrate import State
 
-from .draw import Draw, draw, draw_steady, strength
+from .draw import LONGEST, Draw, draw, draw_steady, strength
 from .located import TooLong, located
 
 COLUMNS = ("input", "output", "elastic")
@@ -142,10 +142,10 @@ def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str
         yield judge_point("map", index, result.scene, result.state, result.regime.period, maxima, stated)
 
 
-def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0) -> Iterator[Verdict | str]:
-    """Verdicts on draws `first` to `first + count − 1` of one kind; words where there is none."""
+def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0, longest: float = LONGEST) -> Iterator[Verdict | str]:
+    """Verdicts on draws `first` to `first + count − 1` of one kind; words where there is none. `longest` is that of a run."""
     for index in range(first, first + count):
         if kind == "run":
-            yield judge_run(draw(seed, index, structures))
+            yield judge_run(draw(seed, index, structures, longest))
         else:
             yield from (judge_curve if kind == "curve" else judge_map)(seed, index, structures)
