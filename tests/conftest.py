@@ -6,11 +6,12 @@ from __future__ import annotations
 
 import gc
 import os
+import re
 import sys
 from collections.abc import Iterator
+from functools import cache
 from itertools import islice
 from pathlib import Path
-from typing import Any
 
 import pytest
 from hypothesis import settings
@@ -58,23 +59,22 @@ SERVERS = ("serve", "public", "browser")
 _LONG_IS = 5
 
 
-#: The current document that was made last, while nothing is in it.
-_empty: list[Any] = []
-
-
 @pytest.fixture(autouse=True)
 def current_document(request: pytest.FixtureRequest) -> None:
-    """Begin with an empty current document of Bokeh's. A server or an error leaves that of a page behind, and then Panel
-    puts off whatever a test asks of its dashboard, until that page is loaded."""
-    if "bokeh.io.doc" in sys.modules and request.path.parent.name not in SERVERS:
+    """Begin without a current document of Bokeh's. A server or an error leaves that of a page behind, and then Panel puts
+    off whatever a test asks of its dashboard, until that page is loaded."""
+    if "bokeh.io.doc" in sys.modules and request.path.parent.name not in SERVERS and _names_the_app(request.path):
         from bokeh.document import Document
-        from bokeh.io.doc import _PATCHED_CURDOCS, curdoc, set_curdoc
+        from bokeh.io.doc import _PATCHED_CURDOCS, set_curdoc
 
         _PATCHED_CURDOCS.clear()
-        now = curdoc()
-        if now not in _empty or now.roots or now.session_callbacks:
-            _empty[:] = [Document()]  # which takes a millisecond
-            set_curdoc(_empty[0])
+        set_curdoc(Document())
+
+
+@cache
+def _names_the_app(file: Path) -> bool:
+    """Whether a file of tests can have a page; a document takes a millisecond, and the others are five thousand tests."""
+    return re.search(r"\b(app|host|panel)\b", file.read_text(encoding="utf-8")) is not None
 
 
 @pytest.hookimpl(optionalhook=True)
