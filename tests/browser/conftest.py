@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from evidence import WATCHED, folder_of, leave, watch
-from knobs import COMPILED
+from knobs import COMPILED, look_seldom
 from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
 from server import dashboard, launch_with_profile
 
@@ -20,6 +20,9 @@ HERE = Path(__file__).parent
 
 #: How most pages are opened.
 USUAL: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce"}
+
+#: Those of a context's options that a page can have by itself.
+MEDIA = ("reduced_motion", "color_scheme")
 
 # Two workers with a browser and a server each share two processors: what is waited for comes, but not within
 # Playwright's five seconds.
@@ -96,15 +99,16 @@ def visit(profile: BrowserContext, chromium: Browser, prepared: str, log: Path,
     """Opens the dashboard; at the end no page may have complained or asked another host for anything.
 
     The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
-    `reduced_motion="no-preference"` opens one that plays. The first page that asks for no options is in the browser's
-    profile, where nothing is left of the pages before; every other one is in a context of its own.
+    `reduced_motion="no-preference"` opens one that plays. A page is in the browser's profile, where nothing is left of
+    the pages before; only one with options of a context is in a context of its own.
     """
     opened: list[Page | BrowserContext] = []
     complaints: list[str] = []
 
     def open_page(query: str = "", url: str = prepared, script: str = "", **options: Any) -> Page:
-        if options or opened:
-            context = chromium.new_context(**{**USUAL, **options})
+        of_the_page = {name: options.pop(name) for name in ("viewport", *MEDIA) if name in options}
+        if options:
+            context = chromium.new_context(**{**USUAL, **of_the_page, **options})
             context.set_default_timeout(60_000)
             page = context.new_page()
             opened.append(context)
@@ -112,6 +116,9 @@ def visit(profile: BrowserContext, chromium: Browser, prepared: str, log: Path,
         else:
             page, begin = profile.new_page(), NOTHING_KEPT
             opened.append(page)
+            page.set_viewport_size(of_the_page.pop("viewport", USUAL["viewport"]))
+            page.emulate_media(**of_the_page)
+        look_seldom(page)
         watch(request.node, page, log)
         page.on("console", lambda message: (message.type == "error" or "initial ranges" in message.text)
                 and complaints.append(message.text))  # the latter: a figure that was drawn before it had points
