@@ -87,9 +87,14 @@ def profile(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BrowserContext
 
 
 @pytest.fixture(scope="session")
-def prepared(chromium: Browser, address: str) -> str:
-    """The address, once the first scene's curve and its names are kept: a page that is closed before drops them."""
-    page = chromium.new_page(reduced_motion="reduce")
+def prepared(profile: BrowserContext, address: str) -> str:
+    """The address, once the first scene's curve and its names are kept: a page that is closed before drops them.
+
+    A small page of the server's stays open, and with it the process that draws all pages of the profile: each new one
+    finds its scripts compiled there.
+    """
+    profile.pages[0].goto(address + "liveness")
+    page = profile.new_page()
     page.goto(address)
     page.wait_for_selector(".chapters button", timeout=COMPILED)
     page.close()
