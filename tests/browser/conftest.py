@@ -1,4 +1,4 @@
-"""One dashboard and one Chromium for all browser tests of a worker; every test opens a page of its own.
+"""One dashboard and one Chromium for all browser tests of a worker; a test opens pages of its own, or moves one of its file.
 
 A test that fails leaves what its pages showed and said in a folder that its report names (evidence.py).
 """
@@ -12,14 +12,19 @@ from typing import Any
 
 import pytest
 from evidence import WATCHED, folder_of, leave, watch
-from knobs import COMPILED
-from playwright.sync_api import Browser, BrowserContext, Page, expect, sync_playwright
+from knobs import COMPILED, look_seldom
+from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, expect, sync_playwright
 from server import dashboard, launch_with_profile
 
 HERE = Path(__file__).parent
 
 #: How most pages are opened.
-USUAL: dict[str, Any] = {"viewport": {"width": 1280, "height": 800}, "reduced_motion": "reduce"}
+USUAL: dict[str, Any] = {"viewport": ViewportSize(width=1280, height=800), "reduced_motion": "reduce"}
+
+#: Whether a test has failed.
+FAILED = pytest.StashKey[bool]()
+#: Those of a context's options that a page can have by itself.
+MEDIA = ("reduced_motion", "color_scheme")
 
 # Two workers with a browser and a server each share two processors: what is waited for comes, but not within
 # Playwright's five seconds.
@@ -39,6 +44,7 @@ def pytest_runtest_makereport(item: pytest.Item,
                               call: pytest.CallInfo[None]) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """While its pages are still open: leave the evidence of a test that has failed."""
     report = yield
+    item.stash[FAILED] = report.failed
     if report.failed and item.stash.get(WATCHED, None):
         folder = folder_of(item)
         report.sections.append(("What the browser showed and said", f"{leave(item.stash[WATCHED], folder)}, in {folder}"))
@@ -81,53 +87,127 @@ def profile(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BrowserContext
 
 
 @pytest.fixture(scope="session")
-def prepared(chromium: Browser, address: str) -> str:
-    """The address, once the first scene's curve and its names are kept: a page that is closed before drops them."""
-    page = chromium.new_page(reduced_motion="reduce")
+def prepared(profile: BrowserContext, address: str) -> str:
+    """The address, once the first scene's curve and its names are kept: a page that is closed before drops them.
+
+    A small page of the server's stays open, and with it the process that draws all pages of the profile: each new one
+    finds its scripts compiled there.
+    """
+    profile.pages[0].goto(address + "liveness")
+    page = profile.new_page()
     page.goto(address)
     page.wait_for_selector(".chapters button", timeout=COMPILED)
     page.close()
     return address
 
 
-@pytest.fixture
-def visit(profile: BrowserContext, chromium: Browser, prepared: str, log: Path,
-          request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
-    """Opens the dashboard; at the end no page may have complained or asked another host for anything.
+class Pages:
+    """Pages of the dashboard, with what they have complained of."""
 
-    The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
-    `reduced_motion="no-preference"` opens one that plays. The first page that asks for no options is in the browser's
-    profile, where nothing is left of the pages before; every other one is in a context of its own.
-    """
-    opened: list[Page | BrowserContext] = []
-    complaints: list[str] = []
+    def __init__(self, profile: BrowserContext, url: str) -> None:
+        self.complaints: list[str] = []
+        self._profile, self._url = profile, url
+        self._opened: list[Page | BrowserContext] = []
 
-    def open_page(query: str = "", url: str = prepared, script: str = "", **options: Any) -> Page:
-        if options or opened:
-            context = chromium.new_context(**{**USUAL, **options})
+    def open(self, query: str = "", url: str = "", script: str = "", **options: Any) -> Page:
+        """A page that shows a picture."""
+        url = url or self._url
+        of_the_page = {name: options.pop(name) for name in ("viewport", *MEDIA) if name in options}
+        if options:
+            assert self._profile.browser is not None
+            context = self._profile.browser.new_context(**{**USUAL, **of_the_page, **options})
             context.set_default_timeout(60_000)
             page = context.new_page()
-            opened.append(context)
+            self._opened.append(context)
             begin = ""
         else:
-            page, begin = profile.new_page(), NOTHING_KEPT
-            opened.append(page)
-        watch(request.node, page, log)
+            page, begin = self._profile.new_page(), NOTHING_KEPT
+            self._opened.append(page)
+            page.set_viewport_size(of_the_page.pop("viewport", USUAL["viewport"]))
+            page.emulate_media(**of_the_page)
+        look_seldom(page)
         page.on("console", lambda message: (message.type == "error" or "initial ranges" in message.text)
-                and complaints.append(message.text))  # the latter: a figure that was drawn before it had points
-        page.on("pageerror", lambda error: complaints.append(str(error)))
+                and self.complaints.append(message.text))  # the latter: a figure that was drawn before it had points
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: request.url.startswith((url, "data:", "blob:"))
-                or complaints.append(f"asked another host: {request.url}"))
+                or self.complaints.append(f"asked another host: {request.url}"))
         page.add_init_script(begin + RUNTIME + script)
         page.goto(url + query)
         page.wait_for_function("window.painted.length > 0", timeout=180_000)
         return page
 
+    def close(self) -> None:
+        """Close all of them."""
+        while self._opened:
+            self._opened.pop().close()
+
+
+@pytest.fixture
+def visit(profile: BrowserContext, prepared: str, log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
+    """Opens the dashboard; at the end no page may have complained or asked another host for anything.
+
+    The visitor has asked the browser for less motion, so that pages begin paused and leave the processor to the tests;
+    `reduced_motion="no-preference"` opens one that plays. A page is in the browser's profile, where nothing is left of
+    the pages before; only one with options of a context is in a context of its own.
+    """
+    pages = Pages(profile, prepared)
+
+    def open_page(query: str = "", **options: Any) -> Page:
+        page = pages.open(query, **options)
+        watch(request.node, page, log)
+        return page
+
     yield open_page
-    for one in opened:
-        one.close()
+    pages.close()
+    assert pages.complaints == []
+
+
+@pytest.fixture(scope="module")
+def kept(profile: BrowserContext, prepared: str) -> Iterator[tuple[Pages, list[Page]]]:
+    """The page that `at` moves, once there is one."""
+    pages = Pages(profile, prepared)
+    yield pages, []
+    pages.close()
+
+
+@pytest.fixture
+def at(kept: tuple[Pages, list[Page]], log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
+    """A page at an address, for tests that do not care how they came there. Nothing may complain there either.
+
+    All tests of a file have the same page, moved as by a step of the browser's history: to open one takes two seconds of
+    processor time. The address has scene, knobs, curves, scale, pins, look, tab, page and story; what else a test has
+    changed, it changes back. After a test that has failed there is a new page.
+    """
+    pages, pair = kept
+
+    def move(query: str = "?v=1&scene=sec2", viewport: ViewportSize = USUAL["viewport"]) -> Page:
+        if not pair:
+            pair.append(pages.open(query, viewport=viewport))
+            watch(request.node, pair[0], log)
+            return pair[0]
+        (page,) = pair
+        watch(request.node, page, log)
+        page.set_viewport_size(viewport)
+        page.mouse.move(0, 0)
+        page.evaluate(MOVE, query)
+        page.wait_for_function("!granchain.steps.returning && location.search.includes(`scene=${granchain.shown.scene}`)")
+        return page
+
+    yield move
+    if request.node.stash.get(FAILED, False):
+        pages.close()
+        pair.clear()
+    complaints = list(pages.complaints)
+    pages.complaints.clear()
     assert complaints == []
 
+
+# As a step back: the page goes where the address says.
+MOVE = """(query) => {
+  window.sent = [];
+  history.pushState({ at: granchain.steps.at }, "", query);
+  dispatchEvent(new PopStateEvent("popstate", { state: history.state }));
+}"""
 
 # Once in a page, before anything of its own runs.
 NOTHING_KEPT = """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from playwright.sync_api import Locator, Page, expect
 
@@ -10,6 +11,11 @@ from playwright.sync_api import Locator, Page, expect
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile kernels, on a machine that runs tests [ms].
 COMPILED = 240_000
+
+
+def look_seldom(page: Page) -> None:
+    """Look every 50 ms for what is waited for. Playwright looks at every frame, and asks the browser for sixty a second."""
+    setattr(page, "wait_for_function", partial(page.wait_for_function, polling=50))  # noqa: B010
 
 
 def field(page: Page, name: str) -> Locator:

@@ -19,13 +19,21 @@ FAULTS = """() => {
   const seen = (one) => one.checkVisibility({ visibilityProperty: true, opacityProperty: true })
     && one.getClientRects().length > 0;
   const words = (one) => `${one.tagName.toLowerCase()} “${(one.ariaLabel || one.textContent || one.value || one.id).trim().slice(0, 40)}”`;
+  const styles = new Map(); // each is asked for many times
+  const styleOf = (one) => {
+    if (!styles.has(one)) {
+      const { overflowX, overflowY } = getComputedStyle(one);
+      styles.set(one, { scrolls: /auto|scroll/.test(overflowX + overflowY), hides: overflowX !== "visible" || overflowY !== "visible" });
+    }
+    return styles.get(one);
+  };
   // The part of a box that its ancestors let through, and whether one of them scrolls.
   const shown = (node, box) => {
     let { left, right, top, bottom } = box, scrolls = false;
     for (let at = parent(node); at && at !== document.documentElement && at !== document.body; at = parent(at)) {
-      const style = getComputedStyle(at);
-      if (/auto|scroll/.test(style.overflowX + style.overflowY)) scrolls = true;
-      if (style.overflowX !== "visible" || style.overflowY !== "visible") {
+      const style = styleOf(at);
+      scrolls ||= style.scrolls;
+      if (style.hides) {
         const edge = at.getBoundingClientRect();
         left = Math.max(left, edge.left); right = Math.min(right, edge.right);
         top = Math.max(top, edge.top); bottom = Math.min(bottom, edge.bottom);
@@ -69,11 +77,12 @@ FAULTS = """() => {
     }
     if (one.matches('input[type="text"]') && one.scrollWidth > one.clientWidth + 1) faults.push(`${words(one)} is cut`);
   }
-  for (const [i, a] of controls.entries()) for (const b of controls.slice(i + 1)) {
-    if (inside(a, b) || inside(b, a) || passes(a, b)) continue;
-    const [p, q] = [a, b].map((one) => shown(one, one.getBoundingClientRect()));
-    const across = Math.min(p.right, q.right) - Math.max(p.left, q.left), down = Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top);
-    if (across > 1.5 && down > 1.5) faults.push(`${words(a)} and ${words(b)} lie on one another`);
+  const parts = controls.map((one) => shown(one, one.getBoundingClientRect()));
+  for (const [i, a] of controls.entries()) for (const [j, b] of controls.entries()) {
+    const p = parts[i], q = parts[j];
+    if (j <= i || Math.min(p.right, q.right) - Math.max(p.left, q.left) <= 1.5) continue;
+    if (Math.min(p.bottom, q.bottom) - Math.max(p.top, q.top) <= 1.5) continue;
+    if (!inside(a, b) && !inside(b, a) && !passes(a, b)) faults.push(`${words(a)} and ${words(b)} lie on one another`);
   }
   const texts = [];
   for (const one of elements) {

@@ -118,8 +118,10 @@ def launch(playwright: Playwright) -> Browser:
 
 
 def launch_with_profile(playwright: Playwright, profile: Path, **options: Any) -> BrowserContext:
-    """The same with a profile in this folder, and the context of that profile."""
-    return playwright.chromium.launch_persistent_context(profile, **_how(playwright), **options)
+    """The same with a profile in this folder, and the context of that profile. One process draws all its pages."""
+    how = _how(playwright)
+    how["args"] = [*how["args"], "--process-per-site"]
+    return playwright.chromium.launch_persistent_context(profile, **how, **options)
 
 
 def _how(playwright: Playwright) -> dict[str, Any]:

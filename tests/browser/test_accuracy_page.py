@@ -9,6 +9,7 @@ from bokeh_figures import source
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Locator, Page, expect
 from server import at_rest, until
+from test_axe import violations
 
 #: The figure of the page, and how many points each method has in it.
 FIGURE = 'Bokeh.documents.find((one) => one.roots()[0].name === "accuracy" && one.roots()[0].below[0].axis_label)'
@@ -96,6 +97,7 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
         expect(tip).to_contain_text(words)
     page.mouse.move(0, 0)
     naive_force_lies_over_the_accurate_one(page, sheet)
+    assert violations(page, "#overlay") == {}  # with all its points and rows; test_axe.py has only the first ones
     fits(page, sheet)
 
 

@@ -7,8 +7,8 @@ from knobs import Visit, field, knob, settled, type_into
 from playwright.sync_api import expect
 
 
-def test_a_slider_step_repaints_the_map(visit: Visit) -> None:
-    page = visit()
+def test_a_slider_step_repaints_the_map(at: Visit) -> None:
+    page = at()
     for key in ("ArrowRight", "Shift+ArrowRight"):
         settled(page)
         before, count = page.evaluate("[pixels('map'), painted.length]")
@@ -16,8 +16,8 @@ def test_a_slider_step_repaints_the_map(visit: Visit) -> None:
         page.wait_for_function(f"painted.length > {count} && pixels('map') !== {before}")
 
 
-def test_fine_coarse_typed_back_and_by_a_click_on_the_curve(visit: Visit) -> None:
-    page = visit()
+def test_fine_coarse_typed_back_and_by_a_click_on_the_curve(at: Visit) -> None:
+    page = at()
     slider = page.locator('[data-knob="f"] input[type="range"]')
     slider.press("ArrowRight")
     assert float(knob(page, "f")) == pytest.approx(340.1)
@@ -38,9 +38,9 @@ def test_fine_coarse_typed_back_and_by_a_click_on_the_curve(visit: Visit) -> Non
     assert 1000 < float(knob(page, "f")) < 2500
 
 
-def test_kappa_is_shown_for_every_k_and_amplitude(visit: Visit) -> None:
+def test_kappa_is_shown_for_every_k_and_amplitude(at: Visit) -> None:
     """An amplitude that was moved alone is said beside kappa; without foundation there is no frequency of one."""
-    page = visit("?v=1&scene=rig")
+    page = at("?v=1&scene=rig")
     assert float(knob(page, "kappa")) == pytest.approx(1e-3)
     expect(page.locator("#knobs .kept")).to_be_empty()
     type_into(page, "A0", "6")
@@ -68,8 +68,8 @@ def test_a_knob_that_turns_nothing_says_so(visit: Visit) -> None:
     expect(damping).to_contain_text("0: contacts lose no energy")
 
 
-def test_wrong_values_get_their_sentence(visit: Visit) -> None:
-    page = visit()
+def test_wrong_values_get_their_sentence(at: Visit) -> None:
+    page = at()
     settled(page)
     expect(page.locator("#foot b")).not_to_contain_text("the curve is being computed")
     regime = page.locator("#foot b").inner_text().split(",")[0]  # the exact picture says again how soon it settled

@@ -12,8 +12,8 @@ from test_axe import violations
 from granchain_core import scene_names
 
 
-def test_scales_and_the_largest_forces_are_said_where_they_are(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=850")
+def test_scales_and_the_largest_forces_are_said_where_they_are(at: Visit) -> None:
+    page = at("?v=1&scene=sec2&f=850")
     settled(page)
     peaks = page.locator("#stage .peak")
     expect(peaks).to_contain_text(["max 0.591 N", "max 0.237 N"])  # small on axes that end at the scene's largest
@@ -41,9 +41,9 @@ LINK = """() => {
 }"""
 
 
-def test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_bead(visit: Visit) -> None:
+def test_a_bead_that_is_pointed_at_is_joined_to_its_column_and_a_column_to_its_bead(at: Visit) -> None:
     """The chain is wider than the map: no bead stands over its column."""
-    page = visit("?v=1&scene=sec2&f=340")
+    page = at("?v=1&scene=sec2&f=340")
     settled(page)
     assert page.evaluate(LINK) is None
     home, top, left, width, high = page.evaluate("""() => {
@@ -77,8 +77,8 @@ BUTTONS = """() => {
 }"""
 
 
-def test_every_button_of_the_bar_has_a_word_that_is_in_its_name(visit: Visit) -> None:
-    page = visit()
+def test_every_button_of_the_bar_has_a_word_that_is_in_its_name(at: Visit) -> None:
+    page = at()
     for width in (1280, 390):
         page.set_viewport_size({"width": width, "height": 844})
         page.evaluate("shown()")

@@ -84,8 +84,8 @@ def test_dark_differs_from_light_in_colours_only() -> None:
 
 
 @pytest.mark.parametrize("scene", ["sec2", "fig11-founded"])
-def test_no_control_and_no_word_is_cut_hidden_or_covered(visit: Visit, scene: str) -> None:
-    page = visit(f"?v=1&scene={scene}&look=light")
+def test_no_control_and_no_word_is_cut_hidden_or_covered(at: Visit, scene: str) -> None:
+    page = at(f"?v=1&scene={scene}&look=light")
     page.wait_for_selector(".chapters button", timeout=COMPILED)
     for look in ("light", "dark", "projector"):
         expect(page.locator("html")).to_have_attribute("data-theme", look)
@@ -123,10 +123,10 @@ CUT = "(line) => [line, ...line.children].filter((one) => one.scrollWidth > one.
 
 
 @pytest.mark.parametrize("look", ["light", "projector"])
-def test_a_moved_knob_moves_no_picture(visit: Visit, look: str) -> None:
+def test_a_moved_knob_moves_no_picture(at: Visit, look: str) -> None:
     """However long the words for the motion are, and whichever marks the curve has: a figure of another size is laid out
     anew, which took most of the time of every picture."""
-    page = visit(f"?v=1&scene=sec2&look={look}")
+    page = at(f"?v=1&scene=sec2&look={look}")
     settled(page)
     expect(page.locator("#foot b")).not_to_contain_text("being computed")
     boxes, said = page.evaluate(BOXES), set()
@@ -146,8 +146,8 @@ def test_a_moved_knob_moves_no_picture(visit: Visit, look: str) -> None:
 
 
 @pytest.mark.parametrize("look", ["light", "projector"])
-def test_what_the_paper_states_is_named_at_its_frequency(visit: Visit, look: str) -> None:
-    page = visit(f"?v=1&scene=rig&look={look}")
+def test_what_the_paper_states_is_named_at_its_frequency(at: Visit, look: str) -> None:
+    page = at(f"?v=1&scene=rig&look={look}")
     stated = page.locator(".chapters .stated")
     expect(stated).to_have_text(["1:1", "1:1 anti", "1:2"])
     page.wait_for_selector(".chapters .peak", timeout=COMPILED)
@@ -166,8 +166,8 @@ def test_what_the_paper_states_is_named_at_its_frequency(visit: Visit, look: str
     expect(choice).to_be_hidden()  # the paper's frequencies are of other beads
 
 
-def test_titles_and_words_follow_the_window(visit: Visit) -> None:
-    page = visit("?look=light")
+def test_titles_and_words_follow_the_window(at: Visit) -> None:
+    page = at("?v=1&scene=sec2&look=light")
     assert page.evaluate("[document.documentElement.scrollWidth, document.documentElement.scrollHeight]") == [1280, 800]
     foot = page.locator("#foot").bounding_box()
     assert foot is not None and foot["y"] + foot["height"] <= 800  # all is in view without scrolling
@@ -187,13 +187,15 @@ def test_titles_and_words_follow_the_window(visit: Visit) -> None:
 
 
 @pytest.mark.parametrize("knobs", ["", "&dissipation=tsuji&tension=cut&F0=1"])
-def test_the_equation_is_whole(visit: Visit, knobs: str) -> None:
-    page = visit(f"?v=1&scene=rig{knobs}")
+def test_the_equation_is_whole(at: Visit, knobs: str) -> None:
+    page = at(f"?v=1&scene=rig{knobs}")
     formula = page.locator("#equation .formula")
     whole = "(box) => [box, ...box.children].every((one) => one.scrollWidth <= one.clientWidth)"
+    knobs_of_a_phone = page.get_by_role("button", name="Show or hide the other knobs")
     for width, height in WIDTHS:
         page.set_viewport_size({"width": width, "height": height})
         if width == 390:
-            page.get_by_role("button", name="Show or hide the other knobs").click()
+            knobs_of_a_phone.click()
         expect(formula.locator("math").first).to_be_visible()
         until(page, lambda: formula.locator("math").count() == 5 and formula.evaluate(whole))
+    knobs_of_a_phone.click()

@@ -114,8 +114,8 @@ def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Vis
     until(page, lambda: moment.get_attribute("transform") != there)
 
 
-def test_the_observer_is_a_second_set_and_off_at_first(visit: Visit) -> None:
-    page = visit("?v=1&scene=fig11-free")
+def test_the_observer_is_a_second_set_and_off_at_first(at: Visit) -> None:
+    page = at("?v=1&scene=fig11-free")
     sheet = opened(page)
     until(page, lambda: marks(page, "within") == 22)
     assert marks(page, "observer within") == 0
@@ -172,8 +172,8 @@ def fits(page: Page, sheet: Locator) -> None:
         assert search is not None and (width < 500 or search["y"] + search["height"] <= height)
 
 
-def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: Visit) -> None:
-    page = visit("?v=1&scene=rig&f=140")
+def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(at: Visit) -> None:
+    page = at("?v=1&scene=rig&f=140")
     sheet = opened(page, "No multipliers: the motion is chaotic")
     until(page, lambda: source(page, "multipliers", "reach") != {})
     assert marks(page, "within") == marks(page, "outside") == 0
@@ -190,8 +190,8 @@ def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(visit: 
     expect(sheet.locator(".searched")).to_be_hidden()
 
 
-def test_all_tabs_fit_and_arrows_reach_them(visit: Visit) -> None:
-    page = visit(viewport={"width": 390, "height": 844})
+def test_all_tabs_fit_and_arrows_reach_them(at: Visit) -> None:
+    page = at(viewport={"width": 390, "height": 844})
     for width in (390, 1280):
         page.set_viewport_size({"width": width, "height": 844})
         page.evaluate("shown()")

@@ -58,9 +58,9 @@ def tells(page: Page, story: Story, number: int, revealed: bool) -> None:
 
 
 @pytest.mark.parametrize("story", stories()[0], ids=lambda story: story.name)
-def test_a_story_shows_what_it_tells(visit: Visit, story: Story) -> None:
+def test_a_story_shows_what_it_tells(at: Visit, story: Story) -> None:
     """On a laptop and on a phone: a step that is reached on the one is looked at on the other too, and left there."""
-    page = visit()
+    page = at()
     now, other = LAPTOP, PHONE
     tab = page.locator("#tabs")
     tab.get_by_role("button", name=story.title).click()
@@ -77,9 +77,9 @@ def test_a_story_shows_what_it_tells(visit: Visit, story: Story) -> None:
         until(page, lambda: faults(page) == [])
 
 
-def test_a_story_is_read_whole_on_a_laptop(visit: Visit) -> None:
+def test_a_story_is_read_whole_on_a_laptop(at: Visit) -> None:
     """It has more room than other tabs, and what does not fit is announced by a button that goes there."""
-    page = visit("?v=1&scene=sec2&story=sonic-vacuum.1")
+    page = at("?v=1&scene=sec2&story=sonic-vacuum.1")
     tab = page.locator("#tabs")
     more, panel = tab.get_by_role("button", name="more"), tab.get_by_role("tabpanel")
     whole = "(body) => body.scrollHeight <= body.clientHeight"
@@ -94,9 +94,9 @@ def test_a_story_is_read_whole_on_a_laptop(visit: Visit) -> None:
     expect(tab.get_by_text("This is the 1:1 resonance.")).to_be_in_viewport(ratio=1)
 
 
-def test_a_step_back_is_the_step_it_was(visit: Visit) -> None:
+def test_a_step_back_is_the_step_it_was(at: Visit) -> None:
     """The second step comes through another frequency, so going back and forth must not change what it shows."""
-    page = visit()
+    page = at()
     (story,) = (one for one in stories()[0] if one.name == "coexisting")
     tab = page.locator("#tabs")
     tab.get_by_role("button", name=story.title).click()
@@ -106,8 +106,8 @@ def test_a_step_back_is_the_step_it_was(visit: Visit) -> None:
         shows(page, story, number)
 
 
-def test_a_term_with_a_capital_has_its_definition(visit: Visit) -> None:
-    page = visit("?story=chaos.2")
+def test_a_term_with_a_capital_has_its_definition(at: Visit) -> None:
+    page = at("?v=1&scene=sec2&story=chaos.2")
     page.locator("#tabs").get_by_role("button", name="answer").click()
     page.locator("#tabs dfn", has_text="Lyapunov exponent").hover()
     expect(page.get_by_role("tooltip")).to_contain_text("mean of the logarithm of a small disturbance's growth")
