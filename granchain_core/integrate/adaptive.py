@@ -59,7 +59,7 @@ class Adaptive:
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
-        return self._run(y, first, len(samples.displacement) - 1, 1, samples, out)
+        return self.stretch(y, first, len(samples.displacement) - 1, 1, samples, out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: Output) -> tuple[int, int]:
@@ -68,7 +68,7 @@ class Adaptive:
         strobes[0] = y[:row], self.work.k[0, :row]
         for p in range(len(maxima)):
             next_period(out.log.peaks)
-            status, _ = self._run(y, 0, self.grid, self.grid if watch else 0, keep, out)
+            status, _ = self.stretch(y, 0, self.grid, self.grid if watch else 0, keep, out)
             if status != DONE:
                 return status, p
             strobes[p + 1] = y[:row], self.work.k[0, :row]
@@ -77,7 +77,7 @@ class Adaptive:
                 maxima[p] = largest_forces(out.log.peaks)
         return DONE, len(maxima)
 
-    def _run(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
+    def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: Output) -> tuple[int, int]:
         status, rows = run_dop853(self.method, self.trajectory(y), Stretch(first, points, self.grid, every), samples,
                                      out)

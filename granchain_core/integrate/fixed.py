@@ -85,7 +85,7 @@ class FixedStep:
         if not self._simd or not all_in_simd_kernels(slots) or slots.driver is None:
             return None
         width = next((lanes for lanes in WIDTHS if scaled.bodies <= lanes), 0)
-        return _short_chain(scaled, width) if width else _long_chain(scaled)
+        return short_chain_workspace(scaled, width) if width else _long_chain(scaled)
 
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""
@@ -198,7 +198,7 @@ def _half_steps(grid: int) -> tuple[np.ndarray, np.ndarray]:
     return np.sin(theta), np.cos(theta)
 
 
-def _short_chain(scaled: ScaledChain, width: int) -> ShortChain:
+def short_chain_workspace(scaled: ScaledChain, width: int) -> ShortChain:
     """The workspace of a chain whose bodies fit into one vector."""
     slots = scaled.slots
 

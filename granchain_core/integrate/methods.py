@@ -15,6 +15,7 @@ from ..kernels.rk4.step import Rk4, Rk4Split
 from ..scaling import ScaledChain
 from .adaptive import Adaptive
 from .fixed import FixedStep, FixedStepInVelocity
+from .rooted import Rooted
 from .stepper import Stepper
 
 #: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.
@@ -154,9 +155,9 @@ def _in_velocity(kind: Any) -> Callable[[Setting, ScaledChain, int], Stepper]:
                                                                  scaled, samples)
 
 
-def _adaptive(setting: Setting, scaled: ScaledChain, samples: int) -> Stepper:
-    """The stepper of the method with error control."""
-    return Adaptive(setting.tolerance, scaled, samples)
+def _adaptive(kind: Any) -> Callable[[Setting, ScaledChain, int], Stepper]:
+    """What makes the stepper of a method with error control."""
+    return lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples)
 
 
 METHODS: dict[str, Method] = {
@@ -188,8 +189,15 @@ METHODS: dict[str, Method] = {
         Method(
             name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
             adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
-            reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive,
+            reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Adaptive),
             cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
+        Method(
+            name="dop853-root", title="Dormand–Prince 8 in w, in the root of an overlap next to contact events",
+            order_smooth=8.0, order=7.0, adaptive=True, symplectic=False,
+            restrictions="accuracy to about 1e-12; dop853 with an energy account, a tension cut or more than 30 beads",
+            reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/model.md",
+            stepper=_adaptive(Rooted), cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0,
+            order_with_cut=7.5),
     )
 }
 

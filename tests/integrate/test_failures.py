@@ -14,7 +14,7 @@ from granchain_core.kernels.status import CHATTER, DONE, TOO_MANY_STEPS
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
 
-@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
+@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853", "dop853-root"])
 @pytest.mark.parametrize("row", ["displacement", "w"])
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("bead", [1, 6, 11])
@@ -30,7 +30,7 @@ def test_an_injected_nan_or_infinity_ends_the_run_with_its_sentence(method, row,
     assert "s (" in caught.value.sentence
 
 
-@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
+@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853", "dop853-root"])
 def test_the_sentence_names_the_bead_that_failed(method):
     """Not the first one by default: exit status 3 promises which bead, when and why."""
     engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 8)
@@ -49,7 +49,7 @@ def test_the_sentence_names_the_time_since_the_start():
         engine.periods(2)
 
 
-@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
+@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853", "dop853-root"])
 def test_a_nan_in_the_periods_kernel_is_caught_too(method):
     """The kernel for settling looks as well as the one for recording."""
     engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 1)

@@ -23,6 +23,8 @@ from ..problem import Solved
 #: Its fixed-step methods and the multiples of the fixed-step method's steps that are tried.
 FIXED = ("rk4-split", "rk4")
 REFINES = (0.5, 0.6, 0.7, 0.8, 1, 1.2, 1.4, 1.6, 2, 2.5, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 56, 64, 96, 128, 256)
+#: Its methods with error control.
+ADAPTIVE = ("dop853", "dop853-root")
 #: The reference: the adaptive method at its finest; for the curve, where 300 points are needed, coarser.
 FINEST, CURVE_TOLERANCE = 3e-15, 1e-9
 
@@ -116,7 +118,7 @@ def cases() -> list[Case]:
     """Every method of the engine that is worth it, and the batches."""
     found = [Case(f"granchain {m}", "w", REFINES, lambda r, m=m: _recording(Setting(m, refine=r)), unit="refine")
              for m in FIXED]
-    found.append(Case("granchain dop853", "w", rungs(1e-4, 1e-13, 4),
-                      lambda t: _recording(Setting("dop853", tolerance=t))))
+    found += [Case(f"granchain {m}", "w", rungs(1e-4, 1e-13, 4), lambda t, m=m: _recording(Setting(m, tolerance=t)))
+              for m in ADAPTIVE]
     found.append(Case("granchain batches", "w", peaks=batch_peaks, curve_ladder=(0.5, 0.6, 0.7, 0.85, 1, 1.25, 1.5, 2, 3, 4, 5, 6), unit="refine"))
     return found

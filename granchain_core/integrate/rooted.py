@@ -1,0 +1,65 @@
+"""Stepping with error control along a short chain in vectors; chains that these do not know are left to dop853."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..kernels.dop853.run import Stretch
+from ..kernels.dop853.step import ALL_STAGES
+from ..kernels.forces.largest import new_log
+from ..kernels.jit import all_in_simd_kernels
+from ..kernels.rk4.short_chain import WIDTHS
+from ..kernels.rooted.chain import STATE_ROWS, RootedWorkspace, Stages
+from ..kernels.rooted.run import run_rooted
+from ..kernels.samples import Output, Samples
+from ..kernels.simd.vector import VECTOR_WIDTH, aligned
+from ..scaling import ScaledChain
+from ..stop import Stop
+from .adaptive import Adaptive
+from .fixed import short_chain_workspace
+from .stepper import Start, empty_samples
+
+
+class Rooted(Adaptive):
+    """Dormand–Prince 8 in (u, w) at a relative tolerance per step, in the root of an overlap next to contact events."""
+
+    def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
+        super().__init__(tolerance, scaled, samples)
+        self._vectors = _workspace(scaled)
+
+    def use(self, scaled: ScaledChain) -> None:
+        """Go on with other values in the same slots, or with other effects."""
+        super().use(scaled)
+        self._vectors = _workspace(scaled)
+
+    def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
+             out: Output) -> tuple[int, int]:
+        if self._vectors is None:
+            return super().stretch(y, first, points, every, samples, out)
+        status, rows = run_rooted(self.method, self._vectors, self.trajectory(y),
+                                  Stretch(first, points, self.grid, every), samples, out)
+        return status, rows
+
+    def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
+        """The bead is found by dop853, whose stages can be told apart, on the call repeated from its start."""
+        if self._vectors is None or start is None:
+            return super().locate_failure(y, start, done)
+        before, _, first = start
+        again, now = Adaptive(self.method.tolerance, self.scaled, self.grid), before.copy()
+        again.prepare(now)
+        kept = empty_samples(self.scaled, round(self.grid * (done + 2.0)))
+        again.samples(now, first, kept, Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag))
+        return again.locate_failure(now, start, done)
+
+
+def _workspace(scaled: ScaledChain) -> RootedWorkspace | None:
+    """The workspace of a driven chain of up to 30 beads, with no effect that vectors do not know; else None."""
+    width = next((lanes for lanes in WIDTHS if scaled.bodies <= lanes), 0)
+    if not width or not all_in_simd_kernels(scaled.slots) or scaled.slots.driver is None:
+        return None
+
+    def rows(count: int) -> Stages:
+        return Stages(aligned(count, width), aligned(count, width), aligned(count, VECTOR_WIDTH))
+
+    return RootedWorkspace(short_chain_workspace(scaled, width), rows(ALL_STAGES), rows(7), rows(1),
+                           aligned(STATE_ROWS, width), aligned(1, width), np.zeros(8))

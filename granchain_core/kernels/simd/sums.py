@@ -1,0 +1,115 @@
+"""Sums over rows of an array with fixed weights, sums and maxima over the lanes of a vector, single lanes."""
+
+from __future__ import annotations
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from ..jit import FAST_MATH
+
+
+def weighted_rows(weights, latest=-1):
+    """An intrinsic (vector, array) that gives Σ weights[s] · row s of an array of rows as wide as the vector.
+
+    The vector is row `latest`, which is then not read back from memory; −1: only its type matters. Rows of weight zero
+    are not read either.
+    """
+    terms = [(s, float(weight)) for s, weight in enumerate(weights) if weight != 0.0]
+    terms.sort(key=lambda term: term[0] == latest)  # the newest row last: the others need not wait for it
+
+    @intrinsic
+    def total(typingctx, vector, array):
+        def codegen(context, builder, sig, args):
+            kind, sum_ = sig.return_type.ir, None
+            rows = builder.bitcast(context.make_array(sig.args[1])(context, builder, args[1]).data, kind.as_pointer())
+            for s, weight in terms:
+                row = args[0] if s == latest else builder.load(
+                    builder.gep(rows, [ir.Constant(ir.IntType(64), s)]), align=8)
+                part = builder.fmul(row, ir.Constant(kind, [weight] * kind.count), flags=FAST_MATH)
+                sum_ = part if sum_ is None else builder.fadd(sum_, part, flags=FAST_MATH)
+            return sum_
+
+        return vector(vector, array), codegen
+
+    return total
+
+
+@intrinsic
+def sum_of(typingctx, value):
+    """The sum of all lanes."""
+
+    def codegen(context, builder, sig, args):
+        kind = sig.args[0].ir
+        function = cgutils.get_or_insert_function(
+            builder.module, ir.FunctionType(ir.DoubleType(), [ir.DoubleType(), kind]),
+            f"llvm.vector.reduce.fadd.v{kind.count}f64")
+        return builder.call(function, [ir.Constant(ir.DoubleType(), 0.0), args[0]], fastmath=FAST_MATH)
+
+    return types.float64(value), codegen
+
+
+@intrinsic
+def largest_of(typingctx, value):
+    """The largest lane; a NaN in another lane does not count."""
+
+    def codegen(context, builder, sig, args):
+        kind = sig.args[0].ir
+        function = cgutils.get_or_insert_function(
+            builder.module, ir.FunctionType(ir.DoubleType(), [kind]), f"llvm.vector.reduce.fmax.v{kind.count}f64")
+        return builder.call(function, [args[0]])
+
+    return types.float64(value), codegen
+
+
+@intrinsic
+def magnitude(typingctx, value):
+    """The absolute value of every lane."""
+
+    def codegen(context, builder, sig, args):
+        kind = sig.args[0].ir
+        function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(kind, [kind]),
+                                                  f"llvm.fabs.v{kind.count}f64")
+        return builder.call(function, [args[0]])
+
+    return value(value), codegen
+
+
+@intrinsic
+def only_lane(typingctx, value, lane):
+    """1 in one lane and 0 in all others of a vector like `value`."""
+
+    def codegen(context, builder, sig, args):
+        kind = sig.return_type.ir
+        integers = ir.VectorType(ir.IntType(64), kind.count)
+        nothing, first = ir.Constant(integers, ir.Undefined), ir.Constant(ir.IntType(32), 0)
+        wanted = builder.shuffle_vector(builder.insert_element(nothing, args[1], first), nothing,
+                                        ir.Constant(ir.VectorType(ir.IntType(32), kind.count), [0] * kind.count))
+        chosen = builder.icmp_signed("==", wanted, ir.Constant(integers, list(range(kind.count))))
+        return builder.select(chosen, ir.Constant(kind, [1.0] * kind.count), ir.Constant(kind, [0.0] * kind.count))
+
+    return value(value, types.intp), codegen
+
+
+@intrinsic
+def lowest_bit(typingctx, mask):
+    """The number of the lowest bit that is set."""
+
+    def codegen(context, builder, sig, args):
+        return builder.cttz(args[0], ir.Constant(ir.IntType(1), 0))
+
+    return types.int64(mask), codegen
+
+
+@intrinsic
+def rough_sixteenth(typingctx, value):
+    """value^{−1/16} of a positive number to about 4 %, from its bits as an approximate logarithm."""
+
+    def codegen(context, builder, sig, args):
+        bits = ir.IntType(64)
+        part = builder.ashr(builder.bitcast(args[0], bits), ir.Constant(bits, 4))
+        one = 1023 << 52
+        return builder.bitcast(builder.sub(ir.Constant(bits, one + one // 16 - (1 << 47)), part), ir.DoubleType())
+
+    return types.float64(types.float64), codegen

@@ -1,0 +1,58 @@
+"""dop853-root: the motion, forces and jumps of dop853 from steps that go past contact events; what it leaves to dop853."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from granchain_core import scene
+from granchain_core.integrate import Engine, Setting
+
+#: Linear law from rest, every contact opens and closes; Tsuji's law, whose variable is the fourth root; never an event.
+SCENES = {"events": {"f": 340.0}, "fourth root": {"f": 900.0, "dissipation": "tsuji"}, "closed": {"F0": 5.0}}
+
+
+def recorded(name: str, tolerance: float, **knobs):
+    """An engine of `sec2` after three periods, and its samples."""
+    engine = Engine(scene("sec2").evolve(**knobs), Setting(name, tolerance=tolerance), 16)
+    return engine, engine.record(48)
+
+
+@pytest.mark.parametrize("knobs", SCENES.values(), ids=SCENES)
+def test_motion_and_forces_are_those_of_dop853(knobs):
+    """Within a thousand tolerances, as dop853 itself (tests/numerics/test_orders.py)."""
+    reference, true = recorded("dop853", 1e-13, **knobs)
+    engine, found = recorded("dop853-root", 1e-10, **knobs)
+    size = np.abs(true.displacement).max()
+    assert np.abs(found.displacement - true.displacement).max() < 1e-7 * size
+    assert np.abs(found.force - true.force).max() < 1e-7 * np.abs(true.force).max()
+    assert np.allclose(engine.maxima, reference.maxima, rtol=1e-7)
+    assert np.allclose(engine.jumps, reference.jumps, rtol=1e-7)
+    # without the jumps ahead of the first wave: rounding decides when they come
+    ours, theirs = (e.closings[e.closings[:, 3] > 1e-4] for e in (engine, reference))
+    assert np.allclose(ours[:, 1:], theirs[:, 1:], rtol=1e-6)
+
+
+def test_it_takes_less_than_half_of_dop853s_evaluations():
+    """What it is for; at 1e-8 it takes a third once the first wave has passed."""
+    ours, theirs = (recorded(name, 1e-8, f=340.0)[0] for name in ("dop853-root", "dop853"))
+    before = ours.counts.rhs, theirs.counts.rhs
+    ours.record(96)
+    theirs.record(96)
+    assert 2 * (ours.counts.rhs - before[0]) < theirs.counts.rhs - before[1]
+
+
+def test_a_run_in_two_parts_goes_on():
+    """A call ends at its last sample inside a step; the next begins there."""
+    whole = recorded("dop853-root", 1e-11, f=340.0)[1].displacement
+    engine = Engine(scene("sec2").evolve(f=340.0), Setting("dop853-root", tolerance=1e-11), 16)
+    parts = np.vstack([engine.record(21).displacement, engine.record(27).displacement[1:]])
+    assert np.abs(parts - whole).max() < 1e-8 * np.abs(whole).max()
+
+
+@pytest.mark.parametrize(("knobs", "balance"), [({"tension": "cut"}, False), ({"N": 40}, False), ({}, True)])
+def test_what_vectors_do_not_know_is_left_to_dop853(knobs, balance):
+    """A cut, a long chain and an energy account: the same bits."""
+    one, other = (Engine(scene("sec2").evolve(**knobs), Setting(name, tolerance=1e-6), 16, balance=balance)
+                  for name in ("dop853", "dop853-root"))
+    assert np.array_equal(one.record(16).displacement, other.record(16).displacement)
