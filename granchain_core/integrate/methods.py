@@ -120,6 +120,8 @@ class Method:
         Whether the error falls by the method's order at every refinement, contact events or not.
     variables : str
         "uw" or "uv".
+    keeps_account : bool
+        Whether its kernels know the energy account.
     """
 
     name: str
@@ -136,11 +138,12 @@ class Method:
     converges_regularly: bool = False
     variables: str = "uw"
     order_with_cut: float = 1.0
+    keeps_account: bool = True
 
     @property
     def has_account(self) -> bool:
         """Whether its equations can have the energy account."""
-        return self.variables == "uw"
+        return self.variables == "uw" and self.keeps_account
 
 
 def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, ScaledChain, int], Stepper]:
@@ -194,10 +197,11 @@ METHODS: dict[str, Method] = {
         Method(
             name="dop853-root", title="Dormand–Prince 8 in w, in the root of an overlap next to contact events",
             order_smooth=8.0, order=7.0, adaptive=True, symplectic=False,
-            restrictions="accuracy to about 1e-12; dop853 with an energy account, a tension cut or more than 30 beads",
+            restrictions="accuracy to about 1e-12; no energy account; driven chains of up to 30 beads without tension "
+                         "cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/model.md",
             stepper=_adaptive(Rooted), cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0,
-            order_with_cut=7.5),
+            keeps_account=False),
     )
 }
 

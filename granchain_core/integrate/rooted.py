@@ -1,9 +1,10 @@
-"""Stepping with error control along a short chain in vectors; chains that these do not know are left to dop853."""
+"""Stepping with error control along a short chain in vectors; other chains are refused."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from ..errors import BadInput
 from ..kernels.dop853.run import Stretch
 from ..kernels.dop853.step import ALL_STAGES
 from ..kernels.forces.largest import new_log
@@ -28,21 +29,19 @@ class Rooted(Adaptive):
         self._vectors = _workspace(scaled)
 
     def use(self, scaled: ScaledChain) -> None:
-        """Go on with other values in the same slots, or with other effects."""
-        super().use(scaled)
+        """Go on with other values in the same slots, or with other effects. Raises `BadInput`."""
         self._vectors = _workspace(scaled)
+        super().use(scaled)
 
     def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: Output) -> tuple[int, int]:
-        if self._vectors is None:
-            return super().stretch(y, first, points, every, samples, out)
         status, rows = run_rooted(self.method, self._vectors, self.trajectory(y),
                                   Stretch(first, points, self.grid, every), samples, out)
         return status, rows
 
     def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
         """The bead is found by dop853, whose stages can be told apart, on the call repeated from its start."""
-        if self._vectors is None or start is None:
+        if start is None:
             return super().locate_failure(y, start, done)
         before, _, first = start
         again, now = Adaptive(self.method.tolerance, self.scaled, self.grid), before.copy()
@@ -52,11 +51,12 @@ class Rooted(Adaptive):
         return again.locate_failure(now, start, done)
 
 
-def _workspace(scaled: ScaledChain) -> RootedWorkspace | None:
-    """The workspace of a driven chain of up to 30 beads, with no effect that vectors do not know; else None."""
+def _workspace(scaled: ScaledChain) -> RootedWorkspace:
+    """The workspace of a driven chain of up to 30 beads, all of whose effects the vectors know. Raises `BadInput`."""
     width = next((lanes for lanes in WIDTHS if scaled.bodies <= lanes), 0)
     if not width or not all_in_simd_kernels(scaled.slots) or scaled.slots.driver is None:
-        return None
+        raise BadInput(f"The method dop853-root knows driven chains of up to {max(WIDTHS) - 2} beads without tension "
+                       "cut and energy account; use dop853 for this one.")
 
     def rows(count: int) -> Stages:
         return Stages(aligned(count, width), aligned(count, width), aligned(count, VECTOR_WIDTH))
