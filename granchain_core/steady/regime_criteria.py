@@ -143,11 +143,6 @@ def converging(strobes: np.ndarray) -> bool:
     return _converging(_windows(strobes))
 
 
-def some_changes_shrink(strobes: np.ndarray) -> bool:
-    """Whether changes over some period shrink through three windows: enough to give a motion more periods."""
-    return any(_shrinks(a, b, c) for a, b, c in _windows(strobes))
-
-
 def departing(strobes: np.ndarray) -> bool:
     """Whether the motion leaves an orbit: changes over some period grow, small still, and none shrink."""
     return _departing(_windows(strobes))

@@ -18,7 +18,7 @@ from ...scene import Scene
 from ...state import rest
 from ...stop import Stop
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
-from ..regime_criteria import SLOW_RECORD, some_changes_shrink
+from ..regime_criteria import SLOW_RECORD, converging
 from ..settling.advance import MOST_SETTLING_STEPS
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
@@ -136,7 +136,7 @@ def outcome_of_coarse_run(job: Job, batch: Batch, member: int) -> SteadyState | 
     if run >= job.affordable_periods:
         return unsettled(job, batch, member, run)
     record = batch.strobes(member)
-    if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not some_changes_shrink(record)):
+    if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
         return _in_doubt(job, batch, member, run, record.copy())
     batch.state.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)
