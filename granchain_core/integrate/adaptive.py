@@ -79,6 +79,7 @@ class Adaptive:
 
     def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: Output) -> tuple[int, int]:
+        """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         status, rows = run_dop853(self.method, self.trajectory(y), Stretch(first, points, self.grid, every), samples,
                                      out)
         return status, rows

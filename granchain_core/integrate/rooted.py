@@ -35,6 +35,7 @@ class Rooted(Adaptive):
 
     def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: Output) -> tuple[int, int]:
+        """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         status, rows = run_rooted(self.method, self._vectors, self.trajectory(y),
                                   Stretch(first, points, self.grid, every), samples, out)
         return status, rows
