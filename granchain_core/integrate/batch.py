@@ -70,6 +70,7 @@ class Batch:
         numbers = {name: np.zeros(BATCH_SIZE) for name in ("slowest", "change_before_extrapolation", "distance")}
         self.state = kernels.BatchState(
             **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2),
+            first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
             peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)), before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
@@ -109,6 +110,7 @@ class Batch:
         state.y[:, member], state.overlaps[:, member] = y, 0.0
         state.ends[:, member] = 1.0  # counts as closed, so that no closing is recorded here
         state.strobes[member, 0], state.strobe_count[member] = y.reshape(2, -1), 1
+        state.first_strobe[:, member] = 0
         state.periods[member], state.return_at[member], state.earliest[member] = 0, return_at, earliest
         state.extrapolate_from[member], state.pause[member] = 0, _PAUSE
         state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
@@ -152,9 +154,12 @@ class Batch:
         return int(member), status == DONE
 
     def strobes(self, member: int, most: int = STROBES_KEPT) -> np.ndarray:
-        """The last `most` remembered strobes of a member in order, (P, 2, N), displacement and w in scaled units."""
+        """The last `most` remembered strobes of a member in order, (P, 2, N), displacement and w in scaled units.
+
+        They begin where the member was last moved to another state.
+        """
         kept = int(self.state.strobe_count[member])
-        return self.state.strobes[member, max(0, kept - most) : kept, :, 1:-1]
+        return self.state.strobes[member, max(int(self.state.first_strobe[0, member]), kept - most) : kept, :, 1:-1]
 
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse member has settled on: from before it was disturbed, if it was."""

@@ -1,11 +1,11 @@
 """The end of a batch member's drive period: its strobe is kept, its regime checked, its transient extrapolated.
 
-A coarse member is extrapolated to at most three times the distance that its decay predicts
-(`FARTHEST_EXTRAPOLATION`). The extrapolation is undone if the change per orbit is not smaller after it than before. A
-chain may approach an unstable orbit before it leaves it, and an extrapolation could end there. So an orbit found by
-extrapolation is disturbed, and accepted only if the disturbance decays; if it decays slowly, multipliers decide
-(steady/batch/jobs.py). A fine member starts on the coarse orbit and is extrapolated to its own, each extrapolation
-checked in the same way.
+A coarse member is extrapolated to at most three times the distance that its decay predicts (`FARTHEST_EXTRAPOLATION`).
+The extrapolation is undone, with the periods run since, if the change per orbit is not smaller after it than before:
+the record goes on as if it had not been made. A chain may approach an unstable orbit before it leaves it, and an
+extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the disturbance
+decays; if it decays slowly, multipliers decide (steady/batch/jobs.py). A fine member starts on the coarse orbit and is
+extrapolated to its own, each extrapolation checked in the same way.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ FINE_PERIOD, FINE_DECAY, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, 
 
 
 @internal
-def keep_member_strobe(strobes, strobe_count, y, member):
+def keep_member_strobe(strobes, strobe_count, first_strobe, y, member):
     """Append the state to the strobes, dropping their older half if they are full; returns whether it is finite."""
     bodies = y.shape[0] // 2
     if strobe_count[member] == strobes.shape[1]:
@@ -71,6 +71,8 @@ def keep_member_strobe(strobes, strobe_count, y, member):
             copy(strobes[member, half + p, 0], strobes[member, p, 0])
             copy(strobes[member, half + p, 1], strobes[member, p, 1])
         strobe_count[member] = half
+        for q in range(2):
+            first_strobe[q, member] = max(0, first_strobe[q, member] - half)
     finite, row = True, strobe_count[member]
     for i in range(bodies):
         strobes[member, row, 0, i], strobes[member, row, 1, i] = y[i, member], y[bodies + i, member]
@@ -80,8 +82,8 @@ def keep_member_strobe(strobes, strobe_count, y, member):
 
 
 @internal
-def move_member(state, member, there):
-    """Move a member to the state `there` (2, bodies), where its strobes begin anew."""
+def set_state(state, member, there):
+    """Set the state of a member at phase 0 to `there` (2, bodies)."""
     bodies = there.shape[1]
     for i in range(1, bodies - 1):
         state.y[i, member], state.y[bodies + i, member] = there[0, i], there[1, i]
@@ -89,17 +91,34 @@ def move_member(state, member, there):
         state.overlaps[c, member] = 0.0
     for row in range(4):
         state.ends[row, member] = 1.0  # counts as closed, so that no closing is recorded here
-    state.strobe_count[member] = 0
-    keep_member_strobe(state.strobes, state.strobe_count, state.y, member)
+
+
+@internal
+def move_member(state, member, there):
+    """Move a member to the state `there` (2, bodies), where its record begins anew."""
+    set_state(state, member, there)
+    state.first_strobe[1, member] = state.first_strobe[0, member]
+    state.first_strobe[0, member] = state.strobe_count[member]
+    keep_member_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
+
+
+@internal
+def undo_extrapolation(state, member):
+    """Move a member back to its state before the last extrapolation; its record and its periods go on from there."""
+    set_state(state, member, state.before[member])
+    state.periods[member] -= state.strobe_count[member] - state.first_strobe[0, member] - 1
+    state.strobe_count[member] = state.first_strobe[0, member]
+    state.first_strobe[0, member] = state.first_strobe[1, member]
 
 
 @internal
 def extrapolate_member(state, member, n, rate, change):
     """Move a member to the limit of its last strobes, n periods apart; returns whether that was within reach."""
-    count = state.strobe_count[member]
+    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
+    count = record.shape[0]
     if count < ORBITS * n + 1 or not 0.0 < rate < 1.0:
         return False
-    limit, record = state.limit, state.strobes[member, count - 1 - ORBITS * n : count]
+    limit, record = state.limit, record[count - 1 - ORBITS * n :]
     reduced_rank(record[::n], state.basis, state.triangle, limit)
     largest_of(record, state.scale)
     reach = FARTHEST_EXTRAPOLATION * change / (1.0 - rate)
@@ -114,9 +133,11 @@ def extrapolate_member(state, member, n, rate, change):
 @internal
 def check_coarse(state, member):
     """Whether a member's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
-    count, periods = state.strobe_count[member], state.periods[member]
+    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
+    periods = state.periods[member]
+    count = record.shape[0]
     period, rate, distance, n, approach_rate, change = detect_period(
-        state.strobes[member, max(0, count - CHECKED) : count], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
+        record[max(0, count - CHECKED) :], LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE,
         state.slowest[member], state.scale, state.change)
     last_check = state.last_check[member]
     last_check[CHECK_PERIOD], last_check[CHECK_DECAY], last_check[CHECK_DISTANCE] = period, rate, distance
@@ -129,17 +150,19 @@ def check_coarse(state, member):
         proved = n > 0 and change < state.change_before_extrapolation[member]
         state.change_before_extrapolation[member] = 0.0
         if not proved:
-            move_member(state, member, state.before[member])
+            undo_extrapolation(state, member)
+            periods = state.periods[member]
             state.pause[member] *= 2
             state.extrapolate_from[member] = periods + state.pause[member]
+            state.earliest[member] = periods + periods_to_next_check(state, member)
             return False
     left = change * approach_rate / (1.0 - approach_rate) if n > 0 else 0.0
     if periods < state.extrapolate_from[member] or left <= SETTLED_DISTANCE:
         return False
     if log(SETTLED_DISTANCE / left) > _FEWEST_ORBITS_LEFT * log(approach_rate):
         return False  # it settles sooner without extrapolation
-    copy(state.strobes[member, count - 1, 0], state.before[member, 0])
-    copy(state.strobes[member, count - 1, 1], state.before[member, 1])
+    copy(record[count - 1, 0], state.before[member, 0])
+    copy(record[count - 1, 1], state.before[member, 1])
     if extrapolate_member(state, member, n, approach_rate, change):
         state.change_before_extrapolation[member] = change
         state.slowest[member] = min(_SLOWEST_REMOVED, max(state.slowest[member], approach_rate ** (1.0 / n)))
@@ -153,9 +176,9 @@ def check_coarse(state, member):
 @inline_numba
 def disturb(state, member, period):
     """Disturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
-    count, bodies = state.strobe_count[member], state.limit.shape[1]
+    bodies, last = state.limit.shape[1], state.strobe_count[member] - 1
     for q in range(2):
-        copy(state.strobes[member, count - 1, q], state.before[member, q])
+        copy(state.strobes[member, last, q], state.before[member, q])
         for i in range(bodies):
             state.limit[q, i] = state.before[member, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
     for q in range(3):
@@ -169,14 +192,15 @@ def disturb(state, member, period):
 def decayed(state, member):
     """Whether a member's disturbance has decayed; it is then moved back to its orbit, and the decay is recorded."""
     n, bodies = state.testing[member], state.limit.shape[1]
+    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
     state.testing[member] = 0
-    largest_of(state.strobes[member, : _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
+    largest_of(record[: _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
         there, whole = 0.0, 0.0
         for q in range(2):
             for i in range(bodies):
-                offset = (state.strobes[member, k * n, q, i] - state.before[member, q, i]) / state.scale[q]
+                offset = (record[k * n, q, i] - state.before[member, q, i]) / state.scale[q]
                 there, whole = max(there, abs(offset)), whole + offset**2
         quarter = 4 * k // (_TEST_ORBITS + 1)
         first = max(first, there) if quarter == 0 else first
@@ -219,7 +243,7 @@ def check_fine(state, member):
     proved = change < state.change_before_extrapolation[member] or state.change_before_extrapolation[member] == 0.0
     state.change_before_extrapolation[member] = 0.0
     if not proved:
-        move_member(state, member, state.before[member])
+        undo_extrapolation(state, member)
         state.earliest[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
         fine[FINE_EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
         return False
@@ -239,12 +263,18 @@ def check_fine(state, member):
     return False
 
 
+@internal
+def periods_to_next_check(state, member):
+    """Periods until a member's record is checked again: about a sixth of its length."""
+    return max(3, (state.strobe_count[member] - state.first_strobe[0, member]) // 6)
+
+
 @inline_llvm
 def end_period(state, member):
     """Record a member's strobe and largest forces, set its phase to 0 exactly; returns whether a check is due."""
     state.periods[member] += 1
     periods = state.periods[member]
-    finite = keep_member_strobe(state.strobes, state.strobe_count, state.y, member)
+    finite = keep_member_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
     maxima = state.maxima[member, periods % STROBES_KEPT]
     for q in range(3):
         maxima[q] = state.peaks[row_of(q), member]
@@ -258,10 +288,11 @@ def end_period(state, member):
     if not finite:
         return True
     if periods >= state.earliest[member]:
-        state.earliest[member] = periods + max(3, state.strobe_count[member] // 6)
+        state.earliest[member] = periods + periods_to_next_check(state, member)
         if state.testing[member] > 0:
             if decayed(state, member):
                 return True
         elif check_fine(state, member) if state.fine_record[member, FINE_PERIOD] > 0.0 else check_coarse(state, member):
             return True
-    return periods >= state.return_at[member] and state.testing[member] == 0
+    pending = state.testing[member] > 0 or state.change_before_extrapolation[member] > 0.0
+    return state.periods[member] >= state.return_at[member] and not pending

@@ -66,6 +66,8 @@ class BatchState(NamedTuple):
     distance (L,)            distance to which the shadow is brought back after each period
     growth (L, R)            logarithm of the factor by which that distance has grown in each period; NaN if lost
     strobe_count (L,)        strobes kept
+    first_strobe (2, L)      place of the first strobe since the member was last moved to another state, and of the
+                             first since the time before that
     slowest (L,)             slowest decay known
     change_before_extrapolation (L,)  change per orbit before an extrapolation that is not confirmed yet, else 0
     testing (L,)             period of an orbit that is being disturbed, else 0
@@ -97,6 +99,7 @@ class BatchState(NamedTuple):
     distance: np.ndarray
     growth: np.ndarray
     strobe_count: np.ndarray
+    first_strobe: np.ndarray
     slowest: np.ndarray
     change_before_extrapolation: np.ndarray
     testing: np.ndarray

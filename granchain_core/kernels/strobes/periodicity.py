@@ -166,7 +166,8 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
             continue  # a shorter period is being approached, which is why the change over this one is small
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
-            return Detected(n, earlier_rate(strobes, scale, n, rounding, change), rounding, 0, 0.0, 0.0)
+            q = shortest(strobes, scale, n, max(10.0 * rounding, 3.0 * settled))
+            return Detected(q, earlier_rate(strobes, scale, q, rounding, change), rounding, 0, 0.0, 0.0)
         rate, even = decay_rate(change, count, n)
         recent = largest_change(change, count - n, n)
         if rate >= 1.0:

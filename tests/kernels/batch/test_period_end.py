@@ -65,6 +65,36 @@ def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before:
     assert (state.y[1, MEMBER] != 0.25) == kept and (state.pause[MEMBER] == 16) == kept
 
 
+def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None:
+    """The record ends with the state from which it was extrapolated, and what was run since is not counted."""
+    before = 1.0 + 1e-3 * 0.9 ** np.arange(60)
+    batch = seen(before)
+    state = batch.state
+    state.periods[MEMBER] = 59
+    state.before[MEMBER, :, 1:-1] = before[-1]
+    limit = np.full((2, 4), 2.0)
+    period_end.move_member.py_func(state, MEMBER, limit)
+    assert len(batch.strobes(MEMBER)) == 1 and batch.strobes(MEMBER)[0] == pytest.approx(2.0)
+    for _ in range(12):
+        state.periods[MEMBER] += 1
+        period_end.keep_member_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
+    assert len(batch.strobes(MEMBER)) == 13
+    period_end.undo_extrapolation.py_func(state, MEMBER)
+    assert batch.strobes(MEMBER)[:, 0, 0] == pytest.approx(before, abs=0.0)
+    assert state.periods[MEMBER] == 59 and state.y[1, MEMBER] == before[-1]
+
+
+def test_a_full_record_drops_its_older_half_and_keeps_its_beginning_right() -> None:
+    """Strobes from before the last move leave first; those since then stay, up to STROBES_KEPT of them."""
+    batch = seen(np.arange(1.0, 2.0 * period_end.STROBES_KEPT))  # one place is left
+    state = batch.state
+    period_end.move_member.py_func(state, MEMBER, np.full((2, 4), -1.0))
+    for k in range(3):
+        state.y[1, MEMBER] = -2.0 - k
+        period_end.keep_member_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
+    assert batch.strobes(MEMBER)[:, 0, 0].tolist() == [-1.0, -2.0, -3.0, -4.0]
+
+
 def excess(power: float, r: float) -> float:
     """Simpson's rule over one step through the kink less ∫ s^p over its closed part r."""
     return (r**power + 4.0 * max(r - 0.5, 0.0) ** power) / 6.0 - r ** (power + 1.0) / (power + 1.0)

@@ -45,6 +45,14 @@ def test_roots_of_one_give_their_period(period: int) -> None:
     assert (found.name, found.period) == ("periodic", period)
 
 
+def test_changes_that_are_rounding_do_not_make_a_period_longer() -> None:
+    """A fixed point whose states differ by 3e-12, alternating between three values, has period 1, not 3."""
+    states = np.ones((200, 2, 3))
+    states[:, 0, 0] += 3e-12 * (np.arange(200) % 3)
+    found = regime_criteria.find_period(states)
+    assert (found.name, found.period) == ("periodic", 1)
+
+
 def test_a_closed_curve_is_not_periodic() -> None:
     """An irrational rotation is quasi-periodic: no period is found, and with a zero exponent it is called that."""
     states = strobes([np.exp(2j * np.pi * (np.sqrt(5) - 1) / 2)], [1.0], 420)
