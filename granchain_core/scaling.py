@@ -22,6 +22,7 @@ from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import new_tension_cut
+from .kernels.entry import Entries, structure
 from .kernels.equations.body_forces import add_force_slope
 from .kernels.equations.motion import Forces, Slots, place
 from .laws import LAWS, require_complete
@@ -39,6 +40,8 @@ _FOUNDATION_STEP = 0.1
 _DAMPING_LIMIT = 1.39
 #: The largest speed of a bead over that of what pushes it: a light bead leaves a heavy one twice as fast.
 _FASTEST = 2.0
+#: Called for every point of a curve.
+_PLACE = Entries(place)
 #: More steps than this in one drive period are refused: one period would take a good part of a minute.
 MOST_STEPS_PER_PERIOD = 50_000_000
 
@@ -124,7 +127,7 @@ class ScaledChain:
         displacement, velocity = self.rows(y)
         displacement[:] = state.displacement / self.scales.length
         velocity[:] = state.velocity / self.scales.velocity
-        place(self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
+        _PLACE(structure(self.slots), self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
         y[0] = 0.0
         return y
 
@@ -134,7 +137,7 @@ class ScaledChain:
         The second half of y is w, not velocity; v is recovered from w and the overlaps.
         """
         slope = np.zeros_like(y)
-        place(self.slots, 0.0, y.copy(), slope, self.forces(), False)
+        _PLACE(structure(self.slots), self.slots, 0.0, y.copy(), slope, self.forces(), False)
         return State(self.rows(y)[0] * self.scales.length, self.rows(slope)[0] * self.scales.velocity)
 
     @cached_property

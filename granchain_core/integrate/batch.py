@@ -11,6 +11,7 @@ from ..errors import Cancelled
 from ..kernels.batch import run as kernels
 from ..kernels.batch.period_end import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, STROBES_KEPT
 from ..kernels.batch.unequal import Unequal
+from ..kernels.entry import entry
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.jit import all_in_simd_kernels
 from ..kernels.simd.vector import aligned
@@ -21,7 +22,6 @@ from ..kernels.width import BATCH_SIZE
 from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop
-from .entry import entry
 
 #: A period that no member reaches.
 NEVER = int(np.iinfo(np.int64).max)

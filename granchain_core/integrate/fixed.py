@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..kernels.contact_cubic import ENDS
+from ..kernels.entry import Entries, structure
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
 from ..kernels.jit import all_in_simd_kernels
@@ -29,7 +30,6 @@ from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
 from ..stop import Stop
-from .entry import Entries, structure
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
 from .stepper import Start, empty_samples
 

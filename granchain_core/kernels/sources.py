@@ -19,7 +19,7 @@ import numba
 from .width import BATCH_SIZE, processor
 
 #: Sources that decide where compiled code is stored but do not change it.
-_KEEPERS = ("cache.py", "compile_lock.py", "sources.py")
+_KEEPERS = ("cache.py", "compile_lock.py", "entry.py", "sources.py")
 #: The folder that all kernels of this package are in.
 FOLDER = Path(__file__).parent
 

@@ -21,12 +21,12 @@ def force_distances(distance: float, scaled: ScaledChain, maxima: np.ndarray, y:
     Where a contact of the first or last bead overlaps less than that, as in the stop band, the same distance changes
     its force by a larger part. `maxima` are the scaled forces.
     """
-    stiffness = scaled.slots.chain.stiffness[[0, -1, -1]]
-    overlaps = (maxima / stiffness) ** (1.0 / _FORCE_PER_OVERLAP)
+    stiffness = scaled.slots.chain.stiffness
     largest = float(np.abs(scaled.rows(y)[0]).max())
-    nearer = np.ones(3)
-    np.divide(largest, overlaps, out=nearer, where=(overlaps > 0.0) & (overlaps < largest))
-    return np.asarray(_FORCE_PER_OVERLAP * distance * nearer)
+    overlaps = [(max(0.0, float(force)) / float(stiffness[c])) ** (1.0 / _FORCE_PER_OVERLAP)
+                for force, c in zip(maxima, (0, -1, -1), strict=True)]
+    nearer = [largest / overlap if 0.0 < overlap < largest else 1.0 for overlap in overlaps]
+    return _FORCE_PER_OVERLAP * distance * np.array(nearer)
 
 
 def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float, contraction: float = 0.0,

@@ -75,7 +75,9 @@ def is_neutral(mean: float, error: float) -> bool:
 
 
 def _mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
-    return float(exponents.mean()), float(exponents.std(ddof=1) / math.sqrt(len(exponents)))
+    values = exponents.tolist()  # ten numbers: an array would take longer
+    mean = math.fsum(values) / len(values)
+    return mean, math.sqrt(math.fsum((one - mean) ** 2 for one in values) / (len(values) - 1) / len(values))
 
 
 def undecided(exponents: np.ndarray) -> bool:

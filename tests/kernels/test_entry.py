@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from granchain_core import continue_branch, resonance_curve, scene
-from granchain_core.integrate import Engine, State, entry
+from granchain_core.integrate import Engine, State
 from granchain_core.integrate.methods import FIXED_STEP, METHODS, Setting
+from granchain_core.kernels import entry
 from granchain_core.kernels.samples import first_not_finite
 
 #: Chains of one vector and of blocks, and effects in every slot.
