@@ -65,10 +65,12 @@ def current_document(request: pytest.FixtureRequest) -> None:
     off whatever a test asks of its dashboard, until that page is loaded."""
     if "bokeh.io.doc" in sys.modules and request.path.parent.name not in SERVERS and _names_the_app(request.path):
         from bokeh.document import Document
-        from bokeh.io.doc import _PATCHED_CURDOCS, set_curdoc
+        from bokeh.io import doc
 
-        _PATCHED_CURDOCS.clear()
-        set_curdoc(Document())
+        patched = getattr(doc, "_PATCHED_CURDOCS", None)  # a private name: without it the documents left behind stay
+        if patched is not None:
+            patched.clear()
+        doc.set_curdoc(Document())
 
 
 @cache
