@@ -91,7 +91,7 @@ class Task:
         """Queue `work`, in place of what was started before."""
         self.cancel()
         self._job = job = Job(self._host, self._say)
-        self._queue.submit(self._run, work, job)
+        self._queue.submit(self._run, work, job, owner=self._host)
 
     def cancel(self) -> bool:
         """Cancel the work under way, so that nothing more of it arrives; return whether there was any."""

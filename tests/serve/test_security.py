@@ -24,6 +24,7 @@ from app.pages.analysis import questions
 from app.serve import guard
 from app.serve.compiler import Compiler
 from app.serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
+from app.serve.queues import LONG
 from app.server import Access
 from app.session import starts
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
@@ -52,6 +53,8 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                             "(1008)",
         "a link": f"{LONGEST} characters",
         "pages at once": f"{Access().most_visitors}",
+        "long computations of a visitor at once": f"{LONG.share} (maps, searches, branches, analyses, figures of the paper); "
+                                                  "more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
     } == LIMITS

@@ -38,7 +38,7 @@ _RANDOM_STATES = 64
 #: Random states for a scene that cannot be computed in batches.
 _FEW_RANDOM_STATES = 12
 
-WORDS = StatusWords(kept="the cells computed so far", instead={"waiting": "waiting for the curve …"})
+WORDS = StatusWords(kept="the cells computed so far")
 SEARCH_WORDS = StatusWords(instead={"searching": "searching from rest, from both sweeps and from random states …"})
 
 
@@ -190,7 +190,7 @@ class MapPage(Page):
     def _find(self) -> None:
         self._search.cancel()
         self._found = []
-        self._show_attractors("searching")
+        self._show_attractors("waiting")
         self._search.start(partial(self._search_work, self._host.session.scene))
 
     def _search_work(self, scene: Scene, job: Job) -> None:
