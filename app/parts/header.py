@@ -45,6 +45,6 @@ class Header(Component):
     def show_session(self, session: Session) -> None:
         """Show what the session chose, and the start of the picture on the screen."""
         self.update_state(
-            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.look,
+            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
             origin=self._origin, driven=session.scene.is_driven, speed=session.speed, playing=session.playing,
             query=session.link)

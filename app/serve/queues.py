@@ -20,9 +20,10 @@ from typing import TypeVar
 
 from granchain_core import Cancelled
 
+from .cpu_time import CpuTime
 from .meters import METERS
 from .priorities import begin, give_way, gives_way
-from .turns import CpuTime, TurnFlag
+from .turns import TurnFlag
 
 Result = TypeVar("Result")
 

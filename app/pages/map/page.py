@@ -29,10 +29,11 @@ from ...session.message_checks import listed
 from ...session.progress import Status, StatusWords
 from ...session.session import slider_range
 from ...session.task import Job, Task
-from .view import cells_message, described, head_message
+from .view import cells_message, described_attractor, head_message
 
 #: Cells along f and A0: few enough to be computed in about ten seconds on one core.
-COLUMNS, ROWS = 60, 40
+COLUMNS = 60
+ROWS = 40
 #: Random states from which attractors are looked for.
 _RANDOM_STATES = 64
 #: Random states for a scene that cannot be computed in batches.
@@ -198,7 +199,7 @@ class MapPage(Page):
         job.say("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
         found = attractors(scene, starts, stop=job.stop)
-        job.next_tick(self._arrived, scene, found, [described(one) for one in found])
+        job.next_tick(self._arrived, scene, found, [described_attractor(one) for one in found])
 
     def _say_search(self, status: Status, sentence: str) -> None:
         self._show_attractors(status, sentence)
