@@ -88,7 +88,7 @@ CHAPTERS_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambd
 
 
 class Chapters:
-    """Names the places of a complete curve in the background; `show` is called with all of them, or with none."""
+    """Names the places of a complete curve in the background; `show` is called with all chapters at once."""
 
     def __init__(self, host: Host, show: Callable[[list[dict[str, Any]]], None]) -> None:
         self._host = host
@@ -96,7 +96,7 @@ class Chapters:
         self._task = Task(host, ANALYSES, lambda *_: None, "Naming the peaks of the curve", host.failed)
 
     def forget(self) -> None:
-        """Forget the names: the curve is another one."""
+        """Show no names, because the curve has changed."""
         self._task.cancel()
         self._show([])
 

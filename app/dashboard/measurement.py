@@ -83,7 +83,7 @@ class MeasurementActions:
                                  "csv-virtual": self._virtual}
 
     def picture_ready(self, picture: Settled) -> None:
-        """Move the series to another picture; the difference from the last one is not that of a preview."""
+        """Lay the series over the new picture; over a preview, no difference is stated."""
         if self._series is None:
             return
         if picture.final:

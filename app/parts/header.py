@@ -16,7 +16,7 @@ _MODES = {
     "live": "The run goes on while you move the knobs",
 }
 _STARTS = {"rest": "start: from rest", "previous": "start: previous state"}
-#: In place of the first while a motion is shown that a story, a map or a branch began elsewhere.
+#: Replaces the first of these while the motion on the screen began elsewhere: in a story, a map or a branch.
 _STARTED_ELSEWHERE = "start: a given state"
 
 

@@ -142,7 +142,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     """The largest elastic output force of periodic orbits over the knob of their branches.
 
     `now` is a value of the knob [SI] with a line. Sources have names: "stable" and "unstable" hold lines, "orbits"
-    one row for each orbit, the kinds of special points one for each point; `BranchRows` says what an orbit more adds.
+    one row for each orbit, the kinds of special points one for each point; `BranchRows` says what one more orbit adds.
     """
     rows = BranchRows(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
     data: Columns = {**{name: {"x": [], "y": []} for name in (_CURVE, _CURVE_LINE, *_LINES)},

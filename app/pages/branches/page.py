@@ -100,7 +100,7 @@ class BranchesPage(Page):
             self._begin()
 
     def _begin(self) -> None:
-        """Follow the orbit on the screen if there is one, and its branch is not too long for what nobody asked for."""
+        """Follow the orbit on the screen, if there is one and its branch may be computed without being asked for."""
         self._begun, self._waits = True, False
         scene, picture = self._host.session.scene, self._host.session.picture
         if picture is None or not scene.is_driven or not curve_affordable(scene):
