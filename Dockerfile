@@ -17,14 +17,19 @@ RUN python -m venv /opt/granchain/venv
 ENV PATH=/opt/granchain/venv/bin:$PATH
 
 WORKDIR /opt/granchain/source
-COPY pyproject.toml hatch_build.py requirements.lock README.md LICENSE ./
+COPY pyproject.toml hatch_build.py requirements.lock requirements-build.lock README.md LICENSE ./
 COPY granchain ./granchain
 COPY granchain_core ./granchain_core
 COPY granchain_start ./granchain_start
 COPY app ./app
 COPY assets ./assets
 COPY docs/glossary.md ./docs/
-RUN pip install --require-hashes -r requirements.lock && pip install --no-deps .
+RUN pip install --require-hashes -r requirements.lock
+# Built without isolation, in which pip would fetch hatchling without a hash, and where the image does not keep hatchling.
+RUN python -m venv /opt/granchain/build && \
+    /opt/granchain/build/bin/pip install --require-hashes -r requirements-build.lock && \
+    /opt/granchain/build/bin/pip wheel --no-deps --no-build-isolation --wheel-dir /opt/granchain/wheel . && \
+    pip install --no-deps /opt/granchain/wheel/*.whl
 
 # Work from another folder, so that the installed package is compiled and not the source beside it.
 WORKDIR /opt/granchain

@@ -13,11 +13,16 @@ import numpy as np
 from granchain_core import Run, Scene
 from granchain_core.scaling import scales_of
 
-_FEWEST, _MOST, _STEP = 96, 384, 48
+#: Rows per drive period: at least.
+_FEWEST_ROWS = 96
+#: Rows per drive period: at most.
+_MOST_ROWS = 384
+#: Rows per drive period are a multiple of this.
+_ROW_STEP = 48
 #: Rows per contact time 1/φ; a pulse takes about three such times to pass a bead.
-_PER_CONTACT_TIME = 1.5
+_ROWS_PER_CONTACT_TIME = 1.5
 #: Most values of one quantity in a picture; beyond that, rows are left out that nobody would see.
-_LARGEST = 60_000
+_MOST_VALUES = 60_000
 
 #: Drive periods in a live picture, and in a settled one at least; a longer orbit is shown once.
 PERIODS = 4
@@ -147,8 +152,8 @@ def samples_for(scene: Scene) -> int:
     Without a drive a picture is one time 1/f, and has the rows of the periods that it would show otherwise.
     """
     shown = 1 if scene.is_driven else PERIODS
-    needed = _STEP * round(shown * _PER_CONTACT_TIME * scales_of(scene).rate / scene.f / _STEP)
-    return int(min(max(needed, _FEWEST), _MOST))
+    needed = _ROW_STEP * round(shown * _ROWS_PER_CONTACT_TIME * scales_of(scene).rate / scene.f / _ROW_STEP)
+    return int(min(max(needed, _FEWEST_ROWS), _MOST_ROWS))
 
 
 def settled_frames(run: Run) -> Frames:
@@ -162,7 +167,7 @@ def settled_frames(run: Run) -> Frames:
     if run.regime.name != "periodic":
         copies = 1
     values = copies * rows * run.displacement.shape[1]
-    stride = next((n for n in (1, 2, 3, 4) if values <= n * _LARGEST), 6)
+    stride = next((n for n in (1, 2, 3, 4) if values <= n * _MOST_VALUES), 6)
     index = np.concatenate([np.arange(0, rows - 1, stride) for _ in range(copies)] + [np.array([rows - 1])])
     samples = run.samples // stride
     time = np.arange(len(index)) / (samples * run.scene.f)

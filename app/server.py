@@ -34,17 +34,21 @@ from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
-#: For how long a thread of Python may keep the interpreter from the event loop [s]; 5 ms if not said. A move needs it
-#: some ten times. Measured with 60 visitors: 95 % answered within 0.84 s, and within 1.55 s with 5 ms.
-SWITCH = 5e-4
-#: Until a connection that sends nothing is closed [s]; a request's head must have come by then.
-IDLE = 60
-#: Until a request's body must have come [s], and its largest size [bytes]: only forms for signing in have one.
-BODY, LARGEST_BODY = 30, 100_000
+#: How long a thread may keep the interpreter from the event loop [s]; Python's default is 5 ms. The answer to a moved
+#: knob needs it some ten times. Measured with 60 visitors: 95 % answered within 0.84 s, and within 1.55 s with 5 ms.
+SWITCH_INTERVAL = 5e-4
+#: Time until a connection that sends nothing is closed [s]; a request's head must have come by then.
+IDLE_TIME = 60
+#: Time in which a request's body must come [s].
+BODY_TIME = 30
+#: Largest body of a request [bytes]: only forms for signing in have one.
+LARGEST_BODY = 100_000
 #: Between two pings of a websocket, and until the answer must have come [s].
-PING = 20
-#: Within which a loaded page must open its websocket [ms], and between two checks for sessions that have ended [ms].
-UNCONNECTED, LOOK = 60_000, 1000
+PING_INTERVAL = 20
+#: Time in which a loaded page must open its websocket [ms].
+UNCONNECTED_MS = 60_000
+#: Between two checks for sessions that have ended [ms].
+SESSION_CHECK_MS = 1000
 
 
 @dataclass(frozen=True)
@@ -91,7 +95,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
         settings.perform_error_diagnostics.set_value(False)
     remember_defaults()
     remember_resources()
-    sys.setswitchinterval(SWITCH)
+    sys.setswitchinterval(SWITCH_INTERVAL)
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
     gc.enable()
     server.start()
@@ -111,10 +115,10 @@ def server_at(port: int, address: str, origins: Sequence[str] | None = None, acc
         {"/": page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=names, websocket_max_message_size=LARGEST_MESSAGE,
         extra_patterns=[(r"/liveness", Liveness), (r"/metrics", Metrics)],
-        http_server_kwargs={"idle_connection_timeout": IDLE, "body_timeout": BODY, "max_body_size": LARGEST_BODY,
-                            "xheaders": access.proxy},
-        websocket_ping_interval=PING, websocket_ping_timeout=PING,
-        unused_session_lifetime_milliseconds=UNCONNECTED, check_unused_sessions_milliseconds=LOOK,
+        http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
+                            "max_body_size": LARGEST_BODY, "xheaders": access.proxy},
+        websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
+        unused_session_lifetime_milliseconds=UNCONNECTED_MS, check_unused_sessions_milliseconds=SESSION_CHECK_MS,
         default_handler_class=guarded(ErrorHandler, rules), default_handler_args={"status_code": 404},
         **signed, **dict(access.sign_in))
     guard_handlers(server, rules)

@@ -12,7 +12,10 @@ from granchain_core import CurvePoint
 
 
 class FakeHost:
-    """What a page, a task or a `Debounce` asks of its dashboard; `callbacks` waits, in order, and may be added to from any thread."""
+    """The part of `Host` that a page, a task or a `Debounce` needs here (tests/session/test_host.py).
+
+    `callbacks` wait in order; any thread may add to them.
+    """
 
     busy = awaiting_picture = curve_computing = False
 

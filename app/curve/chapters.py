@@ -21,15 +21,16 @@ from granchain_core.steady.curve.resonance import STOPS, Place, peaks_and_valley
 from granchain_core.stop import Stop
 
 from ..frames import samples_for
+from ..serve.cpu_time import CpuTime
 from ..serve.queues import ANALYSES, SWEEPS
 from ..serve.shared import Shared
-from ..serve.turns import CpuTime, TurnFlag
+from ..serve.turns import TurnFlag
 from ..session.host import Host
 from ..session.session import without_frequency
 from ..session.task import Job, Task
 
-#: Fewer points are no band.
-_BAND = 3
+#: Fewest points of a stop band.
+_FEWEST_BAND_POINTS = 3
 
 
 def extreme_points(points: Sequence[CurvePoint]) -> list[tuple[str, CurvePoint]]:
@@ -46,7 +47,7 @@ def stop_band(points: Sequence[CurvePoint]) -> tuple[CurvePoint, CurvePoint] | N
     beyond = [point for point in points if point.frequency > peaks[-1]]
     passing = [i for i, point in enumerate(beyond) if point.max_output_force >= STOPS * point.max_input_force]
     band = beyond[passing[-1] + 1 if passing else 0:]
-    return (band[0], band[-1]) if len(band) >= _BAND else None
+    return (band[0], band[-1]) if len(band) >= _FEWEST_BAND_POINTS else None
 
 
 def extreme_chapter(kind: str, point: CurvePoint, scene: Scene, stop: Stop | None = None) -> dict[str, Any] | None:
@@ -87,7 +88,7 @@ CHAPTERS_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambd
 
 
 class Chapters:
-    """Names the places of a complete curve in the background; `show` is called with all of them, or with none."""
+    """Names the places of a complete curve in the background; `show` is called with all chapters at once."""
 
     def __init__(self, host: Host, show: Callable[[list[dict[str, Any]]], None]) -> None:
         self._host = host
@@ -95,7 +96,7 @@ class Chapters:
         self._task = Task(host, ANALYSES, lambda *_: None, "Naming the peaks of the curve", host.failed)
 
     def forget(self) -> None:
-        """Forget the names: the curve is another one."""
+        """Show no names, because the curve has changed."""
         self._task.cancel()
         self._show([])
 

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import threading
-import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
@@ -19,7 +16,7 @@ from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..pictures.curve import WORDS
 from ..serve.compiler import COMPILER, PICTURE_PIECES
-from ..serve.delays import CURVE_EVERY, CURVE_QUIET
+from ..serve.delays import CURVE_QUIET
 from ..serve.queues import CURVES, LatestWins
 from ..serve.turns import TurnFlag
 from ..session.activities import Activity
@@ -32,6 +29,7 @@ from ..session.share import joined
 from ..session.task import Task
 from .bar import CHOICES, CurveBar
 from .chapters import Chapters, stated_name
+from .reports import Reports
 from .sweep import COARSE, Progress, Sweep, grid
 from .view import CurveFigure
 
@@ -58,9 +56,7 @@ class CurveController:
         self._visible = True
         self._computed: dict[str, Scene] = {}
         self._quiet = Debounce(host, CURVE_QUIET)
-        self._lock = threading.Lock()
-        self._buffer: list[Progress] = []
-        self._drawn = -math.inf
+        self._reports = Reports(host, self._draw)
         self._key: Scene | None = None
         self._remaining: list[str] = []
         self._done = -1.0
@@ -119,10 +115,9 @@ class CurveController:
         self._quiet.start(self._begin_when_compiled, scene)
 
     def _cancel(self) -> None:
-        """Cancel the curve, and drop what waits to be drawn: drawn later it would say that a curve is under way."""
+        """Cancel the curve, and drop reports that wait to be drawn: drawn, they would show a curve under way."""
         self._task.cancel()
-        with self._lock:
-            self._buffer = []
+        self._reports.drop()
 
     def _begin_when_compiled(self, scene: Scene) -> None:
         if not curve_affordable(scene):
@@ -230,7 +225,8 @@ class CurveController:
             self.compared(None)
         self._remaining, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
-            self._task.start(Sweep(scene, missing, self._report, lambda: self._host.busy, self._host.session.cpu_time))
+            self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
+                                   self._host.session.cpu_time))
         else:
             self._task.cancel()
 
@@ -240,33 +236,16 @@ class CurveController:
         self._bar.update_state(**self._wanted, rig=scene.pattern == rig_beads(),
                                stated=[stated_name(one) for one in stated])
 
-    def _report(self, progress: Progress) -> None:
-        """From the worker thread: points are collected and drawn a few at a time."""
-        with self._lock:
-            self._buffer.append(progress)
-            first = len(self._buffer) == 1
-        if first:
-            self._host.next_tick(self._draw)
-
-    def _draw(self) -> None:
-        """Draw what has come, and let what comes soon after wait: otherwise the loop would draw for a whole class."""
-        rest = self._drawn + CURVE_EVERY - time.monotonic()
-        if rest > 0.0:
-            self._host.call_later(rest, self._draw)
-            return
-        self._drawn = time.monotonic()
-        with self._lock:
-            buffer, self._buffer = self._buffer, []
-        if not buffer:  # they were another scene's
-            return
+    def _draw(self, reports: list[Progress]) -> None:
+        """Draw the points of these reports, and note which directions they complete."""
         points: dict[str, list[CurvePoint]] = {}
-        for progress in buffer:
+        for progress in reports:
             points.setdefault(progress.direction, []).extend(progress.points)
-        covers = {progress.direction for progress in buffer if progress.covers}
+        covers = {progress.direction for progress in reports if progress.covers}
         with unlocked():
             for direction, new in points.items():
                 self._figure.add(direction, new, direction in covers)
-            for progress in buffer:
+            for progress in reports:
                 if progress.complete and self._key is not None:
                     self._computed[progress.direction] = self._key
                     self._figure.finished(progress.direction)
@@ -274,7 +253,7 @@ class CurveController:
                     if progress.direction == "rest":
                         self._chapters.name(self._figure.points("rest"), self._key)
                     self.compared(self._figure.difference)
-            self._done = self._overall(buffer[-1])
+            self._done = self._overall(reports[-1])
             self._bar.update_state(done=self._done)
 
     def _overall(self, progress: Progress) -> float:

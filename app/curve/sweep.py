@@ -12,19 +12,26 @@ import numpy as np
 from granchain_core import CurvePoint, Scene, iter_curve
 from granchain_core.stop import Stop
 
+from ..serve.cpu_time import CpuTime
 from ..serve.queues import SWEEPS
 from ..serve.shared import Shared
-from ..serve.turns import CpuTime
 from ..session.session import slider_range, without_frequency
 from ..session.task import Job
 
-COARSE, _SWEEP = 75, 150
-_PASSES = 2
+#: Frequencies of the first pass over a curve from rest.
+COARSE = 75
+#: Frequencies of a sweep, which has one pass: each point begins where the last one ended.
+_SWEEP = 150
+#: Further passes over a curve from rest, each between the points of those before.
+_FINER_PASSES = 2
 
 
 @dataclass
 class Progress:
-    """How far one curve is; `points` are new since the last report."""
+    """How far one curve is, `done` from 0 to 1; `points` are new since the last report.
+
+    `covers` says that points lie over the whole range, `complete` that no more will come.
+    """
 
     direction: str
     points: list[CurvePoint]
@@ -39,7 +46,7 @@ def grid(scene: Scene, points: int) -> np.ndarray:
 
 
 def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
-    """Where the curve needs more points: where it bends, and where the regime changes."""
+    """Frequencies of further points: where the curve bends, and where the regime changes."""
     points = sorted((p for p in points if np.isfinite(p.max_output_force)), key=lambda p: p.frequency)
     force = np.array([point.max_output_force for point in points])
     frequency = np.array([point.frequency for point in points])
@@ -88,18 +95,18 @@ def _computed(scene: Scene, direction: str, stop: Stop) -> Iterator[Progress]:
     found: list[CurvePoint] = []
     frequencies = grid(scene, COARSE)
     finest = 0.26 * float(frequencies[1] - frequencies[0])
-    for number in range(_PASSES + 1):
-        low, high = number / (_PASSES + 1), (number + 1) / (_PASSES + 1)
+    for number in range(_FINER_PASSES + 1):
+        low, high = number / (_FINER_PASSES + 1), (number + 1) / (_FINER_PASSES + 1)
         for progress in _points(scene, frequencies, direction, stop, low, high):
             found += progress.points
             yield progress
-        yield Progress(direction, [], high, complete=number == _PASSES, covers=True)
+        yield Progress(direction, [], high, complete=number == _FINER_PASSES, covers=True)
         frequencies = midpoints(found, finest)
 
 
 def _points(scene: Scene, frequencies: np.ndarray, direction: str, stop: Stop, low: float,
             high: float) -> Iterator[Progress]:
-    """Compute `frequencies`, reporting as they come; their share of the progress is `low` to `high`."""
+    """Compute a point for each frequency and report each; progress goes from `low` to `high` meanwhile."""
     if not len(frequencies):
         return
     for number, point in enumerate(iter_curve(scene, frequencies, start=direction, stop=stop), 1):

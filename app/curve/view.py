@@ -95,7 +95,7 @@ class CurveFigure:
         plot.add_tools(HoverTool(renderers=[self._stated], line_policy="interp",
                                  tooltips=[("stated", "@label"), ("source", "@source")]))
         self._dot = plot.add_glyph(self._now, Scatter(x="frequency", y="force", size=15, fill_color=None,
-                                                     line_width=3), level="overlay")
+                                                      line_width=3), level="overlay")
         self._bars: list[GlyphRenderer] = []
 
     def _measurement_marks(self) -> list[GlyphRenderer]:
@@ -189,7 +189,7 @@ class CurveFigure:
         if self._ordered is None:
             points = self.points("rest")
             self._ordered = (np.array([p.frequency for p in points]), np.array([p.max_output_force for p in points]),
-                          [p.regime.period for p in points])
+                             [p.regime.period for p in points])
         transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
         return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 

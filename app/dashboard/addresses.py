@@ -19,8 +19,8 @@ from .table import overlay_names, tab_names
 
 T = TypeVar("T")
 
-#: Fields that do not determine the motion. A link written by hand with a story and none but these shows the motion of
-#: the story's step.
+#: Fields that do not determine the motion. A link that has a story and no other fields than these, as one writes it by
+#: hand, shows the motion of the story's step.
 _NOT_A_MOTION = {"v", "story", "tab", "page", "look", "embed"}
 
 

@@ -32,7 +32,7 @@ class Calls:
             self._channel.call_soon(partial(self.guarded, action, *arguments))
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` so many seconds from now; on the event loop."""
+        """Call `action` after `seconds`; on the event loop."""
         if not self._closed:
             self._channel.call_later(seconds, partial(self.guarded, action, *arguments))
 
@@ -40,7 +40,7 @@ class Calls:
         """Call `action` with the document locked already."""
         if self._closed:
             return
-        with gathered(self._document):
+        with gathered(self._document):  # no second time inside `run_locked`, which has begun to gather
             try:
                 action(*arguments)
             except Exception as error:

@@ -24,7 +24,7 @@ from .display_choices import DisplayChoices
 from .gallery import cards
 from .layout import Views
 from .links_and_files import LinksAndFiles
-from .main_picture import Pictures
+from .main_picture import MainPicture
 from .pinned import Pinned
 from .playback import Playback
 from .scene_changes import SceneChanges
@@ -46,7 +46,7 @@ class Controller:
         self.session = session
         self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
-        self.pictures = Pictures(self, views, self.sentences.note, self.picture_ready)
+        self.pictures = MainPicture(self, views, self.sentences.note, self.picture_ready)
         self.curves = CurveController(self, views.curve, views.curvebar, self._curve_placed)
         self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self.pictures.redraw)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
@@ -77,7 +77,7 @@ class Controller:
     # Messages
 
     def received(self, message: dict[str, Any]) -> None:
-        """Take a message from the browser, in which nothing is trusted."""
+        """Take a message from the browser; nothing in it is trusted."""
         name = message.get("do")
         action = self._actions.get(name) if isinstance(name, str) else None
         if action is None:
@@ -105,11 +105,11 @@ class Controller:
     # What the pages ask for
 
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
-        """Call `action` with the document locked, as soon as that is possible; this may be called from any thread."""
+        """Call `action` with the document locked, as soon as that is possible; from any thread."""
         self._calls.next_tick(action, *arguments)
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
-        """Call `action` with the document locked, so many seconds from now."""
+        """Call `action` with the document locked, after `seconds`."""
         self._calls.call_later(seconds, action, *arguments)
 
     def on_close(self, action: Callable[[], object]) -> None:
@@ -160,7 +160,7 @@ class Controller:
         self._scenes.open(scene, state, curves)
 
     def address_changed(self) -> None:
-        """What the address of the page says has changed, but no knob has."""
+        """Send the page its new address: something that a link carries has changed, but no knob."""
         self.views.header.send(type="address", query=self.session.link)
 
     def activities(self) -> list[Activity]:

@@ -19,12 +19,12 @@ from ..curve.view import CurveFigure
 from ..parts.chain import SCALES, ChainPart
 from ..parts.component import text
 from ..parts.energy import EnergyMap
-from ..parts.equation import Equation
+from ..parts.equation import EquationPart
 from ..parts.figure_style import BOTTOM, GAP, LEFT, TOP
 from ..parts.header import Header
 from ..parts.knobs import Knobs
 from ..parts.status_line import StatusLine
-from ..parts.trains import WIDEST_TITLES, Trains
+from ..parts.trains import WIDEST_TITLES, ForceTrains
 from ..pictures.curve import KEY
 from ..pictures.energies import ENERGY_COLOURS
 from ..pictures.theme import Theme, style_sheet
@@ -32,7 +32,7 @@ from ..scripts import IN_PAGE, modules
 from ..serve.limits import LARGEST_UPLOAD
 from ..session.session import Session
 from ..session.terms import definitions
-from .scales import Scales
+from .scales import PictureScales
 from .table import GROUPS, PAGES, described_tabs, watched_pages
 from .tabs import Tabs
 from .template import put_into
@@ -46,13 +46,13 @@ class Views:
     def __init__(self, session: Session, received: Callable[[dict[str, Any]], None],
                  choose: Callable[[object], None]) -> None:
         self.time = Range1d(start=1.0, end=0.0)
-        self.scales = Scales(session)
+        self.scales = PictureScales(session)
         self.header = Header(received)
         self.knobs = Knobs(received, sizing_mode="stretch_width")
-        self.equation = Equation(received)
+        self.equation = EquationPart(received)
         self.chain = ChainPart(received, sizing_mode="stretch_both",
-                           state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES, "scales": SCALES})
-        self.trains = Trains(self.time)
+                               state={"palette": ENERGY_COLOURS, "titles": WIDEST_TITLES, "scales": SCALES})
+        self.trains = ForceTrains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = CurveFigure(choose)
         self.curvebar = CurveBar(received)

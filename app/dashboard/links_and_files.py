@@ -20,8 +20,8 @@ from ..session.host import Host
 from ..session.message_checks import quoted
 from ..session.task import Job, Task, say_nothing
 from .layout import Views
-from .main_picture import Pictures
-from .measurement import Measurement
+from .main_picture import MainPicture
+from .measurement import MeasurementActions
 
 _NONE = "There is no picture to save yet; wait for the first one."
 _PASSES = ("Only a settled picture can be exported as a script; a live run depends on when each knob moved. Choose "
@@ -31,13 +31,13 @@ _PASSES = ("Only a settled picture can be exported as a script; a live run depen
 class LinksAndFiles:
     """Actions of the page that deal with links and files; files are written in the background."""
 
-    def __init__(self, host: Host, views: Views, curves: CurveController, pictures: Pictures) -> None:
+    def __init__(self, host: Host, views: Views, curves: CurveController, pictures: MainPicture) -> None:
         self._host = host
         self._views = views
         self._curves = curves
         self._pictures = pictures
         self._saving = Task(host, FILES, say_nothing, "Saving the picture", host.failed)
-        self._measurement = Measurement(host, views, curves)
+        self._measurement = MeasurementActions(host, views, curves)
         self.actions: Actions = {"share": self._share, "save": self._save, **self._measurement.actions}
 
     def picture_ready(self, picture: Settled) -> None:

@@ -36,10 +36,8 @@ def size_of(picture: Settled) -> int:
     return 4096 + sum(one.nbytes for one in arrays if isinstance(one, np.ndarray))
 
 
-#: Pictures of all visitors. The last picture of each scene is kept for the next visitor who asks, in at most so many
-#: bytes.
-PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of,
-                                          lambda pictures: pictures[-1:])
+#: Pictures of all visitors. The last picture of each scene is kept for the next visitor who asks, in at most 100 MB.
+PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of, lambda pictures: pictures[-1:])
 
 
 def _computed(scene: Scene, start: State | None, most: float, stop: TurnFlag) -> Iterator[Settled]:
@@ -66,7 +64,7 @@ def _refusing(scene: Scene) -> Iterator[None]:
         raise RefusedPicture(scene, str(problem)) from None
 
 
-class Pictures:
+class MainPicture:
     """Settled pictures and the live run. `note` shows a message that the next picture clears.
 
     `arrived` is called with every settled picture, before it is sent.

@@ -46,11 +46,16 @@ if TYPE_CHECKING:
 #: What a column of a curve or of a series may hold.
 CHOICES = {"frequency": "frequency", "force": "largest force", "error": "error of the force", "time": "time",
            "input_force": "input force", "output_force": "output force", "velocity": "shaker velocity"}
-#: The name of a virtual experiment's data on the page; its length in drive periods, samples in each of them, and noise
-#: over the largest output force.
-VIRTUAL_FILE, _PERIODS, _RATE, _NOISE = "virtual.csv", 12, 256, 0.02
+#: The name of a virtual experiment's data on the page.
+VIRTUAL_FILE = "virtual.csv"
+#: The length of a virtual experiment in drive periods.
+_VIRTUAL_PERIODS = 12
+#: Its samples in a drive period.
+_VIRTUAL_RATE = 256
+#: Its noise over the largest output force.
+_VIRTUAL_NOISE = 0.02
 #: Most rows of the table of differences.
-_ROWS = 100
+_MOST_ROWS = 100
 #: Sample files, computed by granchain with noise; their comments say so.
 SAMPLES = ASSETS / "samples"
 
@@ -58,7 +63,7 @@ _TOO_LARGE = (f"The measurement is larger than {LARGEST_UPLOAD / 1e6:g} MB; a cu
               "kB.")
 
 
-class Measurement:
+class MeasurementActions:
     """Actions of the data tab. `tabs` shows what was understood, what is asked, and the misfit."""
 
     def __init__(self, host: Host, views: Views, curves: CurveController) -> None:
@@ -78,7 +83,7 @@ class Measurement:
                                  "csv-virtual": self._virtual}
 
     def picture_ready(self, picture: Settled) -> None:
-        """Move the series to another picture; the difference from the last one is not that of a preview."""
+        """Lay the series over the new picture; over a preview, no difference is stated."""
         if self._series is None:
             return
         if picture.final:
@@ -166,10 +171,10 @@ class Measurement:
         job.give_way()
         job.compile(scene, *PICTURE_PIECES)
         largest = settle(scene, stop=job.stop).run.max_output_force
-        rate = _RATE * scene.f
-        sensors = Sensors(noise=_NOISE * largest, velocity_noise=_NOISE * scene.A0 * scene.f, bandwidth=0.1 * rate,
-                          rate=rate)
-        self._content = virtual_series_csv(scene, _PERIODS, sensors, stop=job.stop).encode()
+        rate = _VIRTUAL_RATE * scene.f
+        sensors = Sensors(noise=_VIRTUAL_NOISE * largest, velocity_noise=_VIRTUAL_NOISE * scene.A0 * scene.f,
+                          bandwidth=0.1 * rate, rate=rate)
+        self._content = virtual_series_csv(scene, _VIRTUAL_PERIODS, sensors, stop=job.stop).encode()
         self._in_thread(self._content, self._answers, job)
 
     def _too_large(self, _: dict[str, Any]) -> None:
@@ -235,4 +240,4 @@ def _misfit(difference: Difference | None) -> dict[str, Any] | None:
              signed_in_words(float(gap), "N")]
             for f, force, model, gap in zip(measured.frequency, measured.force, difference.model, difference.residuals,
                                             strict=True) if abs(gap) >= 0.0]
-    return {"sentence": difference.sentence, "rows": rows[:_ROWS], "left": max(0, len(rows) - _ROWS)}
+    return {"sentence": difference.sentence, "rows": rows[:_MOST_ROWS], "left": max(0, len(rows) - _MOST_ROWS)}

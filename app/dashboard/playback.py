@@ -8,13 +8,13 @@ from typing import Any
 from ..parts.header import Header
 from ..session.hooks import Actions
 from ..session.session import Session
-from .main_picture import Pictures
+from .main_picture import MainPicture
 
 
 class Playback:
     """Actions of the bar on top that deal with time; `compute` asks for a picture."""
 
-    def __init__(self, session: Session, header: Header, pictures: Pictures, compute: Callable[[], None],
+    def __init__(self, session: Session, header: Header, pictures: MainPicture, compute: Callable[[], None],
                  say: Callable[[str], None]) -> None:
         self._session = session
         self._header = header

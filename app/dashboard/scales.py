@@ -29,7 +29,7 @@ def _of_scenes() -> dict[str, Extremes]:
     return {name: Extremes(**values) for name, values in tables.items()}
 
 
-class Scales:
+class PictureScales:
     """The scales of one page's pictures. The session has the visitor's choice, "same" or "fit"."""
 
     def __init__(self, session: Session) -> None:

@@ -13,14 +13,14 @@ from ..session.hooks import Actions, Page
 from ..session.session import Session, clicked_frequency
 from .addresses import take_address
 from .layout import Views
-from .main_picture import Pictures
+from .main_picture import MainPicture
 from .pinned import Pinned
 
 
 class SceneChanges:
     """Turns the knobs of one visitor, opens scenes, and informs the pages and the other parts of the dashboard."""
 
-    def __init__(self, session: Session, views: Views, pictures: Pictures, curves: CurveController, pinned: Pinned,
+    def __init__(self, session: Session, views: Views, pictures: MainPicture, curves: CurveController, pinned: Pinned,
                  pages: Sequence[Page], say: Callable[[str], None]) -> None:
         self._session = session
         self._views = views

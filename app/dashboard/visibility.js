@@ -7,7 +7,7 @@ const CURVE_NAME = "curve"; // its figure, beside the names of the pages
 // Calls `tell(name, value)` when somebody begins or ceases to look at a page or at the curve: at the page's tab, or at the
 // page itself over the pictures, which hides tabs and curve. A page that works hidden is looked at as long as it is open,
 // even where its window is not on the screen or its tab was scrolled away. On a phone, and in a story, the curve counts as
-// looked at, since it names what the line at the bottom tells. `granchain.visible` has the same for scripts,
+// looked at, because the status line takes names from it. `granchain.visible` has the same for scripts,
 // with the event of that name.
 export function watchVisibility(pages, tell) {
   const page = window.granchain;

@@ -34,7 +34,7 @@ class ChainPart(Component):
 
 def frames_message(number: int, frames: Frames, scene: Scene, scale: Extremes, fit: bool,
                    peaks: list[list[str]], live: bool, running: bool, final: bool) -> dict[str, Any]:
-    """What the browser needs to draw the chain at every instant; a running chain only has a now.
+    """What the browser needs to draw the chain at every instant; of a live run, the present alone.
 
     `scale` has the largest values that the chain and its colours are drawn to; a fitted chain finds its own. `peaks`
     are the largest and the smallest input and output force in words. No better picture of these knobs follows a

@@ -248,7 +248,7 @@ export class ChainDrawing {
     g.stroke();
   }
 
-  // The magnification, with a bar that is as long as a displacement of so many micrometres, nanometres …
+  // The magnification, with a bar as long as a displacement of 1, 2 or 5 times a power of ten.
   words() {
     const { context: g, ink } = this;
     const size = parseFloat(ink.small);

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import param
 from panel.custom import JSComponent
 
 from ..pictures.theme import Theme
+from ..scripts import FILES, files_by_name
 from .panel_shortcuts import (
     WithCommonProperties,
     WithoutBusyIndicator,
@@ -18,11 +18,11 @@ from .panel_shortcuts import (
     WithPlainChanges,
 )
 
-_FILES = {path.name: path for path in Path(__file__).resolve().parents[1].rglob("*.[jc]s*")}
+_FILES = {**FILES, **files_by_name("*.css")}
 
 
 def text(name: str) -> str:
-    """The content of a style file of the app, or of a script that stands in the page; names are unique."""
+    """The content of a style sheet, or of a script that is written into the page, by its name."""
     return _FILES[name].read_text(encoding="utf-8")
 
 

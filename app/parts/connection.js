@@ -13,7 +13,7 @@
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
-  // What an address says beside tab, page and look, which only the browser knows.
+  // What an address says besides tab, page and look (the theme), which only the browser knows.
   const linkOf = (search) => {
     const query = new URLSearchParams(search);
     for (const name of ["tab", "page", "look"]) query.delete(name);
@@ -84,7 +84,7 @@
   };
   // The address is always that of what is on the screen, so that reload, back and a bookmark bring it back. What a
   // visitor does, and then rests, is a step of the browser's own history, so that back is undo and forward is redo.
-  const FOLLOW_AFTER = 400; // ms; a browser takes only so many changes a second
+  const FOLLOW_AFTER = 400; // ms; a browser limits how many changes it takes a second
   let following = 0,
     stepping = false; // whether the visitor has done something since the last step
   const follow = (acted) => {

@@ -19,6 +19,13 @@ export const button = (textContent, act, properties = {}) => {
   return made;
 };
 
+// A list of choices that calls `act` with the value that is chosen.
+export function chooser(label, className, act) {
+  const select = element("select", { className, title: label, ariaLabel: label });
+  select.addEventListener("change", () => act(select.value));
+  return select;
+}
+
 // A progress bar from 0 to 1.
 export const meter = (ariaLabel) => element("progress", { max: 1, ariaLabel });
 

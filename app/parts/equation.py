@@ -6,7 +6,7 @@ from ..scripts import module
 from .component import Component, text
 
 
-class Equation(Component):
+class EquationPart(Component):
     """LaTeX from the scene, rendered as MathML by the KaTeX that Panel brings along."""
 
     _esm = module("equation.js")

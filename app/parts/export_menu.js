@@ -83,7 +83,7 @@ const bounds = (boxes) => {
   };
 };
 
-// Words in lines of so many letters.
+// Words in lines of at most `most` letters.
 function broken(words, most) {
   const lines = [""];
   for (const word of words.split(" ")) {

@@ -9,8 +9,11 @@ from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
 
 from ..pictures.theme import THEMES
 
-#: Borders in pixels, the same for all time pictures, so that one cursor and the chain fit them exactly.
-TOP, BOTTOM, LEFT, GAP = 78, 82, 60, 6
+# Borders [px], the same for all time pictures, so that one cursor and the chain fit them exactly.
+TOP = 78
+BOTTOM = 82
+LEFT = 60
+GAP = 6
 
 #: The colour of the output force, the same in every theme.
 OUTPUT = THEMES["light"].output

@@ -1,20 +1,14 @@
 // The bar on top. What concerns only the replay stays in the browser; everything else sends one message.
 
 import { markAnotherScene } from "./another_scene.js";
-import { button, download, element, onWidth } from "./dom.js";
+import { button, chooser, download, element, onWidth } from "./dom.js";
 import { wholePage } from "./iframe_link.js";
-import { Gallery } from "./gallery.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
 import { curveButton, knobsButton } from "./phone_buttons.js";
 import { Popovers } from "./popovers.js";
+import { SceneChooser } from "./scene_chooser.js";
 import { Tour } from "./tour.js";
-
-function chooser(label, className, act) {
-  const select = element("select", { className, title: label, ariaLabel: label });
-  select.addEventListener("change", () => act(select.value));
-  return select;
-}
 
 class Header {
   constructor(model) {
@@ -33,8 +27,8 @@ class Header {
     const all = [
       knobsButton(),
       this.name,
-      this.scene,
-      this.scenes,
+      this.scenes.list,
+      this.scenes.button,
       this.reset,
       this.play,
       curveButton(),
@@ -56,7 +50,7 @@ class Header {
     ];
     this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
-    this.root.append(this.gallery.root); // not among what layoutControls() moves, which would close it
+    this.root.append(this.scenes.gallery.root); // not among what layoutControls() moves, which would close it
   }
 
   makeButtons() {
@@ -76,20 +70,13 @@ class Header {
     this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "more");
   }
 
-  // The names of the scenes are whole while one is chosen, and cut to the width that was there.
   makeSceneChooser() {
-    this.scene = chooser("scene", "scene", (name) => this.request("scene", name, { name }));
-    this.scene.addEventListener("mousedown", () => {
-      const { width } = this.scene.getBoundingClientRect();
-      this.nameScenes(true);
-      this.scene.style.width = `${width}px`;
-    });
-    this.gallery = new Gallery(
+    const choose = (name) => this.request("scene", name, { name });
+    this.scenes = new SceneChooser(
       () => this.send("gallery"),
-      (name) => this.request("scene", name, { name }),
+      choose,
+      () => this.layoutControls(),
     );
-    this.scenes = iconButton(icon("scenes"), "Scenes with pictures", () => this.gallery.open(this.scene.value));
-    for (const end of ["change", "blur"]) this.scene.addEventListener(end, () => this.layoutControls());
   }
 
   // Puts into the menu “⋯” what the bar has no room for, the least needed first.
@@ -97,22 +84,22 @@ class Header {
     const { root, popovers } = this;
     const focused = root.getRootNode().activeElement;
     const steps = [
-      () => this.nameScenes(false),
+      () => this.scenes.name(false),
       () => this.putAway(this.sound),
       () => this.putAway(this.speed),
       () => this.putAway(this.start),
       () => this.putAway(this.save, this.share),
       () => this.putAway(this.undo, this.redo),
       () => this.putAway(this.step),
-      () => this.putAway(this.scenes),
+      () => this.putAway(this.scenes.button),
       () => this.putAway(this.name),
       () => this.putAway(this.pin),
       () => this.putAway(this.reset),
       () => this.putAway(this.mode),
       () => this.putAway(this.help, this.theme),
     ];
-    this.nameScenes(true);
-    for (const control of this.order) root.insertBefore(control, this.gallery.root);
+    this.scenes.name(true);
+    for (const control of this.order) root.insertBefore(control, this.scenes.gallery.root);
     this.more.hidden = true;
     while (root.scrollWidth > root.clientWidth && steps.length) steps.shift()();
     if (this.more.hidden) popovers.menu.hidden = true;
@@ -126,12 +113,6 @@ class Header {
       else this.popovers.menu.append(control);
     }
     this.more.hidden = !this.popovers.menu.children.length;
-  }
-
-  // Scenes by name and title, or by name alone where the bar is too short for the title; the open list has both.
-  nameScenes(whole) {
-    this.scene.style.width = "";
-    for (const option of this.scene.options) option.textContent = whole ? option.title : option.value;
   }
 
   makeTimeControls() {
@@ -221,13 +202,7 @@ class Header {
 
   showChoices(state) {
     const { scenes = [], scene = "", speeds = [], speed = 1, mode } = state;
-    const options = scenes.map(({ name, title }) => {
-      const option = new Option(`${name} — ${title}`, name);
-      return Object.assign(option, { title: option.textContent });
-    });
-    this.scene.replaceChildren(...options);
-    this.scene.value = scene;
-    this.scene.title = `scene: ${this.scene.selectedOptions[0]?.title ?? scene}`;
+    this.scenes.show(scenes, scene);
     const each = (value) => `${value} period${value > 1 ? "s" : ""} a second`;
     this.speed.replaceChildren(...speeds.map((value) => new Option(each(value), value)));
     this.speed.value = String(speed);
@@ -263,7 +238,7 @@ class Header {
 
   receive(message) {
     if (message.type === "link" || message.type === "address") window.granchain.linkRefined(message.query);
-    if (message.type === "gallery") this.gallery.receive(message.cards);
+    if (message.type === "gallery") this.scenes.gallery.receive(message.cards);
     if (message.type === "address-applied") window.granchain.addressApplied(message.query);
     if (message.type === "link") this.popovers.showLink();
     if (message.type === "file") download(message.name, new Blob([message.content]));

@@ -16,7 +16,7 @@ _MODES = {
     "live": "The run goes on while you move the knobs",
 }
 _STARTS = {"rest": "start: from rest", "previous": "start: previous state"}
-#: In place of the first while a motion is shown that a story, a map or a branch began elsewhere.
+#: Replaces the first of these while the motion on the screen began elsewhere: in a story, a map or a branch.
 _STARTED_ELSEWHERE = "start: a given state"
 
 
@@ -45,6 +45,6 @@ class Header(Component):
     def show_session(self, session: Session) -> None:
         """Show what the session chose, and the start of the picture on the screen."""
         self.update_state(
-            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.look,
+            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
             origin=self._origin, driven=session.scene.is_driven, speed=session.speed, playing=session.playing,
             query=session.link)

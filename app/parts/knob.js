@@ -124,7 +124,7 @@ export class Knob {
     this.send({ do: "set", name: this.spec.name, value }, now);
   }
 
-  // Why the knob turns nothing now, or, with no words, what 0 means.
+  // Shows why the knob has no effect now; without such words, what its value 0 means.
   say(idle) {
     const { at_zero } = this.spec;
     if (!at_zero) return;

@@ -15,8 +15,8 @@ from .foundation import beside_kappa, foundation_words
 
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
-#: Knobs of unequal beads and of an impact with the values that leave the chain as it is. A scene that has others shows
-#: them among the main ones.
+#: Knobs of unequal beads and of an impact, with the values at which they have no effect. A scene with other values
+#: shows these knobs among the main ones.
 _NEUTRAL = {one.name: one.default for one in fields(Scene)
             if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike", "end")}
 #: What a knob is without a drive: its label and its meaning.

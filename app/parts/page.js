@@ -14,8 +14,8 @@ window.granchain = (() => {
     for (const listener of listeners.get(name) ?? []) listener(detail);
   };
 
-  // What a page has to show elsewhere, as in its tab. It is kept and told under a name of its own kind, so that a page
-  // may have any name.
+  // What pages publish for other parts, such as their tabs: kept by page, and emitted as "page:NAME", so that a page may
+  // have the name of any event.
   const pages = new Map();
   const publish = (name, data) => {
     pages.set(name, data);
@@ -46,9 +46,9 @@ window.granchain = (() => {
     emit("theme", theme);
   };
   // A step back or forward: the theme of its address, or the one that was there without any choice.
-  const restoreTheme = (look) => {
-    chosen = THEMES.includes(look);
-    setTheme(chosen ? look : first, false);
+  const restoreTheme = (theme) => {
+    chosen = THEMES.includes(theme);
+    setTheme(chosen ? theme : first, false);
   };
   const theme = () => document.documentElement.dataset.theme;
   setTheme(THEMES.includes(remembered()) ? remembered() : system(), false);

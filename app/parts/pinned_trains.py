@@ -40,7 +40,7 @@ class _Train:
         return cls(float(time[-1]), run.regime.name == "periodic", lines)
 
     def over(self, copies: int, line: int) -> tuple[np.ndarray, np.ndarray]:
-        """One of the lines, so many times one after the other."""
+        """One of the lines, `copies` times one after the other."""
         time, force = self.lines[line]
         shifts = self.lasts * np.arange(copies)
         return (time[None, :] + shifts[:, None]).ravel(), np.tile(force, copies)
@@ -67,7 +67,7 @@ class PinnedTrains:
         elif len(values["time"]):
             source = self._sources[line, place] = ColumnDataSource(values)
             self._plots[line].add_glyph(source, Line(x="force", y="time", line_color=GREY, line_width=1.8,
-                                                      line_dash=DASHES[place]), level="underlay")
+                                                     line_dash=DASHES[place]), level="underlay")
 
     @property
     def largest(self) -> tuple[float, float]:
@@ -84,7 +84,7 @@ class PinnedTrains:
     def update(self, shown: float, scale: float, push: float, out: float) -> None:
         """Draw over `shown` seconds; `scale` is the axis over the time [1/s], `push` and `out` [N] are its units.
 
-        A live picture shows no seconds, because its time is counted from a now that passes.
+        `shown` is 0 for a live picture, over which no pins are drawn: its time axis moves on.
         """
         scale = float(f"{scale:.9g}")  # the same for all pictures in one unit
         self._last = shown, scale, push, out

@@ -1,5 +1,5 @@
-// The force at the wall as sound, off until it is asked for: the whole periods that are on the screen, as fast as they
-// are, again and again. Loud is strong on the scale of the pictures, so an anti-resonance is quiet.
+// The force at the wall as sound, off until it is asked for: the whole periods on the screen at their own speed,
+// repeated. Loud is strong on the scale of the pictures, so an anti-resonance is quiet.
 
 const LASTS = 0.5; // s of sound that is repeated; more than a period, so that the pitch is exact to a few hundredths of a percent
 const LOUDEST = 0.25; // of what the loudspeaker can do

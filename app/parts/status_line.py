@@ -33,7 +33,8 @@ _LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the loga
              "above zero the motion is chaotic.")
 _FOLLOWED = ("Followed to its orbit: the motion approached it so slowly that the orbit was computed from the last "
              "periods, by Newton's method or extrapolation.")
-_SETTLED = "Settled: after so many drive periods from its start the motion was as near to its orbit as the error says."
+_SETTLED = ("Settled: number of drive periods after which the distance to the periodic orbit was below the stated "
+            "error.")
 
 
 class StatusLine(Component):
@@ -107,7 +108,7 @@ def accuracy_words(run: Run) -> str:
 
 #: Where the accuracy asked for is reached, errors of forces up to this factor above that of displacements are left to
 #: the hint: the line has room for one number.
-_ALIKE = 10.0
+_ALIKE_FACTOR = 10.0
 
 
 def _worse_forces(run: Run) -> str:
@@ -115,7 +116,7 @@ def _worse_forces(run: Run) -> str:
     errors = [(error, name) for error, name in ((run.force_errors.output, "output force"),
                                                 (run.force_errors.input, "input force")) if error is not None]
     worst, name = max(errors, default=(0.0, ""))
-    if run.error_estimate is None or worst <= min(run.scene.accuracy, _ALIKE * run.error_estimate):
+    if run.error_estimate is None or worst <= min(run.scene.accuracy, _ALIKE_FACTOR * run.error_estimate):
         return ""
     return f" ({name} {short_error(worst)})"
 

@@ -15,7 +15,7 @@ from granchain_core import Run
 
 from ..format import in_words, prefixed
 from ..frames import Extremes, Frames, round_up
-from ..pictures.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, Look, columns, force_columns
+from ..pictures.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
 from ..pictures.theme import GREY
 from ..serve.changes import change
 from .figure_style import GAP, LEFT, quiet_axis, quiet_plot
@@ -33,14 +33,16 @@ _ZERO: dict[str, Any] = {"line_width": 1, "line_alpha": 0.35, "level": "underlay
 #: About how many ticks a force and the time have.
 _TICKS = (3, 6)
 #: The smallest number that is written in the unit of an axis.
-_READABLE = 0.01
-#: The smallest force is told where it is a pull above this part of the largest, or a pressure above that part of it.
-_PULLS, _PRESSED = 0.01, 0.2
-#: By figure; the browser measures them and says whether there is room for such titles (`Trains.fit`).
+_SMALLEST_READABLE = 0.01
+#: The smallest force is shown beside the largest if it is a pull above this part of the largest …
+_SHOWN_PULL = 0.01
+#: … or a pressure above this part of it.
+_SHOWN_PRESSURE = 0.2
+#: By figure; the browser measures them and says whether there is room for such titles (`ForceTrains.fit`).
 WIDEST_TITLES = {"left": INPUT.label("mN"), "right": OUTPUT.label("mN")}
 
 
-class Trains:
+class ForceTrains:
     """Two figures and one data source; time runs downwards on the axis they share with the map."""
 
     def __init__(self, time: Range1d) -> None:
@@ -135,7 +137,7 @@ class Trains:
         for series, force, factor, unit in zip((frames.input_force, frames.output_force), largest, self._factors,
                                                self._units[1:], strict=True):
             least = float(series.min())
-            told = least < -_PULLS * force or least > _PRESSED * force
+            told = least < -_SHOWN_PULL * force or least > _SHOWN_PRESSURE * force
             words.append([f"max {force / factor:#.{figures}g}".rstrip(".") + f"\N{NO-BREAK SPACE}{unit}",
                           f"min ≈ {least / factor:.{1 if least < 0.0 else 2}g}\N{NO-BREAK SPACE}{unit}".replace(
                               "-", "\N{MINUS SIGN}") if told else ""])
@@ -148,7 +150,7 @@ class Trains:
         """
         factor, unit = self._factors[1], self._units[2]
         figures, about = (4, "") if known else (2, "about ")
-        if force < _READABLE * factor:
+        if force < _SMALLEST_READABLE * factor:
             return about + in_words(force, "N", figures)
         return f"{about}{force / factor:.{figures}g} {unit}"
 
@@ -172,18 +174,18 @@ class Trains:
         self._write_titles()
 
     def _write_titles(self) -> None:
-        for axis, look, unit in zip(self._axes, _AXES, self._units, strict=True):
-            change(axis, axis_label=look.label(unit, self._narrow))
+        for axis, style, unit in zip(self._axes, _AXES, self._units, strict=True):
+            change(axis, axis_label=style.label(unit, self._narrow))
 
     def thicken(self, factor: float) -> None:
         """Wider lines for the projector."""
-        for line, look in zip(self._lines, _LINES, strict=True):
-            line.glyph.line_width = look.width * factor
+        for line, style in zip(self._lines, _LINES, strict=True):
+            line.glyph.line_width = style.width * factor
 
 
-def _glyph(look: Look, column: str = "force") -> Line:
+def _glyph(style: LineStyle, column: str = "force") -> Line:
     """A line over time; `column` of its source is drawn."""
-    return Line(x=column, y="time", line_color=look.colour, line_width=look.width, line_dash=list(look.dash))
+    return Line(x=column, y="time", line_color=style.colour, line_width=style.width, line_dash=list(style.dash))
 
 
 def _span(largest: float, pull: float, *series: np.ndarray) -> tuple[float, float]:

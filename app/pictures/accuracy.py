@@ -20,7 +20,7 @@ _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_tr
 _NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), GREY
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
 #: Largest error drawn; larger ones, which tell no more, are drawn here.
-_HIGHEST = 10.0
+_LARGEST_ERROR = 10.0
 _COLUMNS = ("ms", "error", "setting", "tooltip")
 
 
@@ -60,7 +60,7 @@ def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
     for row in rows:
         if not row.failure and math.isfinite(row.error) and row.error > 0.0 and row.wall_s > 0.0:
             words = f"error {row.error:.2g}, {duration(row.wall_s)}, {row.rhs} evaluations"
-            for name, value in zip(_COLUMNS, (1e3 * row.wall_s, min(row.error, _HIGHEST), row.setting, words),
+            for name, value in zip(_COLUMNS, (1e3 * row.wall_s, min(row.error, _LARGEST_ERROR), row.setting, words),
                                    strict=True):
                 columns[row.method][name].append(value)
     return columns
@@ -93,9 +93,9 @@ def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: boo
                  toolbar_location=None if compact else "right")
     state = marks(asked, rows)
     good = themed(BoxAnnotation(name="good", fill_alpha=0.09, level="underlay"), fill_color="accent",
-                    line_color="accent", line_width=2.0)
+                  line_color="accent", line_width=2.0)
     limit = themed(Span(name="agreement line", dimension="width", line_dash=[1, 5], line_cap="round",
-                          level="underlay"), line_color="soft", line_width=1.5)
+                        level="underlay"), line_color="soft", line_width=1.5)
     for model in (good, limit):
         model.update(**state[model.name])
         plot.add_layout(model)
@@ -149,6 +149,6 @@ def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> 
         ("now", {"value": "this page now"}, "ink", {"x_offset": 13, "y_offset": -8}),
     ]
     texts = [themed(plot.text("ms", "error", text=text, source=made[name], text_font_style="bold",
-                                text_alpha=0.0 if compact else 1.0, text_font_size="14px", **place), text_color=role)
+                              text_alpha=0.0 if compact else 1.0, text_font_size="14px", **place), text_color=role)
              for name, text, role, place in words]
     return [ring, now, *texts[:2]]

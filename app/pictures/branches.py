@@ -128,7 +128,7 @@ class BranchRows:
 
 
 def _runs(wanted: Sequence[bool]) -> list[list[int]]:
-    """The places of neighbours that are all wanted, two or more of them."""
+    """The runs of neighbouring places that are all wanted, each of two or more places."""
     runs: list[list[int]] = [[]]
     for place, one in enumerate(wanted):
         if one:
@@ -142,7 +142,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
     """The largest elastic output force of periodic orbits over the knob of their branches.
 
     `now` is a value of the knob [SI] with a line. Sources have names: "stable" and "unstable" hold lines, "orbits"
-    one row for each orbit, the kinds of special points one for each point; `BranchRows` says what an orbit more adds.
+    one row for each orbit, the kinds of special points one for each point; `BranchRows` says what one more orbit adds.
     """
     rows = BranchRows(max((p.max_output_force_elastic for one in found for p in one.points), default=1e-3))
     data: Columns = {**{name: {"x": [], "y": []} for name in (_CURVE, _CURVE_LINE, *_LINES)},
@@ -166,7 +166,7 @@ def branches(found: Sequence[Branch], theme: Theme, now: float | None = None, co
 
 
 def _put(data: Columns, added: dict[str, Any]) -> None:
-    """Put what a piece adds into the columns of the whole."""
+    """Append what a piece adds to the columns."""
     for name, columns in added["rows"].items():
         for column, values in columns.items():
             data[name][column].extend(values)
@@ -196,7 +196,7 @@ def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
     dots.nonselection_glyph = targets.nonselection_glyph = None
     themed(dots, fill_color="output")
     plot.add_layout(themed(Span(name="now", dimension="height", line_alpha=0.6, level="underlay", visible=False),
-                             line_color="ink", line_width=1.2))
+                           line_color="ink", line_width=1.2))
     items += [LegendItem(name=f"legend of {kind}", label=SPECIAL[kind], renderers=[one], visible=False)
               for kind, one in _marks(plot, sources, compact).items()]
     for data_range in (plot.x_range, plot.y_range):
@@ -248,12 +248,12 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
     scale = knob_scale(branch.axis.knob, (branch.axis.high,))
     low, high = special.interval
     words = (f"{SPECIAL[special.kind].removesuffix(' (torus)')} at {special.knob / scale.factor:.4f} ± "
-            f"{0.5 * (high - low) / scale.factor:.4f} {scale.unit}")
+             f"{0.5 * (high - low) / scale.factor:.4f} {scale.unit}")
     if special.contact is not None:
         words += f": contact {special.contact} has one {special.event} more on one side"
     elif special.kind == "neimark_sacker" and special.multiplier is not None:
         words += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
-                 "circle")
+                  "circle")
     return words
 
 

@@ -1,7 +1,7 @@
 """A figure as PNG or SVG, drawn by BokehJS in headless Chromium.
 
 Bokeh's `export_png` and `export_svg` need Selenium and a driver beside the browser. Chromium alone is enough: it takes
-a picture of a page (`--screenshot`) and prints a page as it has become (`--dump-dom`), here with what BokehJS's
+a picture of a page (`--screenshot`) and prints the final DOM of a page (`--dump-dom`), here with what BokehJS's
 `export("svg")` has put into it.
 """
 
@@ -24,12 +24,14 @@ from granchain_core import BadInput
 from .file import caption_height, captioned_page, page_of
 from .theme import Theme
 
-_NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+_PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
+             "chrome")
 _OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
             "--disable-background-networking", "--virtual-time-budget=20000"]
-#: The window is so many pixels larger than the page, because its frame takes some; the rest is cut off.
-_FRAME = 200
-_SECONDS = 120
+#: By how much the window is larger than the page [px], because its frame takes some; the rest is cut off.
+_FRAME_ROOM = 200
+#: Longest time for one figure [s].
+_LONGEST_TIME = 120
 #: Put into the page: once everything is drawn, its SVG stands in an element of its own.
 _EXPORT = """<script>
 const wait = setInterval(() => {
@@ -47,7 +49,7 @@ const wait = setInterval(() => {
 
 def browser() -> str:
     """The browser that draws; `BadInput` in one sentence where there is none."""
-    found = next((path for name in _NAMES if (path := shutil.which(name))), None)
+    found = next((path for name in _PROGRAMS if (path := shutil.which(name))), None)
     if found is None:
         raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: "
                        "apt install chromium), or write an HTML file, whose own menu saves a picture.")
@@ -65,7 +67,7 @@ def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
         page = captioned_page(figure, title, caption, theme).replace(
             "html, body { height: 100%;", f"html {{ height: 100%; }} body {{ width: {width}px; height: {height}px;")
         _run(folder, page, f"--screenshot={picture}", f"--force-device-scale-factor={scale}",
-             f"--window-size={width + _FRAME},{height + _FRAME}")
+             f"--window-size={width + _FRAME_ROOM},{height + _FRAME_ROOM}")
         if not picture.exists():
             raise BadInput(f"{browser()} wrote no picture; write an HTML file instead.")
         with Image.open(picture) as whole:
@@ -122,8 +124,9 @@ def _run(folder: str, page: str, *options: str) -> str:
     file.write_text(page, encoding="utf-8")
     try:
         done = subprocess.run([browser(), *_OPTIONS, f"--user-data-dir={folder}/profile", *options, file.as_uri()],
-                              capture_output=True, text=True, timeout=_SECONDS, check=False,
+                              capture_output=True, text=True, timeout=_LONGEST_TIME, check=False,
                               env={**os.environ, "HOME": folder})
     except subprocess.TimeoutExpired:
-        raise BadInput(f"{browser()} did not finish the picture within {_SECONDS} s; write an HTML file.") from None
+        raise BadInput(f"{browser()} did not finish the picture within {_LONGEST_TIME} s; "
+                       "write an HTML file.") from None
     return done.stdout

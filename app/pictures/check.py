@@ -14,10 +14,12 @@ from granchain_core.hard import Picture
 from .theme import Theme, apply_theme, frame, themed
 
 _LOGARITHM = ", log10"
-#: Pictures with at most so many points have a dot at each.
-_DOTTED = 70
-#: Height of the drawing and of a line of the legend in pixels.
-_HEIGHT, _LINE = 250, 24
+#: Pictures with at most this many points have a dot at each.
+_MOST_DOTS = 70
+#: Height of the drawing [px].
+_HEIGHT = 250
+#: Height of a line of the legend [px].
+_LEGEND_LINE = 24
 _STYLES: dict[str, list[dict[str, Any]]] = {
     "ours": [{"colour": "ink", "width": 2.6, "dash": []}, {"colour": "ink", "width": 2.6, "dash": [14, 5]}],
     "naive": [{"colour": "naive", "width": 2.2, "dash": [7, 4]}, {"colour": "second", "width": 2.2, "dash": [2, 4]}],
@@ -34,7 +36,7 @@ def check(picture: Picture, theme: Theme) -> figure:
     x_label, x_log, x = _axis(picture.x_label, picture.x)
     drawn = [_axis(picture.y_label, trace.values) for trace in picture.traces]
     y_label, y_log, _ = drawn[0]
-    plot = frame(name="check", sizing_mode="stretch_width", height=_HEIGHT + _LINE * len(labels), title=y_label,
+    plot = frame(name="check", sizing_mode="stretch_width", height=_HEIGHT + _LEGEND_LINE * len(labels), title=y_label,
                  x_axis_type="log" if x_log else "linear", y_axis_type="log" if y_log else "linear")
     plot.xaxis.axis_label = x_label
     plot.x_range.range_padding = 0.02
@@ -43,7 +45,7 @@ def check(picture: Picture, theme: Theme) -> figure:
     for i, (label, style) in enumerate(zip(labels, _styles(labels), strict=True)):
         line = plot.line("x", str(i), source=source, line_dash=style["dash"], line_cap="round", name=label)
         items.append(LegendItem(label=label, renderers=[themed(line, line_color=style["colour"],
-                                                                 line_width=style["width"])]))
+                                                               line_width=style["width"])]))
         plot.add_tools(HoverTool(renderers=[line], tooltips=[
             ("", label), (x_label, "@x{0.[0000]}" if not x_log else "@x{0.0e}"),
             (y_label, f"@{{{i}}}{{0.000e}}")]))
@@ -79,9 +81,9 @@ def _styles(labels: Sequence[str]) -> list[dict[str, Any]]:
 def _points(plot: figure, source: ColumnDataSource, number: int, style: dict[str, Any]) -> None:
     """Dots where there are few points, and the cross at the last point of a trace that breaks off."""
     x, y = (np.asarray(source.data[name]) for name in ("x", str(number)))
-    if len(x) <= _DOTTED:
+    if len(x) <= _MOST_DOTS:
         themed(plot.scatter("x", str(number), source=source, size=5, line_color=None), fill_color=style["colour"])
     known = np.flatnonzero(np.isfinite(y))
     if len(known) and known[-1] < len(y) - 1:
         themed(plot.scatter([float(x[known[-1]])], [float(y[known[-1]])], marker="x", size=12),
-                 line_color=style["colour"], line_width=style["width"])
+               line_color=style["colour"], line_width=style["width"])

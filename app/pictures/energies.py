@@ -1,6 +1,6 @@
 """The colours of kinetic energy from 0 to the largest that a picture is drawn to, and their bar.
 
-The page, files and notebooks share the colours, and choose that largest value each in their way.
+The page, files and notebooks share the colours; each chooses that largest value in its own way.
 """
 
 from __future__ import annotations

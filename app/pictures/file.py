@@ -12,8 +12,12 @@ from bokeh.resources import INLINE
 from .item import with_own_document
 from .theme import Theme
 
-#: Height of a line of a caption, the room around a caption, and how many characters a pixel of its width holds.
-_LINE, _ROOM, _PER_PIXEL = 20, 22, 1 / 7.6
+#: Height of a line of a caption [px].
+_CAPTION_LINE = 20
+#: Room around a caption [px].
+_CAPTION_ROOM = 22
+#: Characters in a pixel of its width.
+_CHARACTERS_PER_PIXEL = 1 / 7.6
 _PAGE = """{%% block contents %%}
 <style>
   html, body { height: 100%%; margin: 0; background: %(card)s; color: %(ink)s; }
@@ -34,7 +38,7 @@ def page_of(figure: LayoutDOM, title: str) -> str:
 def captioned_page(figure: LayoutDOM, title: str, caption: str, theme: Theme) -> str:
     """A whole page with a figure, its title in bold and a caption under it."""
     words = f"<b>{html.escape(title)}.</b> {html.escape(caption)}".replace("{", "&#123;")
-    template = _PAGE % {"card": theme.card, "ink": theme.ink, "line": _LINE, "caption": words}
+    template = _PAGE % {"card": theme.card, "ink": theme.ink, "line": _CAPTION_LINE, "caption": words}
     return _page(figure, title, template=template)
 
 
@@ -45,4 +49,4 @@ def _page(figure: LayoutDOM, title: str, **options: Any) -> str:
 
 def caption_height(title: str, caption: str, width: int) -> int:
     """Room that `captioned_page` needs for its caption in a window of this width [px]."""
-    return _ROOM + _LINE * -(-(len(title) + len(caption) + 2) // int(width * _PER_PIXEL))
+    return _CAPTION_ROOM + _CAPTION_LINE * -(-(len(title) + len(caption) + 2) // int(width * _CHARACTERS_PER_PIXEL))

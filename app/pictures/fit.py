@@ -19,12 +19,14 @@ from .curve import curve_columns
 from .measured import measured_over, residuals_over
 from .theme import Theme, apply_theme, frame, themed
 
-#: Most parameters whose landscape is drawn, and the drive periods of a series that are.
-_DRAWN, _PERIODS = 4, 3
-#: Heights: of residuals beside 1 of the data.
-_SMALL = 0.42
+#: Most parameters whose landscape is drawn.
+_MOST_LANDSCAPES = 4
+#: Most drive periods of a series that are drawn.
+_MOST_PERIODS = 3
+#: Height of the residuals over that of the data.
+_RESIDUALS_HEIGHT = 0.42
 #: Least rise above the minimum that is drawn on the logarithmic axis.
-_LEAST = 1e-2
+_SMALLEST_RISE = 1e-2
 
 
 def fit(found: Fit, theme: Theme) -> LayoutDOM:
@@ -36,7 +38,7 @@ def fit(found: Fit, theme: Theme) -> LayoutDOM:
         left = _features(found, target, theme)
     else:
         left = _series(found, target, theme)
-    right = column([_landscape(found, i, theme) for i in range(min(len(found.free), _DRAWN))],
+    right = column([_landscape(found, i, theme) for i in range(min(len(found.free), _MOST_LANDSCAPES))],
                    sizing_mode="stretch_both")
     return row([left, right], sizing_mode="stretch_both")
 
@@ -77,7 +79,7 @@ def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
     for one, model in zip(target.features, found.evaluation.model, strict=True):
         role = "drive" if one.is_resonance else "soft"
         plot.add_layout(themed(Span(location=one.frequency, dimension="height", line_dash=[2, 4]), line_color=role,
-                                 line_width=1.8))
+                               line_width=1.8))
         if math.isfinite(model):
             plot.add_layout(themed(Span(location=float(model), dimension="height"), line_color=role, line_width=0.8))
     plot.yaxis.axis_label, plot.xaxis.axis_label = scale.label, "drive frequency f (Hz)"
@@ -89,7 +91,7 @@ def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
 
 def _series(found: Fit, target: SeriesTarget, theme: Theme) -> LayoutDOM:
     channels, time = target.channels, target.series.time
-    count = min(len(next(iter(channels.values()))), int(np.searchsorted(time, _PERIODS * found.scene.period)) + 1)
+    count = min(len(next(iter(channels.values()))), int(np.searchsorted(time, _MOST_PERIODS * found.scene.period)) + 1)
     scale = force_scale("force", max(float(np.abs(values).max()) for values in channels.values()))
     plot, place = frame(name="data", min_border=4), 0
     for name, role in (("input_force", "input"), ("output_force", "output")):
@@ -99,7 +101,7 @@ def _series(found: Fit, target: SeriesTarget, theme: Theme) -> LayoutDOM:
         place += len(channels[name])
         themed(plot.line(1e3 * time[:count], model[:count] / scale.factor), line_color=role, line_width=1.8)
         themed(plot.scatter(1e3 * time[:count], channels[name][:count] / scale.factor, size=5, fill_color=None,
-                              line_width=1, legend_label=name.replace("_", " ")), line_color=role)
+                            line_width=1, legend_label=name.replace("_", " ")), line_color=role)
     plot.xaxis.axis_label, plot.yaxis.axis_label = "time (ms)", scale.label
     plot.title.text = _verdict(found)
     return apply_theme(plot, theme)
@@ -117,18 +119,18 @@ def _landscape(found: Fit, i: int, theme: Theme) -> figure:
     axis = _axis(one)
     plot = frame(name=f"landscape of {one.name}", min_border=4, y_axis_type="log",
                  x_axis_type="log" if one.low > 0.0 else "linear")
-    rise = np.maximum(misfits - found.misfit, _LEAST)
+    rise = np.maximum(misfits - found.misfit, _SMALLEST_RISE)
     dots = plot.scatter(values[:, i] / axis.factor, rise, size=4, fill_alpha=0.5, line_color=None)
     themed(dots, fill_color="steel")
     if found.profiles:
         there = found.profiles[i]
-        line = plot.line(np.array(there.values) / axis.factor, np.maximum(there.rises, _LEAST))
+        line = plot.line(np.array(there.values) / axis.factor, np.maximum(there.rises, _SMALLEST_RISE))
         themed(line, line_color="accent", line_width=2.0)
         for end in (there.low, there.high):
             upright = Span(location=end / axis.factor, dimension="height", line_dash=[4, 4])
             plot.add_layout(themed(upright, line_color="accent", line_width=1.2))
         plot.add_layout(themed(Span(location=found.limit, dimension="width", line_dash=[2, 4]),
-                                 line_color="soft", line_width=1.2))
+                               line_color="soft", line_width=1.2))
     plot.xaxis.axis_label = axis.label
     plot.yaxis.axis_label = "Δχ²"
     plot.title.text = _best(found, i)

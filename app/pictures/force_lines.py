@@ -15,7 +15,7 @@ from .theme import THEMES
 
 
 @dataclass(frozen=True)
-class Look:
+class LineStyle:
     """A line: the titles of its axis, its role in a theme, its width [px] and dashes."""
 
     title: str
@@ -34,10 +34,10 @@ class Look:
         return f"{self.short if narrow else self.title} ({unit})"
 
 
-DRIVE = Look("drive u₀", "drive", "drive", 2.0)
-INPUT = Look("input force", "in", "input", 2.5)
-ELASTIC = Look("elastic output force", "elastic", "output", 2.0, (5, 4))
-OUTPUT = Look("output force", "out", "output", 2.5)
+DRIVE = LineStyle("drive u₀", "drive", "drive", 2.0)
+INPUT = LineStyle("input force", "in", "input", 2.5)
+ELASTIC = LineStyle("elastic output force", "elastic", "output", 2.0, (5, 4))
+OUTPUT = LineStyle("output force", "out", "output", 2.5)
 
 
 def columns(time: np.ndarray, **lines: tuple[np.ndarray, float]) -> dict[str, np.ndarray]:

@@ -41,7 +41,7 @@ def measured_over(plot: figure, measured: Measured, factor: float, sigma: np.nda
     """Draw a measurement in front of what is there."""
     source = ColumnDataSource(name="measured", data=measured_columns(measured, factor, None, sigma))
     themed(plot.segment("frequency", "low", "frequency", "high", source=source, level="overlay"), line_color="ink",
-             line_width=1.0)
+           line_width=1.0)
     dots = plot.scatter("frequency", "force", source=source, marker="square", size=7, fill_color=None, level="overlay",
                         legend_label=measured.word)
     themed(dots, line_color="ink", line_width=1.0)
@@ -55,6 +55,6 @@ def residuals_over(frequencies: np.ndarray, residuals: np.ndarray, unit: str) ->
     source = ColumnDataSource(name="residuals", data={"frequency": frequencies, "residual": residuals})
     themed(plot.segment("frequency", 0, "frequency", "residual", source=source), line_color="ink", line_width=1.0)
     themed(plot.scatter("frequency", "residual", source=source, marker="square", size=6, fill_color=None),
-             line_color="ink")
+           line_color="ink")
     plot.xaxis.axis_label, plot.yaxis.axis_label = "drive frequency f (Hz)", unit
     return plot

@@ -28,13 +28,13 @@ from granchain_core import Driven, Run
 
 from ..format import prefixed
 from .energies import bead_interval, energy_bar, energy_hover, energy_mapper
-from .force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, Look, columns, force_columns
+from .force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
 from .theme import Theme, apply_theme, frame, themed
 
 #: Most rows of the picture of energies, and most points of a line.
-_ROWS = 2000
+_MOST_ROWS = 2000
 #: Width of the panels beside the energies [px].
-_BESIDE = 190
+_SIDE_WIDTH = 190
 
 #: A motion with what its driver did: harmonic for a number of periods, or by a signal.
 Recorded = Run | Driven
@@ -64,7 +64,7 @@ class Units:
 
 def motion(run: Recorded, theme: Theme) -> LayoutDOM:
     """A recorded motion, arranged as on the page; a long one is thinned out evenly."""
-    units, index = Units.of(run), np.arange(0, len(run.time), max(1, -(-len(run.time) // _ROWS)))
+    units, index = Units.of(run), np.arange(0, len(run.time), max(1, -(-len(run.time) // _MOST_ROWS)))
     seconds = run.time[index]
     time = Range1d(float(seconds[-1]) / units.time[0], float(seconds[0]) / units.time[0])
     panels = [drive_panel(run, index, seconds, time, units, theme, jumps=True),
@@ -82,7 +82,7 @@ def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Ran
     farthest = run.scene.A0 if isinstance(run, Run) else float(np.abs(run.drive_displacement).max())
     amplitude, largest = farthest / length or 1.0, run.max_input_force / force or 1.0
     lowest = min(0.0, float(run.input_force.min()) / force)
-    plot = frame(name="drive", y_range=time, min_border=4, sizing_mode="stretch_height", width=_BESIDE,
+    plot = frame(name="drive", y_range=time, min_border=4, sizing_mode="stretch_height", width=_SIDE_WIDTH,
                  x_range=Range1d(1.05 * lowest - 0.05 * largest, 1.05 * largest), toolbar_location=None)
     plot.extra_x_ranges = {"drive": Range1d(-1.15 * amplitude, 1.15 * amplitude)}
     plot.add_layout(LinearAxis(x_range_name="drive", axis_line_color=None, major_tick_line_color=None,
@@ -91,12 +91,12 @@ def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Ran
                              name="displacement")
     _line(plot, DRIVE, drive, "drive", x_range_name="drive")
     pushed = _forces(run, 0, index, seconds, units) if jumps else columns(seconds / second,
-                                                                         force=(run.input_force[index], force))
+                                                                          force=(run.input_force[index], force))
     _line(plot, INPUT, ColumnDataSource(pushed, name=INPUT.title))
     plot.yaxis.axis_label = f"time ({second_unit})"
     apply_theme(plot, theme)
-    for axis, look, unit in zip(plot.xaxis, (DRIVE, INPUT), (length_unit, force_unit), strict=True):
-        _axis(axis, look, unit, theme)
+    for axis, style, unit in zip(plot.xaxis, (DRIVE, INPUT), (length_unit, force_unit), strict=True):
+        _axis(axis, style, unit, theme)
     return plot
 
 
@@ -133,7 +133,7 @@ def _output_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units,
     force, unit = units.force
     low = min(0.0, float(run.output_force.min()) / force)
     high = run.max_output_force / force or 1.0
-    plot = frame(name="output", y_range=time, min_border=4, sizing_mode="stretch_height", width=_BESIDE,
+    plot = frame(name="output", y_range=time, min_border=4, sizing_mode="stretch_height", width=_SIDE_WIDTH,
                  x_range=Range1d(1.05 * low - 0.05 * high, 1.05 * high), toolbar_location=None)
     plot.yaxis.visible = False
     elastic = columns(run.time[index] / units.time[0], force=(run.output_force_elastic[index], force))
@@ -145,15 +145,15 @@ def _output_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units,
     return plot
 
 
-def _line(plot: figure, look: Look, source: ColumnDataSource, column: str = "force", **options: Any) -> None:
+def _line(plot: figure, style: LineStyle, source: ColumnDataSource, column: str = "force", **options: Any) -> None:
     """A line of the motion; `column` of the source is drawn over its time."""
-    line = plot.line(column, "time", source=source, line_dash=list(look.dash), **options)
-    themed(line, line_color=look.role, line_width=look.width)
+    line = plot.line(column, "time", source=source, line_dash=list(style.dash), **options)
+    themed(line, line_color=style.role, line_width=style.width)
 
 
-def _axis(axis: Any, look: Look, unit: str, theme: Theme) -> None:
+def _axis(axis: Any, style: LineStyle, unit: str, theme: Theme) -> None:
     """The axis of a line: its label has the line's colour, which says whose axis it is where there are two."""
-    axis.update(axis_label=look.label(unit), axis_label_text_color=getattr(theme, look.role),
+    axis.update(axis_label=style.label(unit), axis_label_text_color=getattr(theme, style.role),
                 ticker=BasicTicker(desired_num_ticks=3))
 
 

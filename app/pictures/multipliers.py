@@ -19,12 +19,14 @@ from ..format import duration
 from .theme import Theme, apply_theme, frame, themed
 
 #: Multipliers farther out are drawn at the edge, with their modulus beside them.
-_FARTHEST = 2.4
+_LARGEST_DRAWN = 2.4
 _AROUND = 1.18
-#: Moduli below which a mark is small, and has no trail.
-_TINY, _SMALL = 0.02, 0.05
+#: A mark of a smaller modulus is small.
+_SMALL_MARK = 0.02
+#: A mark of a smaller modulus has no trail.
+_NO_TRAIL = 0.05
 #: Marks of successive orbits that are farther apart than this are not joined.
-_STEP = 0.35
+_LONGEST_TRAIL_STEP = 0.35
 _SETS = {"within": "dies out", "outside": "grows", "observer within": "observer",
          "observer outside": "observer, grows"}
 _MARK = ("x", "y", "size", "value", "modulus", "angle", "decay", "rank")
@@ -49,16 +51,16 @@ def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False)
         data_range.renderers = [corners]
     _circle(plot, compact)
     themed(plot.segment("x", "y", "x1", "y1", source=made["ways"], line_alpha="alpha"), line_color="soft",
-             line_width=1.6)
+           line_width=1.6)
     themed(plot.scatter("x", "y", source=made["past"], size=5, line_color=None, fill_alpha="alpha"),
-             fill_color="soft")
+           fill_color="soft")
     themed(plot.scatter("x", "y", source=made["chosen"], size=28, fill_color=None, line_dash=[3, 3]),
-             line_color="ink", line_width=1.8)
+           line_color="ink", line_width=1.8)
     items = _marks(plot, made, compact)
     for item in items:
         item.update(**state[item.name])
     themed(plot.text("x", "y", "words", source=made["far"], text_font_size="13px", text_align="align",
-                       y_offset="down", text_font_style="bold", text_baseline="middle"), text_color="ink")
+                     y_offset="down", text_font_style="bold", text_baseline="middle"), text_color="ink")
     if not compact:
         plot.xaxis.axis_label, plot.yaxis.axis_label = "real part of μ", "imaginary part of μ"
         plot.add_layout(Legend(items=items, orientation="horizontal", padding=0, margin=2, glyph_width=16), "above")
@@ -74,7 +76,7 @@ def _circle(plot: figure, compact: bool) -> None:
         themed(plot.circle(0, 0, radius=0.5, fill_color=None, level="underlay"), line_color="faint", line_width=1.0)
     for dimension in ("width", "height"):
         plot.add_layout(themed(Span(dimension=dimension, location=0.0, level="underlay"), line_color="faint",
-                                 line_width=1.0))
+                               line_width=1.0))
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker = FixedTicker(ticks=[-2, -1, 0, 1, 2])
 
@@ -112,7 +114,7 @@ def plane_state(orbit: Orbit | None, observer: bool = False, rank: int | None = 
     own = np.zeros(0, dtype=complex) if orbit is None else orbit.multipliers
     others = orbit.observer_multipliers if observer and orbit is not None else None
     every = own if others is None else np.concatenate([own, others])
-    reach = min(_FARTHEST, max([_AROUND, *(1.12 * np.abs(every))]))
+    reach = min(_LARGEST_DRAWN, max([_AROUND, *(1.12 * np.abs(every))]))
     rows: dict[str, list[tuple[Any, ...]]] = {name: [] for name in _SETS}
     far: list[tuple[Any, ...]] = []
     for prefix, found in (("", own), ("observer ", () if others is None else others)):
@@ -155,7 +157,9 @@ def _shown(mu: complex, reach: float) -> tuple[float, float]:
 
 
 def _size(modulus: float, kind: str) -> float:
-    return 11.0 * (1.0 if kind == "observer outside" else 1.7 if modulus >= 1.0 else 0.62 if modulus < _TINY else 1.0)
+    if kind == "observer outside":
+        return 11.0
+    return 11.0 * (1.7 if modulus >= 1.0 else 0.62 if modulus < _SMALL_MARK else 1.0)
 
 
 def _trail(sets: Sequence[np.ndarray]) -> dict[str, dict[str, Any]]:
@@ -163,10 +167,10 @@ def _trail(sets: Sequence[np.ndarray]) -> dict[str, dict[str, Any]]:
     dots, ways = [], []
     for i, (now, after) in enumerate(itertools.pairwise(sets)):
         alpha = 0.12 + 0.6 * (i + 1) / len(sets)
-        for mu in now[(np.abs(now) >= _SMALL) & (np.abs(now) <= _FARTHEST)]:
+        for mu in now[(np.abs(now) >= _NO_TRAIL) & (np.abs(now) <= _LARGEST_DRAWN)]:
             dots.append((float(mu.real), float(mu.imag), alpha))
             near = after[np.argmin(np.abs(after - mu))]
-            if abs(near - mu) < _STEP:
+            if abs(near - mu) < _LONGEST_TRAIL_STEP:
                 ways.append((float(mu.real), float(mu.imag), float(near.real), float(near.imag), alpha))
     return {"past": _source(("x", "y", "alpha"), dots), "ways": _source(("x", "y", "x1", "y1", "alpha"), ways)}
 

@@ -12,9 +12,12 @@ from .theme import Theme, apply_theme, frame, themed
 
 #: How many drive periods are shown at once; panning shows the earlier ones that are kept.
 SHOWN_PERIODS = 60
-_LOWEST, _HIGHEST = 1e-13, 30.0
-#: Periods after which a prediction is no longer drawn.
-_LONGEST = 10_000.0
+#: The lower end of the axis of distances.
+_SMALLEST_DISTANCE = 1e-13
+#: Its upper end.
+_LARGEST_DISTANCE = 30.0
+#: Drive periods after which a prediction is no longer drawn.
+_LONGEST_PREDICTION = 10_000.0
 
 
 def observer(period: Sequence[float], distance: Sequence[float], prediction: Sequence[tuple[float, float]],
@@ -25,8 +28,9 @@ def observer(period: Sequence[float], distance: Sequence[float], prediction: Seq
     """
     follow = DataRange1d(follow="end", follow_interval=SHOWN_PERIODS, default_span=SHOWN_PERIODS / 3,
                          range_padding=0.0)
-    plot = frame(name="observer", y_axis_type="log", x_range=follow, y_range=Range1d(_LOWEST, _HIGHEST),
-                 active_scroll=None, toolbar_location=None if compact else "right", min_border=4)
+    plot = frame(name="observer", y_axis_type="log", x_range=follow,
+                 y_range=Range1d(_SMALLEST_DISTANCE, _LARGEST_DISTANCE), active_scroll=None,
+                 toolbar_location=None if compact else "right", min_border=4)
     measured = ColumnDataSource({"period": list(period), "distance": list(distance)}, name="distance")
     expected = ColumnDataSource({"period": [p for p, _ in prediction], "distance": [d for _, d in prediction]},
                                 name="prediction")
@@ -50,12 +54,12 @@ def prediction(period: float, distance: float, factor: float | None) -> list[tup
 
     It ends where distances are too large or too small to follow it. Empty where nothing is predicted.
     """
-    if factor is None or factor <= 0.0 or distance < _LOWEST:
+    if factor is None or factor <= 0.0 or distance < _SMALLEST_DISTANCE:
         return []
     slope = math.log10(factor)
     limit = 0.0 if slope > 0.0 else -12.0
-    left = (limit - math.log10(distance)) / slope if slope != 0.0 else _LONGEST
+    left = (limit - math.log10(distance)) / slope if slope != 0.0 else _LONGEST_PREDICTION
     if left <= 0.0:
         return []
-    left = min(left, _LONGEST)
+    left = min(left, _LONGEST_PREDICTION)
     return [(period, distance), (period + left, distance * 10.0 ** (slope * left))]

@@ -21,13 +21,13 @@ from ..format import prefixed
 from .theme import Theme, apply_theme, frame, span_of, themed
 
 #: Most points of a line; a longer motion is thinned out evenly.
-_ROWS = 700
+_MOST_ROWS = 700
 #: The spectrum ends at this multiple of the drive frequency.
-_HARMONICS = 12.5
+_LAST_HARMONIC = 12.5
 #: What glyphs refer to.
 _COLUMNS = ("x", "y", "floor", "number", "contact", "from", "to")
 #: The spectrum's smallest amplitude, over its largest.
-_FLOOR = 1e-4
+_SMALLEST_AMPLITUDE = 1e-4
 
 
 def probe(name: str, run: Run, bead: int, theme: Theme) -> figure:
@@ -62,7 +62,7 @@ def _forces() -> figure:
     for name, role, dash, words in (("before", "input", "solid", "towards the driver"),
                                     ("after", "output", [7, 4], "towards the wall")):
         themed(plot.line("x", "y", source=sources[name], line_dash=dash, legend_label=words), line_color=role,
-                 line_width=2.2)
+               line_width=2.2)
     plot.legend.update(orientation="horizontal", padding=0, margin=2, click_policy="hide")
     plot.add_layout(plot.legend[0], "above")
     return plot
@@ -72,7 +72,7 @@ def _contacts() -> figure:
     plot, sources = _frame("contacts", ("closed", "own"))
     for name, role in (("closed", "soft"), ("own", "accent")):
         bars = themed(plot.hbar("contact", left="from", right="to", height=0.62, source=sources[name],
-                                  line_color=None), fill_color=role)
+                                line_color=None), fill_color=role)
         plot.add_tools(HoverTool(renderers=[bars], tooltips=[
             ("contact", "@contact"), ("closed from", "@from{0.000}"), ("to", "@to{0.000}")]))
     plot.yaxis[0].ticker.update(desired_num_ticks=8, num_minor_ticks=0, mantissas=[1, 2, 5])
@@ -83,7 +83,7 @@ def _phase() -> figure:
     plot, sources = _frame("phase", ("way", "strobe"))
     themed(plot.line("x", "y", source=sources["way"], line_alpha=0.8), line_color="accent", line_width=1.8)
     dots = themed(plot.scatter("x", "y", size=12, source=sources["strobe"], line_width=2), fill_color="drive",
-                    line_color="card")
+                  line_color="card")
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[("begin of drive period", "@number"), ("displacement", "@x"),
                                                          ("velocity", "@y")]))
     return plot
@@ -114,7 +114,7 @@ def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
     v, v_unit = _scaled(run.velocity[:, one], "m/s")
     both, force_unit = _scaled(run.force[:, one:one + 2], "N")
     seconds = {"x": f"time ({time_unit})"}
-    thin = slice(None, None, max(1, -(-len(time) // _ROWS)))
+    thin = slice(None, None, max(1, -(-len(time) // _MOST_ROWS)))
     closed = closed_spells(run)
     own = [(c, a, b) for c, a, b in closed if c in (one, bead)]
     others = [(c, a, b) for c, a, b in closed if c not in (one, bead)]
@@ -135,11 +135,11 @@ def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
         "phase": _line({"way": (u, v)}, thin, {"x": f"displacement ({u_unit})", "y": f"velocity ({v_unit})"}),
         "spectrum": {
             "lines": {"data": {"x": _short(lines), "y": _short(np.maximum(shown, 1e-300)),
-                               "floor": [_FLOOR * float(shown.max())] * len(lines)}},
+                               "floor": [_SMALLEST_AMPLITUDE * float(shown.max())] * len(lines)}},
             **_axes({"x": "frequency / drive frequency" + "".join(f" ({one} recorded)" for one in whole.values()),
                      "y": f"amplitude ({amplitude_unit})"}),
-            "across": _ends(-0.2, _HARMONICS),
-            "up": _ends(_FLOOR * float(shown.max()), 2.0 * float(shown.max()))}}
+            "across": _ends(-0.2, _LAST_HARMONIC),
+            "up": _ends(_SMALLEST_AMPLITUDE * float(shown.max()), 2.0 * float(shown.max()))}}
     state["phase"]["strobe"] = {"data": {"x": _short(u[strobes]), "y": _short(v[strobes]),
                                          "number": list(range(1, len(u[strobes]) + 1))}}
     return state
@@ -157,13 +157,13 @@ def closed_spells(run: Run) -> list[tuple[int, float, float]]:
 
 
 def amplitudes(run: Run, one: int) -> tuple[np.ndarray, np.ndarray]:
-    """Frequencies over the drive's, up to _HARMONICS, and amplitudes of a bead's displacement [m]."""
+    """Frequencies over the drive's, up to _LAST_HARMONIC, and amplitudes of a bead's displacement [m]."""
     motion = run.displacement[:-1, one]
     periods = len(motion) / run.samples
     repeats = run.regime.period is not None and periods % run.regime.period == 0
     found = np.abs(cosines(motion, repeats))
     multiples = np.arange(len(found)) / periods
-    kept = (multiples > 0.0) & (multiples <= _HARMONICS)
+    kept = (multiples > 0.0) & (multiples <= _LAST_HARMONIC)
     return multiples[kept], found[kept]
 
 

@@ -12,9 +12,9 @@ from bokeh.plotting import figure
 from .theme import Theme, apply_theme, frame, span_of, themed
 
 #: Sections with fewer points than this have their transient drawn larger.
-_FEW = 150
+_FEW_POINTS = 150
 #: How many points of the way to an orbit are joined.
-_PATH = 60
+_MOST_JOINED = 60
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +47,12 @@ def section(shown: SectionPoints, theme: Theme) -> figure:
         model.update(**state[name])
     themed(plot.multi_line("u", "v", source=made["path"], line_alpha=0.45), line_color="soft", line_width=1.4)
     way = themed(plot.scatter("u", "v", size="size", source=made["way"], line_color=None, fill_alpha=0.75),
-                   fill_color="soft")
+                 fill_color="soft")
     dots = themed(plot.scatter("u", "v", size="size", source=made["dots"], line_color=None), fill_color="accent")
     ring = themed(plot.scatter("u", "v", size=16, source=made["orbit"], fill_color=None),
-                    line_color="accent", line_width=3.0)
+                  line_color="accent", line_width=3.0)
     diamond = themed(plot.scatter("u", "v", size=20, marker="diamond", source=made["unstable orbit"],
-                                    fill_color=None), line_color="ink", line_width=3.0)
+                                  fill_color=None), line_color="ink", line_width=3.0)
     plot.add_tools(HoverTool(renderers=[way, dots], tooltips=[("drive period", "@number"), ("displacement", "@u"),
                                                               ("velocity", "@v")]),
                    HoverTool(renderers=[ring, diamond], tooltips=[("point of the orbit", "@number"),
@@ -69,13 +69,13 @@ def section_state(shown: SectionPoints) -> dict[str, dict[str, Any]]:
     """
     points, own, before = shown.points, shown.own, min(shown.transient, len(shown.points))
     whole = bool(shown.period) or shown.transient >= len(points)
-    joined = [points[:before][i::shown.period][:_PATH] for i in range(min(shown.period, before))]
+    joined = [points[:before][i::shown.period][:_MOST_JOINED] for i in range(min(shown.period, before))]
     if shown.unstable:
         joined = []
     number = np.arange(len(points))
     return {
         "path": {"data": {"u": [_short(one[:, 0]) for one in joined], "v": [_short(one[:, 1]) for one in joined]}},
-        "way": _dots(points[:before], number[:before], 6 if len(points) < _FEW else 3.4),
+        "way": _dots(points[:before], number[:before], 6 if len(points) < _FEW_POINTS else 3.4),
         "dots": _dots(points[before:], number[before:], 3.4),
         "orbit": _dots(own[:0] if shown.unstable else own, np.arange(1, len(own) + 1), 16),
         "unstable orbit": _dots(own if shown.unstable else own[:0], np.arange(1, len(own) + 1), 20),

@@ -28,15 +28,15 @@ from tornado.iostream import IOStream, StreamClosedError
 from tornado.locks import Lock
 
 #: Largest integer that JavaScript represents exactly.
-_MOST_SAFE = 2**53 - 1
+_LARGEST_SAFE_INTEGER = 2**53 - 1
 #: Types for which BokehJS has arrays, by NumPy's letters.
 _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
 #: Arrays up to this size are written into the text [bytes]: a larger one costs both sides two more frames.
-_SHORT = 8192
+_LARGEST_INLINE_ARRAY = 8192
 _NUMBERS = itertools.count(1)
 
 
-class _NotPlain(Exception):
+class _NotPlainValue(Exception):
     """A value that Bokeh has to encode."""
 
 
@@ -60,7 +60,7 @@ class _Message:
         if isinstance(event, ModelChangedEvent):
             return {"kind": "ModelChanged", "model": _reference(event.model), "attr": event.attr,
                     "new": self.value(event.new)}
-        raise _NotPlain
+        raise _NotPlainValue
 
     def value(self, value: Any) -> Any:
         """A plain value as Bokeh writes it in JSON."""
@@ -70,7 +70,7 @@ class _Message:
             if math.isfinite(value):
                 return float(value)
             return {"type": "number", "value": "nan" if math.isnan(value) else f"{value:+}"}
-        if isinstance(value, int) and abs(value) <= _MOST_SAFE:
+        if isinstance(value, int) and abs(value) <= _LARGEST_SAFE_INTEGER:
             return int(value)
         if isinstance(value, (list, tuple)):
             return [self.value(one) for one in value]
@@ -78,11 +78,11 @@ class _Message:
             return {"type": "map", "entries": [[self.value(key), self.value(one)] for key, one in value.items()]}
         if isinstance(value, np.ndarray) and value.shape and value.dtype.char in _ARRAYS:
             return self._array(value)
-        raise _NotPlain
+        raise _NotPlainValue
 
     def _array(self, value: np.ndarray) -> dict[str, Any]:
         data: str | dict[str, str]
-        if value.nbytes <= _SHORT:
+        if value.nbytes <= _LARGEST_INLINE_ARRAY:
             # BokehJS expects gzip there; without compression it is only a frame around the bytes
             data = base64.b64encode(gzip.compress(value.tobytes(), compresslevel=0, mtime=1)).decode()
         else:
@@ -94,7 +94,7 @@ class _Message:
 
 def _reference(model: Model | None) -> dict[str, str]:
     if model is None:
-        raise _NotPlain
+        raise _NotPlainValue
     return {"id": model.id}
 
 
@@ -115,7 +115,7 @@ def written(events: list[DocumentPatchedEvent]) -> bytes | None:
     message = _Message()
     try:
         content = {"events": [message.event(event) for event in events]}
-    except _NotPlain:
+    except _NotPlainValue:
         return None
     header: dict[str, Any] = {"msgid": f"s{next(_NUMBERS)}", "msgtype": "PATCH-DOC"}
     if message.arrays:

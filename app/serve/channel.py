@@ -127,7 +127,7 @@ class Channel:
             self._loop.asyncio_loop.call_soon_threadsafe(self._run)  # type: ignore[attr-defined]
 
     def call_later(self, seconds: float, action: Callable[[], None]) -> None:
-        """Call `action` so many seconds from now; on the event loop."""
+        """Call `action` after `seconds`; on the event loop."""
         if self._closed or self._is_destroyed():
             return
         if self._loop is None or not self._served:

@@ -9,7 +9,7 @@ from granchain_core.child_processes import end_with_parent
 
 
 def main(parent: str, piece: str) -> None:
-    """Compile; what that needs is loaded when the parent is watched already."""
+    """Watch the parent first, because loading what is needed takes seconds; then compile."""
     end_with_parent(int(parent))
     from granchain_core import Scene
     from granchain_core.warm import compile_piece

@@ -15,19 +15,19 @@ from tornado.web import StaticFileHandler
 from ..scripts import FILES, file_at
 
 #: Kinds of files that are smaller when compressed; pictures and fonts are not.
-_KINDS = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map", ".html", ".txt"})
+_COMPRESSED_SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map", ".html", ".txt"})
 #: The modules of the page.
 _MODULES = frozenset(map(str, FILES.values()))
 #: For how long a browser keeps what does not change [s].
-_YEAR = 365 * 86400
+_UNCHANGED_TIME = 365 * 86400
 #: Smallest file that is compressed: the size of one packet [bytes].
-_LEAST = 1400
+_SMALLEST_COMPRESSED = 1400
 
 
 @functools.lru_cache(maxsize=512)
 def compressed(path: str, modified: int, size: int) -> bytes | None:
     """The compressed file, None if that saves nothing; `modified` and `size` tell a changed file from the old one."""
-    if size < _LEAST or Path(path).suffix not in _KINDS:
+    if size < _SMALLEST_COMPRESSED or Path(path).suffix not in _COMPRESSED_SUFFIXES:
         return None
     whole = Path(path).read_bytes()
     packed = gzip.compress(whole, compresslevel=6, mtime=0)
@@ -80,7 +80,7 @@ class CompressedFiles(StaticFileHandler):
         """
         super().set_extra_headers(path)
         if path in _MODULES:
-            self.set_header("Cache-Control", f"max-age={_YEAR}, immutable")
+            self.set_header("Cache-Control", f"max-age={_UNCHANGED_TIME}, immutable")
         self.set_header("Vary", "Accept-Encoding")
         if self._packed() is not None:
             self.set_header("Content-Encoding", "gzip")

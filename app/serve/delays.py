@@ -1,8 +1,10 @@
 """Delays in seconds: between two checks, and after the last knob movement before work begins."""
 
-#: Between the first two checks whether the main picture is done, and the longest time between later ones. Long work
-#: waits for the picture, so it never competes with a knob.
-PICTURE_POLL, LONGEST_POLL = 0.01, 0.2
+#: Between the first two checks whether the main picture is done. Long work waits for the picture, so it never competes
+#: with a knob.
+PICTURE_POLL = 0.01
+#: The longest time between two such checks.
+LONGEST_PICTURE_POLL = 0.2
 #: Between checks of a stop flag while another process works.
 STOP_POLL = 0.05
 

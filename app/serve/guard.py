@@ -1,7 +1,7 @@
 """Request guard: checks host, session and the number of visitors, and adds security headers.
 
 docs/security.md says what is promised. Bokeh's, Panel's and Tornado's handlers are kept; `guarded` derives a class from
-each that looks first.
+each that checks a request first.
 """
 
 from __future__ import annotations
@@ -28,11 +28,13 @@ from .part_messages import take
 
 log = logging.getLogger("granchain.requests")
 
-#: Messages a visitor may send: so many a second over a long time, and so many at once. A drag sends 60 a second, and a
+#: Websocket frames that a visitor may send in a second, over a long time. A drag sends 60 messages a second, and a
 #: message is three frames.
-FRAMES_A_SECOND, FRAMES_AT_ONCE = 600.0, 3000.0
+FRAMES_A_SECOND = 600.0
+#: Frames that a visitor may send at once.
+FRAMES_AT_ONCE = 3000.0
 #: Time in which a session's id is remembered, longer than Bokeh's tokens live [s].
-_REMEMBERED = 600.0
+_SESSIONS_REMEMBERED = 600.0
 
 
 @dataclass
@@ -71,7 +73,7 @@ class Rules:
     def connects(self, session: str) -> bool:
         """Remember that this session has its connection; False if it had one before."""
         now = time.monotonic()
-        for old in [one for one, at in self.connected.items() if at < now - _REMEMBERED]:
+        for old in [one for one, at in self.connected.items() if at < now - _SESSIONS_REMEMBERED]:
             del self.connected[old]
         first = session not in self.connected
         self.connected[session] = now
@@ -79,7 +81,7 @@ class Rules:
 
 
 class Guard(RequestHandler):
-    """Looks at a request before the handler that it is mixed into; `rules` is set by `guarded`."""
+    """Checks a request before the handler that it is mixed into; `rules` is set by `guarded`."""
 
     rules: Rules
     request_id = ""
@@ -115,8 +117,8 @@ class Guard(RequestHandler):
         """Answer with a line for the visitor; the log has the details under the same id."""
         self.set_header("Content-Type", "text/plain; charset=UTF-8")
         sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
-                503: "This server has as many visitors as it can serve; please try again in a minute.",
-                500: "Something went wrong inside granchain."}
+                     503: "This server has as many visitors as it can serve; please try again in a minute.",
+                     500: "Something went wrong inside granchain."}
         self.finish(f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n")
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:

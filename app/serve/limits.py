@@ -1,7 +1,13 @@
-"""What a visitor may have at most; docs/security.md has the other limits. The module imports nothing: the command line
-reads it before it loads the server."""
+"""What a visitor may have at most; docs/security.md has the other limits.
 
-#: Pages open at once: if nothing else is said, and what may be asked for.
-USUAL_VISITORS, MOST_VISITORS = 200, 10_000
-#: Largest measurement that is taken [bytes], and most points of it that are drawn.
-LARGEST_UPLOAD, MOST_UPLOADED_POINTS = 2_000_000, 20_000
+The module imports nothing, because the command line reads it before it loads the server.
+"""
+
+#: Pages open at once, by default.
+USUAL_VISITORS = 200
+#: The largest value of the option `--most-visitors`.
+MOST_VISITORS = 10_000
+#: Largest file of a measurement [bytes].
+LARGEST_UPLOAD = 2_000_000
+#: Most points of a measurement.
+MOST_UPLOADED_POINTS = 20_000

@@ -17,10 +17,12 @@ from tornado.web import HTTPError, RequestHandler
 
 #: Upper bounds of the histogram of answers [s].
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-#: Between two measurements of how late the event loop is [s], and how many are remembered.
-_EVERY, _KEPT = 0.25, 40
+#: Between two measurements of how late the event loop is [s].
+_LATENESS_INTERVAL = 0.25
+#: How many of these measurements are kept: those of ten seconds.
+_LATENESSES_KEPT = 40
 #: The server is called busy when a knob's message, or the computation for it, waits longer than this [s].
-_BUSY = 0.3
+_BUSY_WAIT = 0.3
 
 
 class Meters:
@@ -38,7 +40,7 @@ class Meters:
         self.errors = 0
         self.answers = [0] * (len(BUCKETS) + 1)
         self.answers_total = 0.0
-        self._late: deque[float] = deque(maxlen=_KEPT)
+        self._late: deque[float] = deque(maxlen=_LATENESSES_KEPT)
         self.gauges: dict[str, Callable[[], float]] = {}
         #: How long computations wait before they can begin [s]; the server puts it there.
         self.turn_wait: Callable[[], float] = lambda: 0.0
@@ -48,14 +50,14 @@ class Meters:
         self.visitors -= 1
 
     def answered(self, seconds: float) -> None:
-        """Count a first picture that came so many seconds after the knob moved."""
+        """Count a first picture that came `seconds` after the knob moved."""
         place = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
         with self._lock:
             self.answers[place] += 1
             self.answers_total += seconds
 
     def loop_late(self, seconds: float) -> None:
-        """Count a turn of the event loop that came so late."""
+        """Record that a turn of the event loop came `seconds` late."""
         self._late.append(seconds)
 
     @property
@@ -66,17 +68,17 @@ class Meters:
     @property
     def busy(self) -> bool:
         """Whether visitors notice that there are many: by the event loop, or by the wait for a turn to compute."""
-        return max(self.lateness, self.turn_wait()) > _BUSY
+        return max(self.lateness, self.turn_wait()) > _BUSY_WAIT
 
     async def watch(self) -> None:
         """Measure how late the event loop is, for as long as it runs."""
         while True:
-            due = time.monotonic() + _EVERY
-            await asyncio.sleep(_EVERY)
+            due = time.monotonic() + _LATENESS_INTERVAL
+            await asyncio.sleep(_LATENESS_INTERVAL)
             self.loop_late(max(0.0, time.monotonic() - due))
 
     def text(self) -> str:
-        """In the text format of Prometheus, version 0.0.4."""
+        """The counts in the text format of Prometheus, version 0.0.4."""
         lines: list[str] = []
 
         def add(name: str, kind: str, meaning: str, value: float) -> None:
@@ -126,7 +128,7 @@ def resident_memory() -> float:
 
 
 class Liveness(RequestHandler):
-    """`/liveness`: the event loop answers. It makes no page, as Panel's own can be asked to."""
+    """`/liveness`: answers while the event loop runs. Unlike Panel's own, it never makes a page."""
 
     def get(self) -> None:
         """Answer `{"/liveness": true}`."""

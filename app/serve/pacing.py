@@ -10,7 +10,7 @@ Picture = TypeVar("Picture")
 
 #: Pictures on their way at once: one being painted, one travelling. Measured on two cores: 21 frames a second and 45
 #: ms of lag (p95) with one, 28 and 43 with two.
-_AHEAD = 2
+_MOST_IN_TRANSIT = 2
 
 
 class FramePacer(Generic[Picture]):
@@ -30,7 +30,7 @@ class FramePacer(Generic[Picture]):
     @property
     def waits(self) -> bool:
         """Whether the browser still owes an acknowledgement."""
-        return self._sent - self._painted >= _AHEAD
+        return self._sent - self._painted >= _MOST_IN_TRANSIT
 
     def offer(self, picture: Picture) -> None:
         """Send `picture` now, or as soon as the browser is ready, unless a newer one is offered before."""

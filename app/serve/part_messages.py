@@ -21,7 +21,7 @@ _NUMBERS = {"nan": float("nan"), "inf": float("inf"), "+inf": float("inf"), "-in
 _RECEIVERS: weakref.WeakKeyDictionary[Document, dict[str, weakref.WeakMethod[Receive]]] = weakref.WeakKeyDictionary()
 
 
-class _NotPlain(Exception):
+class _NotAPartMessage(Exception):
     """This is not a message of a part in plain values."""
 
 
@@ -40,7 +40,7 @@ def take(connection: Any, content: dict[str, Any]) -> bool:
         return False
     try:
         model, message = _read(content)
-    except _NotPlain:
+    except _NotAPartMessage:
         return False
     receive = known[model]() if model in known else None
     if receive is None:
@@ -57,7 +57,7 @@ def _read(content: dict[str, Any]) -> tuple[str, dict[str, Any]]:
                     ["model", {"id": str(model)}], ["data", {"type": "map"} as data]]}}}]}:
             message = _plain(data)
             return model, message
-    raise _NotPlain
+    raise _NotAPartMessage
 
 
 def _plain(value: Any) -> Any:
@@ -70,11 +70,11 @@ def _plain(value: Any) -> Any:
             return dict(_entry(one) for one in entries)
         case {"type": "number", "value": str(name)} if len(value) == 2 and name in _NUMBERS:
             return _NUMBERS[name]
-    raise _NotPlain
+    raise _NotAPartMessage
 
 
 def _entry(one: Any) -> tuple[str, Any]:
     match one:
         case [str(key), value]:
             return key, _plain(value)
-    raise _NotPlain
+    raise _NotAPartMessage

@@ -14,7 +14,7 @@ import threading
 from queue import SimpleQueue
 
 #: Niceness added to a thread that gives way: beside a thread that does not, it gets a tenth of a processor.
-_PATIENT = 10
+_PATIENT_NICENESS = 10
 
 
 class _Starter:
@@ -44,7 +44,7 @@ def give_way() -> None:
     """Lower this thread's priority: from now on threads that do not give way have the processor first."""
     if sys.platform == "linux" and not gives_way() and threading.current_thread() is not threading.main_thread():
         _STARTER.run()
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), min(_usual() + _PATIENT, 19))
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), min(_usual() + _PATIENT_NICENESS, 19))
 
 
 def gives_way() -> bool:

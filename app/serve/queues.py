@@ -11,6 +11,7 @@ import heapq
 import logging
 import threading
 import time
+from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
 from itertools import count
@@ -19,9 +20,10 @@ from typing import TypeVar
 
 from granchain_core import Cancelled
 
+from .cpu_time import CpuTime
 from .meters import METERS
 from .priorities import begin, give_way, gives_way
-from .turns import CpuTime, TurnFlag
+from .turns import TurnFlag
 
 Result = TypeVar("Result")
 
@@ -34,12 +36,16 @@ class Queue:
     The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
     `patient` queue give way to others (priorities.py).
 
+    Where a queue has a `share`, at most that many pieces of one owner's work run or wait for a thread. Further ones
+    join the queue, behind the work of others, as the owner's earlier ones end.
+
     A thread counts as busy from the moment it is given work, before it has begun it: otherwise the next piece of work
     would be given to the same thread, and wait although another thread could begin it.
     """
 
-    def __init__(self, name: str, workers: int, patient: bool = False) -> None:
+    def __init__(self, name: str, workers: int, patient: bool = False, share: int | None = None) -> None:
         self.name = name
+        self.share = share
         self._workers = workers
         self._patient = patient
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
@@ -48,31 +54,59 @@ class Queue:
         self._free = 0  # threads without work
         self.waiting = 0  # work that waits for a thread
         self._lock = threading.Lock()
+        self._taken: Counter[object] = Counter()  # work of each owner that runs or waits for a thread
+        self._held: dict[object, deque[Callable[[], None]]] = {}  # work of each owner beyond its share
 
     @property
     def busy(self) -> int:
         """How many threads are at work."""
         return len(self._threads) - self._free
 
-    def submit(self, work: Callable[..., Result], *arguments: object) -> Future[Result]:
-        """Call `work` as soon as a thread is free; the future has what it returns or raises."""
+    def submit(self, work: Callable[..., Result], *arguments: object, owner: object = None) -> Future[Result]:
+        """Call `work` as soon as a thread is free; the future has what it returns or raises.
+
+        Work without an `owner` counts to nobody's share.
+        """
         future: Future[Result] = Future()
+        shared = self.share is not None and owner is not None
 
         def do() -> None:
             try:
                 future.set_result(work(*arguments))
             except BaseException as error:
                 future.set_exception(error)
+            finally:
+                if shared:
+                    self._ended(owner)
 
         with self._lock:
-            self._given.put(do)
-            if self._free:
-                self._free -= 1
-            elif len(self._threads) < self._workers:
-                self._begin()
+            if shared and self._taken[owner] == self.share:
+                self._held.setdefault(owner, deque()).append(do)
             else:
-                self.waiting += 1
+                self._taken.update([owner] if shared else [])
+                self._give(do)
         return future
+
+    def _give(self, do: Callable[[], None]) -> None:
+        """Give work to a free or a new thread, or let it wait for one; called with the lock held."""
+        self._given.put(do)
+        if self._free:
+            self._free -= 1
+        elif len(self._threads) < self._workers:
+            self._begin()
+        else:
+            self.waiting += 1
+
+    def _ended(self, owner: object) -> None:
+        """Work of this owner has ended: its next work joins the queue."""
+        with self._lock:
+            if held := self._held.get(owner):
+                self._give(held.popleft())
+                return
+            self._held.pop(owner, None)
+            self._taken[owner] -= 1
+            if not self._taken[owner]:
+                del self._taken[owner]
 
     def _begin(self) -> None:
         """Start one more thread; called with the lock held."""
@@ -111,13 +145,14 @@ ANALYSES = Queue("analyses", 8, patient=True)
 FILES = Queue("files", 2)
 #: Loading kernels before a visitor asks.
 LOADING = Queue("loading", 1)
-#: Visitors who wait for their resonance curves. Maps and branches wait for a curve that is under way, so curves cannot
-#: share their queue.
+#: One thread for each visitor whose resonance curve is awaited. A map waits for a curve that is under way; in one queue
+#: maps could take all threads and wait for curves that have none.
 CURVES = Queue("curves", 200)
 #: The computations of these curves. Each uses all cores, which the system divides among them.
 SWEEPS = Queue("sweeps", 8, patient=True)
-#: Work that takes minutes: maps, searches for attractors, branches.
-LONG = Queue("long", 8, patient=True)
+#: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper. One page offers all
+#: five, so two visitors could fill the queue: each has two at a time.
+LONG = Queue("long", 8, patient=True, share=2)
 #: Timings, one at a time for all visitors: two at once would disturb each other.
 MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
@@ -125,8 +160,8 @@ COMPILATIONS = Queue("compilations", 2)
 
 TurnWork = Callable[[TurnFlag], Iterator[object]]
 
-#: How long a first picture is computed before a newer request stops it [s].
-_PATIENCE = 1.0
+#: How long a first result is computed before a newer request stops it [s].
+_FIRST_RESULT_TIME = 1.0
 
 
 class _Alarms:
@@ -139,7 +174,7 @@ class _Alarms:
         self._thread: threading.Thread | None = None
 
     def __call__(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` in so many seconds."""
+        """Call `action` after `seconds`."""
         with self._changed:
             self._count += 1
             heapq.heappush(self._due, (time.monotonic() + seconds, self._count, action, arguments))
@@ -162,11 +197,11 @@ _later = _Alarms()
 
 
 class LatestWins:
-    """One running computation for a session; a newer one replaces whatever waits.
+    """One running computation for a visitor; a newer one replaces whatever waits.
 
-    A computation is an iterator of ever better results. A newer request stops the refinement after the first result at
-    once, and the first result only when it takes longer than a second: if everything were cancelled, nothing would be
-    repainted during a drag.
+    A computation is an iterator of ever better results. A newer request stops at once a computation that has had its
+    first result. One that has none yet may take up to a second for it: if each were stopped, nothing would be repainted
+    during a drag.
     """
 
     def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
@@ -193,7 +228,7 @@ class LatestWins:
             if self._closed:
                 return
             self._waiting = work
-            left = self._began + _PATIENCE - time.monotonic()
+            left = self._began + _FIRST_RESULT_TIME - time.monotonic()
             if self._refining or (self._running and left <= 0.0):
                 self._stop.set()
             elif self._running:
@@ -205,7 +240,7 @@ class LatestWins:
         VISITORS.submit(self._drain)
 
     def _give_up(self, stop: TurnFlag) -> None:
-        """The first result has not come for a second: begin with what waits."""
+        """Give up the computation: its first result has not come within a second, and newer work waits."""
         with self._lock:
             if self._stop is stop and self._waiting is not None:
                 stop.set()
@@ -251,7 +286,7 @@ class LatestWins:
             self._report(error)
 
     def _report(self, error: Exception) -> None:
-        """Tell of a failure; where that fails, too, the next computation must still begin."""
+        """Report a failure; if reporting fails as well, log that, so that the next computation still begins."""
         try:
             if not self._closed:
                 self._fail(error)

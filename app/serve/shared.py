@@ -13,13 +13,14 @@ from typing import Generic, TypeVar
 
 from granchain_core.stop import Stop
 
+from .cpu_time import CpuTime, SharedCpuTime
 from .queues import Queue
-from .turns import CpuTime, Flag, SharedCpuTime, TurnFlag
+from .turns import Flag, TurnFlag
 
 Item = TypeVar("Item")
 
 #: Between two checks of a visitor's stop flag while it waits [s]; new items wake it at once.
-_LOOK = 0.5
+_STOP_CHECK_INTERVAL = 0.5
 
 
 class _Computation(Generic[Item]):
@@ -111,7 +112,7 @@ class Shared(Generic[Item]):
         while True:
             with one.changed:
                 while not stop and given == len(one.items) and not one.done:
-                    one.changed.wait(_LOOK)
+                    one.changed.wait(_STOP_CHECK_INTERVAL)
                 new, done = one.items[given:], one.done
             stop.check()
             given += len(new)
@@ -141,12 +142,12 @@ class Shared(Generic[Item]):
                 if error is None and key is not None:
                     self._keep(key, self._kept(one.items))
         finally:
-            with one.changed:  # whatever became of it: others wait
+            with one.changed:  # even after an error, because others wait
                 one.done, one.error = True, error
                 one.changed.notify_all()
 
     def _keep(self, key: Hashable, items: list[Item]) -> None:
-        """With the lock held: keep them, and drop the oldest while there is too much."""
+        """With the lock held: keep these items, and drop the least recently used ones beyond `memory`."""
         size = sum(map(self._size, items))
         if size > self.memory:
             return
@@ -156,5 +157,3 @@ class Shared(Generic[Item]):
         self.used += size
         while self.used > self.memory:
             self.used -= self._finished.popitem(last=False)[1][1]
-
-

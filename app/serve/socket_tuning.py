@@ -1,4 +1,4 @@
-"""How a page's sockets write: at once.
+"""Makes a page's sockets write at once.
 
 Tornado and Bokeh have no public way to a page's streams. Where a release has none of these attributes, messages leave
 as the library sends them.

@@ -18,64 +18,30 @@ from typing import TypeVar
 
 from granchain_core.stop import Stop
 
+from .cpu_time import CpuTime
 from .priorities import give_way
 
 Result = TypeVar("Result")
 
 #: A computation without a result counts as just begun for this processor time [s]. A first picture of ten beads takes
 #: a tenth of it.
-_BEGINNING = 0.03
+_BEGINNING_CPU_TIME = 0.03
 #: How long a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
 #: another thread costs some waits for the interpreter.
-_SLICE = 0.02
-#: Waits are averaged over at most so many computations that began, in the last so many seconds.
-_REMEMBERED, _LATELY = 200, 10.0
+_TIME_SLICE = 0.02
+#: Most computations that began lately whose waits are averaged.
+_MOST_WAITS = 200
+#: How far back such an average reaches [s].
+_WAITS_WINDOW = 10.0
 #: A computation that has waited this long gets a slice although others use all cores [s].
 _LONGEST_WAIT = 0.5
 #: Time between two checks of a waiting computation whether it may begin [s]. It may when a turn ends, but also when a
-#: turn has grown too old or the wait too long. The more computations wait, the longer this time, up to so many times
-#: as long.
-_LOOK, _MOST_LOOKS = 0.05, 20
-
-#: Time in which half of what a visitor has used is forgotten [s].
-_HALF_LIFE = 5.0
+#: turn has grown too old or the wait too long. The time is multiplied by the number of computations that wait.
+_CHECK_INTERVAL = 0.05
+#: The largest such multiple.
+_LONGEST_CHECK_MULTIPLE = 20
 #: A turn that has lasted longer than this does not keep others waiting [s]: not every computation can pause.
 _LONGEST_TURN = 0.1
-
-
-class CpuTime:
-    """The processor time that one visitor has used lately [s]."""
-
-    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
-        self._clock, self._used, self._at = clock, 0.0, clock()
-
-    @property
-    def used(self) -> float:
-        """The time used [s]; half of it is forgotten every five seconds."""
-        return self._used * math.exp2((self._at - self._clock()) / _HALF_LIFE)
-
-    def charge(self, seconds: float) -> None:
-        """Add processor time [s]."""
-        self._used, self._at = self.used + seconds, self._clock()
-
-
-class SharedCpuTime(CpuTime):
-    """Visitors who wait for the same picture: they share its cost, and their rank is that of the one who used least."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.members: list[CpuTime] = []
-
-    @property
-    def used(self) -> float:
-        """The least time that any member has used [s]."""
-        return min((member.used for member in list(self.members)), default=math.inf)
-
-    def charge(self, seconds: float) -> None:
-        """Charge each member its share."""
-        members = list(self.members)
-        for member in members:
-            member.charge(seconds / len(members))
 
 
 class _Turn:
@@ -98,13 +64,13 @@ class FairScheduler:
         self._lock = threading.Lock()
         self._running: set[_Turn] = set()
         self._waiting: list[_Turn] = []
-        self._waits: deque[tuple[float, float]] = deque(maxlen=_REMEMBERED)
-        self._looked = -math.inf
+        self._waits: deque[tuple[float, float]] = deque(maxlen=_MOST_WAITS)
+        self._checked_at = -math.inf
 
     @property
     def wait(self) -> float:
         """How long a computation waited lately before it could begin, on average [s]."""
-        since = self._clock() - _LATELY
+        since = self._clock() - _WAITS_WINDOW
         waits = [wait for at, wait in list(self._waits) if at > since]
         return sum(waits) / len(waits) if waits else 0.0
 
@@ -123,10 +89,10 @@ class FairScheduler:
             self._waiting.append(mine)
             self._grant()
         # One waiting thread checks for all: more checks would keep the interpreter from the event loop and pictures.
-        while not mine.granted.wait(_LOOK * min(len(self._waiting), _MOST_LOOKS)):
+        while not mine.granted.wait(_CHECK_INTERVAL * min(len(self._waiting), _LONGEST_CHECK_MULTIPLE)):
             if stop:
                 self.stopped(stop)
-            elif self._clock() - self._looked >= _LOOK:
+            elif self._clock() - self._checked_at >= _CHECK_INTERVAL:
                 with self._lock:
                     self._grant()
         return mine
@@ -156,7 +122,7 @@ class FairScheduler:
                 turn.begins = False
                 self._grant()
             now = self._clock()
-            if now - turn.at < _SLICE:
+            if now - turn.at < _TIME_SLICE:
                 return False
             mine = True, True, turn.cpu_time.used
             if any(other.rank(now) < mine for other in self._waiting):
@@ -167,8 +133,8 @@ class FairScheduler:
 
     def _grant(self) -> None:
         """With the lock held: give turns to those with the best claims."""
-        self._looked = now = self._clock()
-        # Where many wait, sorting them costs more than seeing that there is room for none.
+        self._checked_at = now = self._clock()
+        # Mostly there is room for none, and finding that out is cheaper than sorting.
         if not any(self._has_room(one, now) for one in self._waiting):
             return
         for one in sorted(self._waiting, key=lambda one: one.rank(now)):
@@ -224,7 +190,7 @@ class TurnFlag(Flag):
     @property
     def begins(self) -> bool:
         """Whether the computation has just begun: there is no result yet, and it has not taken long."""
-        return self._spent < _BEGINNING
+        return self._spent < _BEGINNING_CPU_TIME
 
     def set(self) -> None:
         """Ask for the end, even of the wait for a turn."""

@@ -46,4 +46,4 @@ def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:
     values, errors, seconds = np.log(np.array(known)).T
     at = np.log(value)
     return PlacedSetting(setting.method, label(setting), float(np.exp(np.interp(at, values, errors))),
-               float(np.exp(np.interp(at, values, seconds))))
+                         float(np.exp(np.interp(at, values, seconds))))

@@ -18,14 +18,14 @@ WHOLE_PICTURE = 120.0
 UNASKED_CURVE = 120.0
 
 #: Drive periods before the first picture, and in it.
-_PERIODS = 2 + PERIODS
+_FIRST_PICTURE_PERIODS = 2 + PERIODS
 #: Drive periods of all points of a curve: some 75 to 150 points of a hundred periods.
 _CURVE_PERIODS = 10_000
 
 
 def check_first_picture(scene: Scene) -> None:
     """Raise `OverBudget` if the first picture would take too long; the sentence says what would fit."""
-    refuse_long_picture(scene, _PERIODS, samples_for(scene), FIRST_PICTURE)
+    refuse_long_picture(scene, _FIRST_PICTURE_PERIODS, samples_for(scene), FIRST_PICTURE)
 
 
 class RefusedPicture(BadInput):

@@ -9,7 +9,7 @@ from .host import Host
 
 
 class Debounce:
-    """Calls an action when so many seconds have passed since the last `start`, with the document locked."""
+    """Calls an action with the document locked, a quiet time after the last `start`."""
 
     def __init__(self, host: Host, seconds: float) -> None:
         self._host = host

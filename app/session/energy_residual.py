@@ -10,13 +10,13 @@ from granchain_core.result import residual
 from granchain_core.stop import Stop
 
 #: Tolerance per step over the accuracy asked for: small, so that the residual is not the account's own error.
-_FINENESS = 0.01
+_TOLERANCE_PART = 0.01
 
 
 def with_account(picture: Settled, stop: Stop) -> Settled:
     """The picture with its energy residual over the periods shown. Raises `Cancelled`."""
     run = picture.run
-    setting = adaptive_setting(max(1e-13, _FINENESS * run.scene.accuracy))
+    setting = adaptive_setting(max(1e-13, _TOLERANCE_PART * run.scene.accuracy))
     engine = Engine(run.scene, setting, 1, balance=True, stop=stop)
     engine.start(picture.state)
     samples = engine.record(max(1, round((len(run.time) - 1) / run.samples)))

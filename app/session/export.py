@@ -22,7 +22,7 @@ from .session import without_frequency
 _FORCES = {"largest output force [N]": "max_output_force", "its elastic part [N]": "max_output_force_elastic",
            "largest input force [N]": "max_input_force"}
 #: Relative difference above which a program reports that its result differs from the page's: the last of six digits.
-_SAME = 5e-6
+_SAME_DIFFERENCE = 5e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,7 +123,7 @@ fields = {pprint.pformat(_FORCES, sort_dicts=False, width=100)}
 here = {{name: float(getattr(run, field)) for name, field in fields.items()}}
 print(run.regime.sentence)
 for name, value in here.items():
-    same = abs(value - page[name]) <= {_SAME:g} * abs(page[name])
+    same = abs(value - page[name]) <= {_SAME_DIFFERENCE:g} * abs(page[name])
     print(f"{{name:26}} {{value:.6g}}", "as on the page" if same else f"but the page had {{page[name]:.6g}}")"""
     pieces = [("", head), ("The motion, settled.", picture), ("Its largest forces.", numbers)]
     pieces += [(f"The resonance curve, {start}.", _curve(start, points, screen)) for start, points
@@ -179,7 +179,7 @@ EXPORTS = {
     "trains": "forces over time, CSV", "curve": "resonance curve, CSV", "hdf5": "everything, HDF5",
     "script": "Python script that computes it again", "notebook": "Jupyter notebook that computes it again",
 }
-#: What of it is a text: the end of its name, and how it is written.
+#: Those that are texts: the end of the file name, and the function that writes the text.
 TEXTS: dict[str, tuple[str, Callable[[Screen], str]]] = {
     "trains": ("-trains.csv", lambda screen: trains_csv(screen.run)),
     "curve": ("-curve.csv", lambda screen: curve_csv(screen.curves)),

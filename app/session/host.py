@@ -12,7 +12,11 @@ from .session import Session
 
 
 class Host(Protocol):
-    """One visitor's dashboard, as its pages see it. Only `next_tick` may be called from any thread."""
+    """One visitor's dashboard, as its pages see it.
+
+    Any thread may call `next_tick` and read the flags `busy`, `awaiting_picture` and `curve_computing`. Everything else
+    is used with the document locked.
+    """
 
     session: Session
 
@@ -35,10 +39,10 @@ class Host(Protocol):
         """Everything that is computed for this visitor, or could be."""
 
     def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` with the document locked, as soon as that is possible; this may be called from any thread."""
+        """Call `action` with the document locked, as soon as that is possible; from any thread."""
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` with the document locked, so many seconds from now."""
+        """Call `action` with the document locked, after `seconds`."""
 
     def on_close(self, action: Callable[[], object]) -> None:
         """Call `action` when the visitor leaves; nothing is called by `next_tick` or `call_later` from then on."""
@@ -57,7 +61,7 @@ class Host(Protocol):
         """
 
     def address_changed(self) -> None:
-        """What the address of the page says has changed, but no knob has."""
+        """Send the page its new address: something that a link carries has changed, but no knob."""
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         """Open a scene, maybe another preset, settled from `state` or from rest.

@@ -11,12 +11,13 @@ from granchain_core import LiveChain, Run, Scene, State
 from granchain_core.run.live import joined
 
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
-from ..serve.turns import CpuTime, TurnFlag
+from ..serve.cpu_time import CpuTime
+from ..serve.turns import TurnFlag
 
 #: Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden.
 _LONGEST_STEP = 0.1
 #: Longest time [s] that one step is to compute.
-_LONGEST_COMPUTED = 0.1
+_LONGEST_COMPUTING = 0.1
 
 
 @dataclass(frozen=True)
@@ -70,7 +71,7 @@ class LiveRun:
     def step(self, periods_per_second: float) -> LivePicture:
         """Advance by the viewing time since the last step; in slow motion, wait for the next sample.
 
-        No step takes longer than `_LONGEST_COMPUTED`, so that a slow chain lags behind the clock and not behind its
+        No step takes longer than `_LONGEST_COMPUTING`, so that a slow chain lags behind the clock and not behind its
         knobs.
         """
         rate = periods_per_second * self.samples
@@ -103,7 +104,7 @@ class LiveRun:
         self._owed = max(0.0, self._owed - samples)
         began = time.thread_time()
         run = self._chain.advance(samples)
-        self._most = max(1, int(samples * _LONGEST_COMPUTED / max(time.thread_time() - began, 1e-6)))
+        self._most = max(1, int(samples * _LONGEST_COMPUTING / max(time.thread_time() - began, 1e-6)))
         self._shown += samples
         self._remember(run)
         return LivePicture(self._window.add(run), run, self._shown / self.samples)

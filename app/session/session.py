@@ -13,7 +13,7 @@ from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
-from ..serve.turns import CpuTime
+from ..serve.cpu_time import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
 from .share import EXTRAS, QUESTION, SPEEDS, START, VIEW, encode, pins_in
@@ -36,7 +36,7 @@ class Session:
     scene: Scene = field(default_factory=lambda: scene("sec2"))
     mode: str = "settled"
     start: str = "rest"
-    look: str = "auto"
+    theme: str = "auto"
     scale: str = "same"
     curves: str = "auto"
     place: dict[str, str] = field(default_factory=dict)

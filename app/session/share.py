@@ -36,8 +36,8 @@ SPEEDS = (1.0, 0.1, 0.25, 0.5, 2.0, 5.0, 20.0, 100.0)
 class ViewField:
     """A view setting of a link: its values, the default first, and the attribute of `Session` that keeps it.
 
-    `read` makes the attribute of the link's text, `text` the text of the attribute. A field that the browser knows best
-    is added to the link there (`by_browser`).
+    `read` converts the link's text to the attribute, `text` converts the attribute to text. A field `by_browser` is
+    added to the link by the browser, which alone knows its value.
     """
 
     attribute: str
@@ -47,15 +47,15 @@ class ViewField:
     by_browser: bool = False
 
 
-#: The view settings by their names in a link; a row is all that a further one needs besides its attribute. "look" is
-#: the theme; at "auto" the browser chooses. "curves" has every choice of them; without it a scene shows its own.
+#: The view settings by their names in a link; one more needs a row here and its attribute. In links the theme is called
+#: "look"; at "auto" the browser chooses it. "curves" has every combination; without it a scene shows its own curves.
 VIEW: dict[str, ViewField] = {
     "mode": ViewField("mode", ("settled", "live")),
     "start": ViewField("start", ("rest", "previous")),
     "scale": ViewField("scale", ("same", "fit")),
     "curves": ViewField("curves", ("auto", *sorted({joined(some) for size in range(5)
                                                     for some in combinations(CURVES, size)}))),
-    "look": ViewField("look", ("auto", "light", "dark", "projector"), by_browser=True),
+    "look": ViewField("theme", ("auto", "light", "dark", "projector"), by_browser=True),
     "speed": ViewField("speed", tuple(f"{speed:g}" for speed in SPEEDS), float, lambda speed: f"{speed:g}"),
     "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }
@@ -66,9 +66,10 @@ EXTRAS: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW
 START = "from"
 PINS = ("pin", "pin2", "pin3")
 QUESTION = "question"
-#: Most characters of a link, and how many of them are left to what the browser adds: tab, page, look, embed.
+#: Most characters of a link.
 LONGEST = 4500
-_OF_THE_BROWSER = 100
+#: How many of them are left for what the browser adds: tab, page, look, embed.
+_ADDED_BY_BROWSER = 100
 
 
 def encode(shown: Scene, extras: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
@@ -86,7 +87,7 @@ def encode(shown: Scene, extras: Mapping[str, str], texts: Mapping[str, str] | N
     fields.update({name: text for name, text in (texts or {}).items() if text})
     query = urlencode(fields)
     for name in reversed(PINS):
-        if len(query) + _OF_THE_BROWSER <= LONGEST:
+        if len(query) + _ADDED_BY_BROWSER <= LONGEST:
             break
         if fields.pop(name, None):
             query = urlencode(fields)

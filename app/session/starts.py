@@ -1,5 +1,6 @@
-"""The state in which a motion began, as a text in a link: without it, nobody could repeat a picture that hysteresis
-decides.
+"""The state in which a motion began, as text in a link.
+
+Where several motions are possible, the start decides which is reached, so a picture cannot be repeated without it.
 
 Little-endian doubles, in base64 for addresses: drive phase, N displacements [m], N velocities [m/s].
 """

@@ -27,12 +27,13 @@ FOLDER = ASSETS / "stories"
 LOOKS = ("chain", "left", "map", "right", "curve")
 #: Which page a step may offer to open: those over the pictures (tests/dashboard/test_table.py).
 PAGES = ("probe", "stability", "accuracy", "branches", "analysis", "observer", "hard", "paper")
-#: How far a computed force may be from the one a story tells, where the motion repeats and where it does not: there the
-#: largest force depends on the periods that are recorded.
-TOLERANCE, IRREGULAR = 5e-3, 0.1
-_STORY = ("title", "about", "order", "steps")
-_STEP = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "page", "expect")
-_EXPECT = ("regime", "period", "output", "input", "pulse", "speed")
+#: Relative difference that a computed force may have from the one a story tells, where the motion repeats.
+TOLERANCE = 5e-3
+#: The same where it does not repeat: there the largest force depends on the periods that are recorded.
+IRREGULAR_TOLERANCE = 0.1
+_STORY_FIELDS = ("title", "about", "order", "steps")
+_STEP_FIELDS = ("say", "ask", "answer", "scene", "set", "via", "look", "curves", "page", "expect")
+_EXPECT_FIELDS = ("regime", "period", "output", "input", "pulse", "speed")
 #: The regime of a motion that nothing drives, as a story calls it.
 UNDRIVEN = "undriven"
 #: Samples in the time 1/f in which a pulse is followed.
@@ -101,7 +102,7 @@ def read_story(path: Path) -> Story:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
         raise BadInput(f"it is not a TOML file: {problem}.") from None
-    _known(data, _STORY, "a story")
+    _known(data, _STORY_FIELDS, "a story")
     steps = data.get("steps")
     if not isinstance(steps, list) or not steps:
         raise BadInput("a story needs at least one [[steps]].")
@@ -158,7 +159,7 @@ def differences(step: StoryStep, shown: Run) -> list[str]:
         middle = len(first.contact) // 2
         numbers += [("pulse's force", "N", expected.pulse, float(first.force[middle])),
                     ("pulse's speed", "m/s", expected.speed, float(first.speed_in_metres[middle]))]
-    allowed = IRREGULAR if regime in NEVER_REPEATING else TOLERANCE
+    allowed = IRREGULAR_TOLERANCE if regime in NEVER_REPEATING else TOLERANCE
     return found + [f"the {name} is {computed:.4g} {unit}, not {number:.4g} {unit}."
                     for name, unit, number, computed in numbers if abs(computed - number) > allowed * computed]
 
@@ -172,7 +173,7 @@ def _step(number: int, data: Any) -> StoryStep:
     try:
         if not isinstance(data, dict):
             raise BadInput("it is not a table.")
-        _known(data, _STEP, "a step")
+        _known(data, _STEP_FIELDS, "a step")
         shown = scene(_text(data, "scene", "it")).evolve(**_table(data, "set"))
         via = data.get("via", [])
         if not isinstance(via, list):
@@ -180,15 +181,15 @@ def _step(number: int, data: Any) -> StoryStep:
         for frequency in via:
             shown.evolve(f=frequency)
         return StoryStep(_text(data, "say", "it"), str(data.get("ask", "")), str(data.get("answer", "")), shown,
-                    _expect(_table(data, "expect")), tuple(map(float, via)),
-                    _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *EXTRAS["curves"])),
-                    _one_of(data, "page", ("", *PAGES)))
+                         _expect(_table(data, "expect")), tuple(map(float, via)),
+                         _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *EXTRAS["curves"])),
+                         _one_of(data, "page", ("", *PAGES)))
     except BadInput as problem:
         raise BadInput(f"step {number}: {problem}") from None
 
 
 def _expect(data: dict[str, Any]) -> Expect:
-    _known(data, _EXPECT, "expect")
+    _known(data, _EXPECT_FIELDS, "expect")
     regime = _one_of(data, "regime", ("periodic", *NEVER_REPEATING, UNDRIVEN))
     period = data.get("period")
     if (period is None) == (regime == "periodic") or not isinstance(period, (int, type(None))):

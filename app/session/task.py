@@ -10,7 +10,7 @@ from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
 from granchain_core.stop import Stop
 
 from ..serve.compiler import COMPILER
-from ..serve.delays import LONGEST_POLL, PICTURE_POLL
+from ..serve.delays import LONGEST_PICTURE_POLL, PICTURE_POLL
 from ..serve.queues import Queue
 from ..serve.turns import Flag
 from .host import Host
@@ -62,7 +62,7 @@ class Job:
         waits, pause = to or (lambda: self._host.awaiting_picture), PICTURE_POLL
         while waits() and not self.stop:
             time.sleep(pause)
-            pause = min(2.0 * pause, LONGEST_POLL)
+            pause = min(2.0 * pause, LONGEST_PICTURE_POLL)
 
 
 class Task:
@@ -91,7 +91,7 @@ class Task:
         """Queue `work`, in place of what was started before."""
         self.cancel()
         self._job = job = Job(self._host, self._say)
-        self._queue.submit(self._run, work, job)
+        self._queue.submit(self._run, work, job, owner=self._host)
 
     def cancel(self) -> bool:
         """Cancel the work under way, so that nothing more of it arrives; return whether there was any."""

@@ -10,7 +10,7 @@ from layout_faults import faults
 from playwright.sync_api import Page, ViewportSize, expect
 from server import until
 
-from app.session.stories import IRREGULAR, TOLERANCE, UNDRIVEN, Story, stories, told_words
+from app.session.stories import IRREGULAR_TOLERANCE, TOLERANCE, UNDRIVEN, Story, stories, told_words
 
 LAPTOP, PHONE = ViewportSize(width=1280, height=800), ViewportSize(width=390, height=844)
 
@@ -36,7 +36,7 @@ def shows(page: Page, story: Story, number: int) -> None:
     words = "there is no resonance curve"
     expect(curve).to_contain_text(words) if regime == "not driven" else expect(curve).not_to_contain_text(words)
     # The line joins samples, and the top may lie between two: at 96 a period up to 0.7 % higher in these scenes.
-    allowed = max(TOLERANCE, 7e-3) if step.expect.period else IRREGULAR
+    allowed = max(TOLERANCE, 7e-3) if step.expect.period else IRREGULAR_TOLERANCE
     page.wait_for_function(f"([told, allowed]) => Math.abs(({FORCE})() / told - 1) < allowed",
                            arg=[step.expect.output, allowed + 1e-3])
 

@@ -40,11 +40,11 @@ def point(f: float) -> Progress:
 
 def test_points_that_come_soon_after_each_other_are_drawn_together(monkeypatch: pytest.MonkeyPatch) -> None:
     now = [100.0]
-    monkeypatch.setattr("app.curve.page.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("app.curve.reports.time.monotonic", lambda: now[0])
     host, figure = Host(), CurveFigure(lambda _: None)
     curves = CurveController(host, figure, CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
     for f in (500.0, 600.0, 700.0):
-        curves._report(point(f))
+        curves._reports.add(point(f))
         host.call_waiting()
     assert len(figure.points("rest")) == 1
     (seconds, draw), = host.later
@@ -58,12 +58,12 @@ def test_a_stopped_curve_is_not_under_way_again_when_its_last_points_would_be_dr
         monkeypatch: pytest.MonkeyPatch) -> None:
     """A page that covers the curve stops it; a map that waits for the curve to end would wait for ever."""
     now = [100.0]
-    monkeypatch.setattr("app.curve.page.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("app.curve.reports.time.monotonic", lambda: now[0])
     host = Host()
     curves = CurveController(host, CurveFigure(lambda _: None), CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
     curves._remaining = ["rest"]
     for f in (500.0, 600.0):
-        curves._report(point(f))
+        curves._reports.add(point(f))
         host.call_waiting()
     assert curves.computing and len(host.later) == 1  # the second waits to be drawn
     curves.stop()

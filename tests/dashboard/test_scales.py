@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.dashboard.scales import FILE, Scales
+from app.dashboard.scales import FILE, PictureScales
 from app.frames import samples_for, settled_frames
 from app.parts.chain import energy_labels, frames_message
 from app.session.session import Session
@@ -23,7 +23,7 @@ LOUD, QUIET = (scene("sec2").evolve(f=f) for f in (1130.0, 2500.0))
 
 
 def test_pictures_of_a_scene_share_a_scale_and_a_larger_one_widens_it() -> None:
-    scales = Scales(Session())
+    scales = PictureScales(Session())
     first = scales.of(frames_at(LOUD), LOUD)
     assert scales.of(frames_at(QUIET), QUIET) == first
     driven = LOUD.evolve(A0=2e-6)
@@ -35,11 +35,11 @@ def test_pictures_of_a_scene_share_a_scale_and_a_larger_one_widens_it() -> None:
 
 
 def test_a_fitted_picture_is_drawn_to_its_own_values() -> None:
-    scales = Scales(Session(scale="fit"))
+    scales = PictureScales(Session(scale="fit"))
     frames = frames_at(QUIET)
     own = scales.of(frames, QUIET)
     assert own == frames.extremes
-    assert own.kinetic_energy < 0.05 * Scales(Session()).of(frames, QUIET).kinetic_energy
+    assert own.kinetic_energy < 0.05 * PictureScales(Session()).of(frames, QUIET).kinetic_energy
     message = frames_message(1, frames, QUIET, own, True, [], False, False, True)
     assert message["scale"] is None
 

@@ -17,6 +17,11 @@ def test_a_name_that_is_taken_is_refused(row: TabSpec) -> None:
         check_names((*TABS, row))
 
 
+def test_every_folder_of_a_page_has_its_row() -> None:
+    folders = {path.parent.name for path in (Path(__file__).parents[2] / "app" / "pages").glob("*/__init__.py")}
+    assert folders == {row.page.__module__.split(".")[2] for row in PAGES}
+
+
 def test_the_browser_calls_the_curve_as_the_server_does() -> None:
     script = Path(__file__).parents[2] / "app" / "dashboard" / "visibility.js"
     assert f'const CURVE_NAME = "{CURVE_NAME}";' in script.read_text(encoding="utf-8")

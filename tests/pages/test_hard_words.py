@@ -8,7 +8,7 @@ import threading
 
 import pytest
 
-from app.pages.hard_cases.view import described, described_cases, digits_of, summary, value_beside
+from app.pages.hard_cases.view import described_cases, described_results, digits_of, summary, value_beside
 from app.pages.hard_cases.work import CaseProcess, Ended, case_of
 from granchain_core import Cancelled, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Measurement, run_case
@@ -30,14 +30,14 @@ def test_a_figure_is_on_the_true_side_of_its_bar(value: float, bar: float, told:
 
 
 def test_a_row_that_fails_keeps_its_figure_and_one_that_is_not_computed_its_sentence() -> None:
-    shown = described("touch and graze", measured(Measurement("missed", 3.0, 0.0), Measurement("moment", 5e-11, 1e-9)))
+    shown = described_results("touch and graze", measured(Measurement("missed", 3.0, 0.0), Measurement("moment", 5e-11, 1e-9)))
     assert [(row["what"], row["value"], row["limit"], row["passed"]) for row in shown["rows"]] == [
         ("missed", "3", "0", False), ("moment", "5e-11", "1e-9", True)]
 
     def fails(quick: bool) -> list[Measurement]:
         raise NumbersFailed("It gave up.", "chatter")
 
-    (row,) = described("x", run_case(Case("x", "h", "n", "o", fails), quick=True))["rows"]
+    (row,) = described_results("x", run_case(Case("x", "h", "n", "o", fails), quick=True))["rows"]
     assert not row["passed"] and row["value"] == "no number" and row["note"] == "It gave up."
     json.dumps(shown, allow_nan=False)
 
@@ -46,7 +46,7 @@ def test_names_with_a_colon_are_taken_off_as_a_whole() -> None:
     name = "no damping, driven: chaos"
     assert case_of(name) is not None
     rows = run_case(Case(name, "h", "n", "o", lambda _: [Measurement("energy: balance", 0.0, 1.0)]), quick=True)
-    assert described(name, rows)["rows"][0]["what"] == "energy: balance"
+    assert described_results(name, rows)["rows"][0]["what"] == "energy: balance"
 
 
 def test_the_summary_names_what_failed() -> None:

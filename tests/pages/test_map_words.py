@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.pages.map.page import COLUMNS, ROWS, page_grid
-from app.pages.map.view import cells_message, described, head_message
+from app.pages.map.view import cells_message, described_attractor, head_message
 from app.pictures.theme import THEMES
 from granchain_core import scene
 from granchain_core.diagram import attractors
@@ -35,7 +35,7 @@ def test_cells_are_sent_as_rows_with_what_is_done_and_the_scale_of_all() -> None
 
 
 def test_an_attractor_is_told_with_share_kind_and_evidence() -> None:
-    found = [described(one) for one in attractors(scene("sec2").evolve(f=1595.0), random_states=24)]
+    found = [described_attractor(one) for one in attractors(scene("sec2").evolve(f=1595.0), random_states=24)]
     periodic, irregular = found[0], found[-1]
     assert periodic["words"].startswith("period 4, 1:4 resonance, |μ| ") and "error" in periodic["force"]
     assert irregular["words"].startswith("quasi-periodic, Lyapunov exponent") and "error" not in irregular["force"]

@@ -7,7 +7,7 @@ import pytest
 from bokeh.models import Range1d
 
 from app.frames import LiveWindow, settled_frames, with_jumps
-from app.parts.trains import Trains
+from app.parts.trains import ForceTrains
 from granchain_core import LiveChain, scene, settled
 
 CHAIN = scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-4)
@@ -43,7 +43,7 @@ def test_a_pull_and_a_lasting_pressure_are_told_beside_the_largest_force() -> No
     """The driver's contact pulls when it opens at 340 Hz; at 2500 Hz the wall is pressed all the time."""
     for f, told in ((340.0, (True, False)), (2500.0, (True, True))):
         run = settled(scene("sec2").evolve(f=f)).run
-        frames, trains = settled_frames(run), Trains(Range1d())
+        frames, trains = settled_frames(run), ForceTrains(Range1d())
         trains.update(frames, frames.time, frames.extremes, True)
         words = trains.peak_words(frames, (run.max_input_force, run.max_output_force), True)
         assert tuple(bool(least) for _, least in words) == told

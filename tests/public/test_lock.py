@@ -1,4 +1,4 @@
-"""The lock file fits pyproject.toml, and names the hash of everything."""
+"""The lock files fit pyproject.toml and name the hash of everything, and the image installs nothing without one."""
 
 from __future__ import annotations
 
@@ -6,10 +6,18 @@ import re
 import tomllib
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
-LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8").replace("\\\n", " ")
-LINES = [line for line in LOCK.splitlines() if not line.startswith("#")]
-WANTED = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+WANTED = PROJECT["project"]["dependencies"]
+LOCKS = {"requirements.lock": WANTED, "requirements-build.lock": PROJECT["build-system"]["requires"]}
+
+
+def lines_of(lock: str) -> list[str]:
+    """A line for each package."""
+    text = (ROOT / lock).read_text(encoding="utf-8").replace("\\\n", " ")
+    return [line for line in text.splitlines() if not line.startswith("#")]
 
 
 def numbers(version: str) -> tuple[int, ...]:
@@ -17,17 +25,28 @@ def numbers(version: str) -> tuple[int, ...]:
     return tuple(map(int, re.findall(r"\d+", version)))
 
 
-def test_every_line_is_an_exact_version_with_hashes() -> None:
-    for line in LINES:
+@pytest.mark.parametrize("lock", LOCKS)
+def test_every_line_is_an_exact_version_with_hashes(lock: str) -> None:
+    for line in lines_of(lock):
         assert re.fullmatch(r"[a-z0-9._-]+==\S+(\s+--hash=sha256:[0-9a-f]{64})+", line), line[:60]
 
 
-def test_what_pyproject_asks_for_is_locked_within_its_bounds() -> None:
-    locked = dict(re.match(r"([a-z0-9._-]+)==(\S+)", line).groups() for line in LINES)  # type: ignore[union-attr]
-    for wanted in WANTED:
+@pytest.mark.parametrize("lock", LOCKS)
+def test_what_pyproject_asks_for_is_locked_within_its_bounds(lock: str) -> None:
+    locked = dict(re.match(r"([a-z0-9._-]+)==(\S+)", line).groups() for line in lines_of(lock))  # type: ignore[union-attr]
+    for wanted in LOCKS[lock]:
         name, least, most = re.match(r"([a-z0-9._-]+)>=([\d.]+)(?:,<([\d.]+))?", wanted).groups()  # type: ignore[union-attr]
         assert numbers(least) <= numbers(locked[name]), wanted
         assert most is None or numbers(locked[name]) < numbers(most), wanted
+
+
+def test_the_image_installs_nothing_without_a_hash() -> None:
+    docker = (ROOT / "Dockerfile").read_text(encoding="utf-8").replace("\\\n", " ")
+    fetching = re.findall(r"\bpip (?:install|wheel) ([^&\n]+)", docker)
+    assert len(fetching) == 4
+    for options in fetching:
+        assert "--require-hashes" in options or "--no-deps" in options, options
+        assert "--no-build-isolation" in options or not options.rstrip().endswith(" ."), options
 
 
 def test_bokeh_has_no_known_weakness_of_its_websocket() -> None:

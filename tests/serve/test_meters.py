@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from app.serve.turns import CpuTime, FairScheduler
+from app.serve.cpu_time import CpuTime
+from app.serve.turns import FairScheduler
 from granchain_core import Stop
 
 

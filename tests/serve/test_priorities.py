@@ -10,9 +10,10 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
+from app.serve.cpu_time import CpuTime
 from app.serve.priorities import give_way, gives_way
 from app.serve.queues import LatestWins, Queue
-from app.serve.turns import CpuTime, FairScheduler, TurnFlag
+from app.serve.turns import FairScheduler, TurnFlag
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the niceness is that of the process")
 

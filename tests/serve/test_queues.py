@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 
+import waiting
+
 from app.serve.queues import LatestWins, Queue
 
 
@@ -26,6 +28,36 @@ def test_what_waits_and_what_is_under_way_is_counted() -> None:
     go_on.set()
     assert all(one.result(20) for one in ended)
     assert queue.waiting == 0
+
+
+def test_an_owner_beyond_its_share_waits_behind_others() -> None:
+    """Two pieces of work of one visitor at a time: the third begins when one of them has ended, and not before."""
+    queue, go_on, order = Queue("tested", 4, share=2), [threading.Event() for _ in range(4)], list[str]()
+
+    def work(name: str, until: threading.Event) -> None:
+        order.append(name)
+        assert until.wait(120)
+
+    mine = [queue.submit(work, name, until, owner="me") for name, until in zip("abc", go_on, strict=False)]
+    other = queue.submit(work, "another's", go_on[3], owner="another")
+    waiting.until(lambda: len(order) == 3)
+    assert set(order) == {"a", "b", "another's"} and queue.busy == 3
+    go_on[1].set()
+    waiting.until(lambda: len(order) == 4)
+    assert order[-1] == "c" and not mine[0].done()
+    for one in go_on:
+        one.set()
+    for future in (*mine, other):
+        future.result(60)
+    waiting.until(lambda: queue.busy == 0)
+    assert not queue._taken and not queue._held, "nothing of a visitor is kept"
+
+
+def test_work_that_fails_gives_its_share_back() -> None:
+    queue = Queue("tested", 1, share=1)
+    failed = queue.submit(int, "no number", owner="me")
+    assert queue.submit(int, "7", owner="me").result(60) == 7
+    assert isinstance(failed.exception(60), ValueError)
 
 
 def test_after_a_failure_that_cannot_be_reported_the_next_picture_comes() -> None:

@@ -16,7 +16,7 @@ from app.dashboard.layout import Views
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
 from app.parts.result_figure import ResultFigure
-from app.scripts import FILES, address, module
+from app.scripts import FILES, address, files_by_name, module
 from app.server import Access
 
 APP = Path(scripts.__file__).parent
@@ -60,8 +60,12 @@ def test_modules_keep_the_layers_of_the_app(name: str) -> None:
         assert theirs <= {mine, "parts"}
 
 
-def test_names_are_unique() -> None:
-    assert sorted(path.name for path in APP.rglob("*.js")) == sorted(FILES)
+def test_a_name_that_is_used_twice_is_refused(tmp_path: Path) -> None:
+    for folder in ("one", "other"):
+        (tmp_path / folder).mkdir()
+        (tmp_path / folder / "plot.js").touch()
+    with pytest.raises(ValueError, match=r"other.plot\.js and .+one.plot\.js have one name"):
+        files_by_name("*.js", tmp_path)
 
 
 def test_every_component_renders_a_module_of_its_own() -> None:

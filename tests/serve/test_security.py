@@ -24,6 +24,7 @@ from app.pages.analysis import questions
 from app.serve import guard
 from app.serve.compiler import Compiler
 from app.serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
+from app.serve.queues import LONG
 from app.server import Access
 from app.session import starts
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
@@ -43,15 +44,17 @@ ASKED = dict(re.findall(r"^\| ([^|]+) \| (\d+) \|$", (Path(__file__).parents[2] 
 def test_the_limits_of_the_document_are_those_of_the_code() -> None:
     """Literally as the table has them, so that neither changes alone."""
     assert {
-        "a request's head": f"{server.IDLE} s",
-        "a request's body": f"{server.BODY} s, {server.LARGEST_BODY // 1000} kB",
-        "a connection that sends nothing": f"{server.IDLE} s",
-        "a websocket that does not answer pings": f"{server.PING} to {2 * server.PING} s",
+        "a request's head": f"{server.IDLE_TIME} s",
+        "a request's body": f"{server.BODY_TIME} s, {server.LARGEST_BODY // 1000} kB",
+        "a connection that sends nothing": f"{server.IDLE_TIME} s",
+        "a websocket that does not answer pings": f"{server.PING_INTERVAL} to {2 * server.PING_INTERVAL} s",
         "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {LARGEST_UPLOAD / 1e6:g} MB in base64",
         "websocket frames": f"{guard.FRAMES_A_SECOND:g} a second, {guard.FRAMES_AT_ONCE:g} at once; then the connection is closed "
                             "(1008)",
         "a link": f"{LONGEST} characters",
         "pages at once": f"{Access().most_visitors}",
+        "long computations of a visitor at once": f"{LONG.share} (maps, searches, branches, analyses, figures of the paper); "
+                                                  "more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
     } == LIMITS
@@ -174,7 +177,7 @@ def test_there_are_at_most_so_many_visitors() -> None:
 
 
 def test_a_connection_that_sends_half_a_request_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "IDLE", 1)
+    monkeypatch.setattr(server, "IDLE_TIME", 1)
     one = Listening(Access(secret=SECRET))
     try:
         with socket.create_connection(("127.0.0.1", one.port), timeout=30) as half:
@@ -185,7 +188,7 @@ def test_a_connection_that_sends_half_a_request_is_closed(monkeypatch: pytest.Mo
 
 
 def test_a_websocket_that_answers_no_ping_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "PING", 1)
+    monkeypatch.setattr(server, "PING_INTERVAL", 1)
     one = Listening(Access(secret=SECRET))
     try:
         status, silent = one.open(one.token())

@@ -9,9 +9,10 @@ from typing import Any
 import pytest
 from waiting import until
 
+from app.serve.cpu_time import CpuTime
 from app.serve.queues import LatestWins, Queue
 from app.serve.shared import Shared
-from app.serve.turns import CpuTime, Flag, TurnFlag
+from app.serve.turns import Flag, TurnFlag
 from granchain_core import Cancelled
 
 
@@ -105,7 +106,7 @@ def test_an_error_reaches_all_and_is_not_kept() -> None:
 
 
 def test_a_first_result_that_takes_long_gives_way_to_a_newer_request(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.serve.queues._PATIENCE", 0.05)
+    monkeypatch.setattr("app.serve.queues._FIRST_RESULT_TIME", 0.05)
     delivered: list[object] = []
     jobs = LatestWins(delivered.append, delivered.append)
     begun = threading.Event()

@@ -7,7 +7,8 @@ import threading
 import pytest
 from waiting import until
 
-from app.serve.turns import CpuTime, FairScheduler, SharedCpuTime, TurnFlag
+from app.serve.cpu_time import CpuTime, SharedCpuTime
+from app.serve.turns import FairScheduler, TurnFlag
 from granchain_core import Stop
 
 
@@ -32,7 +33,7 @@ def test_a_party_pays_together_and_has_the_claim_of_its_poorest() -> None:
 
 
 def test_who_is_stopped_while_waiting_does_not_wait_for_the_next_look(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.serve.turns._LOOK", 3600.0)
+    monkeypatch.setattr("app.serve.turns._CHECK_INTERVAL", 3600.0)
     turns = FairScheduler(1, lambda: 0.0)
     held = turns.begin(CpuTime(), Stop())
     slots = [TurnFlag(CpuTime(), turns) for _ in range(3)]

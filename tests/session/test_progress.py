@@ -11,7 +11,7 @@ import pytest
 
 from app.pages.branches.page import WORDS as BRANCHES
 from app.pages.hard_cases.page import WORDS as HARD_CASES
-from app.pages.map.page import WORDS as MAP
+from app.pages.map.page import SEARCH_WORDS
 from app.session import progress as module
 from app.session.progress import UNDER_WAY, Status, StatusWords
 
@@ -39,7 +39,8 @@ def test_what_is_over_has_nothing_to_say_unless_it_was_stopped() -> None:
 def test_what_is_under_way_is_running_on_every_page() -> None:
     for status in set(UNDER_WAY) - {"compiling"}:
         assert HARD_CASES.of(status)["running"]
-    assert MAP.of("waiting")["progress"] != HARD_CASES.of("waiting")["progress"] == "waiting for its turn …"
+    assert SEARCH_WORDS.of("waiting")["progress"] == HARD_CASES.of("waiting")["progress"] == "waiting for its turn …"
+    assert SEARCH_WORDS.of("searching")["progress"] != HARD_CASES.of("searching")["progress"]
 
 
 def test_every_status_is_under_way_or_still() -> None:

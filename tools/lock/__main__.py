@@ -1,7 +1,8 @@
-"""Writes requirements.lock: what pip chooses for pyproject.toml today, with the hash of each wheel.
+"""Writes the lock files: what pip chooses for pyproject.toml today, with the hash of each wheel.
 
     python -m tools.lock
 
+requirements.lock has what granchain needs, requirements-build.lock what building it needs.
 The versions are those of the first platform; on the others the same are asked for. `pip install --require-hashes
 -r requirements.lock` installs nothing that is not in it. Linux only: the container's system, and that of continuous integration.
 """
@@ -16,7 +17,6 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-LOCK = ROOT / "requirements.lock"
 #: Python and machine of each; the first decides the versions.
 PLATFORMS = (("3.13", "x86_64"), ("3.11", "x86_64"), ("3.12", "x86_64"), ("3.13", "aarch64"))
 _INDEX = "https://pypi.org/simple"
@@ -36,9 +36,8 @@ def chosen(wanted: list[str], python: str, machine: str) -> dict[str, tuple[str,
             for one in found}
 
 
-def main() -> None:
+def write_lock(wanted: list[str], path: Path) -> None:
     """Ask pip for each platform and write the file."""
-    wanted = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["dependencies"]
     versions: dict[str, str] = {}
     hashes: dict[str, set[str]] = {}
     for python, machine in PLATFORMS:
@@ -52,8 +51,15 @@ def main() -> None:
              + ", Linux."]
     for name in sorted(versions):
         lines.append(" \\\n    ".join((f"{name}=={versions[name]}", *(f"--hash=sha256:{one}" for one in sorted(hashes[name])))))
-    LOCK.write_text("\n".join(lines) + "\n", encoding="utf-8")
-    print(f"{len(versions)} packages, {sum(map(len, hashes.values()))} wheels")
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    print(f"{path.name}: {len(versions)} packages, {sum(map(len, hashes.values()))} wheels")
+
+
+def main() -> None:
+    """Write both files."""
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    write_lock(project["project"]["dependencies"], ROOT / "requirements.lock")
+    write_lock(project["build-system"]["requires"], ROOT / "requirements-build.lock")
 
 
 if __name__ == "__main__":

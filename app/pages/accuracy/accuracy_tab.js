@@ -1,4 +1,4 @@
-// The Accuracy tab: error against time in small, and the way to the page. What fills the figure serves the page as well.
+// The Accuracy tab: error against time in small, and the way to the page. The page fills its figure with the same function.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
 import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";

@@ -79,7 +79,7 @@ class AccuracyPage(Page):
         self._view.mark(self.rows, Annotations(
             scene.accuracy, self._agreement, None if best is None else (best.wall_s, best.error),
             None if now is None else (now.wall_s, now.error)), stale=stale, sentence=self._sentence(best),
-            used=self._used(now))
+                        used=self._used(now))
 
     def stop(self) -> None:
         """Stop measuring; the rows measured so far stay."""

@@ -21,7 +21,7 @@ from ...pictures.theme import Theme
 from ...scripts import module
 
 #: If references differ by more than this, the motion is too sensitive to be followed for ten periods.
-_LOST = 1e-4
+_LARGEST_DISAGREEMENT = 1e-4
 
 
 @cache
@@ -89,7 +89,7 @@ def described_reference(found: WorkPrecision) -> dict[str, Any]:
     known = math.isfinite(found.agreement)
     if found.disagreement:
         words = f"The second reference failed: {found.disagreement}"
-    elif found.agreement > _LOST:
+    elif found.agreement > _LARGEST_DISAGREEMENT:
         words = (f"Two references differ by {short_error(found.agreement)}: this motion amplifies every error, "
                  "so errors below that mean nothing here.")
     elif known:

@@ -13,9 +13,9 @@ from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .questions import (
     QUESTIONS,
+    AnalysisQuestion,
     Field,
     Plan,
-    Question,
     chosen_fields,
     offered_fields,
     planned,
@@ -26,7 +26,7 @@ from .questions import (
 from .view import Analysis
 
 #: Parts of a computation between two reports of how far it is.
-_STEPS = 50
+_PROGRESS_STEPS = 50
 
 WORDS = StatusWords("the kernels of the analysis", 20)
 
@@ -43,7 +43,7 @@ class AnalysisPage(Page):
         self._host = host
         self._view = view
         self._task = Task(host, LONG, self._say, "The analysis")
-        self._question: Question | None = None
+        self._question: AnalysisQuestion | None = None
         self._text = ""
         self._fields: tuple[Field, ...] = ()
         self._visible = self._unasked = False
@@ -92,7 +92,7 @@ class AnalysisPage(Page):
         self._offer(question, question.fields(self._host.session.scene), question_text(question))
         self._keep()
 
-    def _offer(self, question: Question, fields: tuple[Field, ...], text: str) -> None:
+    def _offer(self, question: AnalysisQuestion, fields: tuple[Field, ...], text: str) -> None:
         self._task.cancel()
         self._question, self._text, self._fields = question, text, fields
         self._view.ask(question, fields)
@@ -133,8 +133,8 @@ class AnalysisPage(Page):
 
         def report(done: float) -> None:
             job.give_way()
-            if int(_STEPS * done) > reported[0]:
-                reported[0] = int(_STEPS * done)
+            if int(_PROGRESS_STEPS * done) > reported[0]:
+                reported[0] = int(_PROGRESS_STEPS * done)
                 job.next_tick(self._view.update_state, done=done)
 
         job.next_tick(self._view.answer, plan, plan.compute(job.stop, report))

@@ -25,11 +25,21 @@ from ...pictures.spectrum import spectrum as draw_spectrum
 from ...pictures.strobe_diagram import strobe_diagram as draw_strobes
 from ...pictures.theme import Theme
 
-#: Most beads of a chain, values of a knob, starts along an axis, periods and strobes that the page computes; the
-#: commands take more.
-MOST_BEADS, MOST_VALUES, MOST_STARTS, MOST_PERIODS, MOST_STROBES = 300, 200, 40, 2000, 500
-#: Periods recorded of a motion without a period, and samples a period, as of `granchain spectrum`.
-_RECORD, _SAMPLES = 64, 256
+# The page's own limits; the commands take more.
+#: Most beads of a chain.
+MOST_BEADS = 300
+#: Most values of a knob.
+MOST_VALUES = 200
+#: Most starts along an axis of the basins.
+MOST_STARTS = 40
+#: Most drive periods.
+MOST_PERIODS = 2000
+#: Most strobes at one value of a knob.
+MOST_STROBES = 500
+#: Drive periods recorded of a motion that does not repeat, as by `granchain spectrum`.
+_RECORDED_PERIODS = 64
+#: Samples in each of them.
+_SAMPLES_PER_PERIOD = 256
 
 Progress = Callable[[float], None]
 
@@ -64,7 +74,7 @@ class Plan:
 
 
 @dataclass(frozen=True)
-class Question:
+class AnalysisQuestion:
     """A question: its fields for a scene, and its plan from what was chosen, which is checked there."""
 
     name: str
@@ -74,13 +84,13 @@ class Question:
     plan: Callable[[Scene, Mapping[str, str]], Plan]
 
 
-def planned(question: Question, chain: Scene, values: object) -> Plan:
+def planned(question: AnalysisQuestion, chain: Scene, values: object) -> Plan:
     """The plan of a question with the texts that a browser sent. Raises `BadInput` for what is wrong in them."""
     check_range("the Analysis page: N =", chain.N, 1, MOST_BEADS)
     return question.plan(chain, {field.name: field.value for field in chosen_fields(question, chain, values)})
 
 
-def chosen_fields(question: Question, chain: Scene, values: object) -> tuple[Field, ...]:
+def chosen_fields(question: AnalysisQuestion, chain: Scene, values: object) -> tuple[Field, ...]:
     """The fields of a question with the texts that a browser or a link has for them.
 
     Raises `BadInput` for an entry that is in no list. Whether a text is a number in range is asked by `planned`.
@@ -95,7 +105,7 @@ def chosen_fields(question: Question, chain: Scene, values: object) -> tuple[Fie
     return tuple(fields)
 
 
-def offered_fields(question: Question, chain: Scene, kept: Sequence[Field]) -> tuple[Field, ...]:
+def offered_fields(question: AnalysisQuestion, chain: Scene, kept: Sequence[Field]) -> tuple[Field, ...]:
     """The fields of a question for a scene; what was chosen before stays where it still can."""
     chosen = {field.name: field.value for field in kept if field.chosen}
     fields = question.fields(chain)
@@ -104,13 +114,13 @@ def offered_fields(question: Question, chain: Scene, kept: Sequence[Field]) -> t
     return chosen_fields(question, chain, possible)
 
 
-def question_text(question: Question, fields: Sequence[Field] = ()) -> str:
+def question_text(question: AnalysisQuestion, fields: Sequence[Field] = ()) -> str:
     """A question and the values that were chosen, as one text for a link: "strobes?knob=A0&values=31"."""
     values = urlencode({field.name: field.value for field in fields if field.chosen})
     return f"{question.name}?{values}" if values else question.name
 
 
-def read_question(text: str, chain: Scene) -> tuple[Question, tuple[Field, ...]]:
+def read_question(text: str, chain: Scene) -> tuple[AnalysisQuestion, tuple[Field, ...]]:
     """Question and fields of the text of a link. Raises `BadInput` for what is no question and no field of it."""
     name, _, query = text.partition("?")
     question, values = question_of(name[:40]), dict(parse_qsl(query))
@@ -163,10 +173,11 @@ def _spectrum_fields(chain: Scene) -> tuple[Field, ...]:
 
 def _spectrum_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
     def compute(stop: Stop, progress: Progress) -> Any:
-        settled = settle(chain, samples=_SAMPLES, stop=stop)
+        settled = settle(chain, samples=_SAMPLES_PER_PERIOD, stop=stop)
         if settled.regime.period:
             return spectrum(settled.run, chosen["force"])
-        return spectrum(run(chain, 0, _RECORD, _SAMPLES, start=settled.state, stop=stop), chosen["force"])
+        record = run(chain, 0, _RECORDED_PERIODS, _SAMPLES_PER_PERIOD, start=settled.state, stop=stop)
+        return spectrum(record, chosen["force"])
 
     return Plan(f"Spectrum of the {chosen['force']} force, {_about(chain)}",
                 _command("spectrum", chain, f"--force {chosen['force']}"), ((chain, MOTION_KERNELS),), compute,
@@ -244,19 +255,23 @@ def _basin_plan(chain: Scene, chosen: Mapping[str, str]) -> Plan:
 
 
 QUESTIONS = {one.name: one for one in (
-    Question("spectrum", "Which frequencies?", "The lines of a force of the settled motion: where it has energy, and "
-             "whether they are multiples of f or of f / n.", _spectrum_fields, _spectrum_plan),
-    Question("strobes", "What over a knob?", "The position of a bead once per drive period, at each value of a knob: "
-             "one point means period 1, n points period n, many points a quasi-periodic or chaotic motion.",
-             _strobe_fields, _strobe_plan),
-    Question("basins", "Which start leads where?", "Starts in a plane of two coordinates, with all others zero, "
-             "coloured by the motion that each settles to.", _basin_fields, _basin_plan),
-    Question("lyapunov", "Is it chaos?", "All Lyapunov exponents per drive period with their standard errors, and the "
-             "dimension of the attractor. A positive one is chaos.", _lyapunov_fields, _lyapunov_plan),
+    AnalysisQuestion(
+        "spectrum", "Which frequencies?", "The lines of a force of the settled motion: where it has energy, and "
+        "whether they are multiples of f or of f / n.", _spectrum_fields, _spectrum_plan),
+    AnalysisQuestion(
+        "strobes", "What over a knob?", "The position of a bead once per drive period, at each value of a knob: one "
+        "point means period 1, n points period n, many points a quasi-periodic or chaotic motion.",
+        _strobe_fields, _strobe_plan),
+    AnalysisQuestion(
+        "basins", "Which start leads where?", "Starts in a plane of two coordinates, with all others zero, coloured by "
+        "the motion that each settles to.", _basin_fields, _basin_plan),
+    AnalysisQuestion(
+        "lyapunov", "Is it chaos?", "All Lyapunov exponents per drive period with their standard errors, and the "
+        "dimension of the attractor. A positive one is chaos.", _lyapunov_fields, _lyapunov_plan),
 )}
 
 
-def question_of(name: object) -> Question:
+def question_of(name: object) -> AnalysisQuestion:
     """The question of this name. Raises `BadInput` for another one."""
     if not isinstance(name, str) or name not in QUESTIONS:
         raise unknown_name("question", str(name), tuple(QUESTIONS))

@@ -9,7 +9,7 @@ from typing import Any
 from ...parts.component import text
 from ...parts.result_figure import ResultFigure
 from ...scripts import module
-from .questions import QUESTIONS, Field, Plan, Question
+from .questions import QUESTIONS, AnalysisQuestion, Field, Plan
 
 
 class Analysis(ResultFigure):
@@ -22,7 +22,7 @@ class Analysis(ResultFigure):
         super().__init__(received, state={"questions": [
             {"name": one.name, "title": one.title} for one in QUESTIONS.values()]}, **params)
 
-    def ask(self, question: Question, fields: Sequence[Field]) -> None:
+    def ask(self, question: AnalysisQuestion, fields: Sequence[Field]) -> None:
         """Show a question with its fields, and nothing drawn."""
         self.clear()
         self.update_state(question=question.name, about=question.about)

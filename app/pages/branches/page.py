@@ -100,7 +100,7 @@ class BranchesPage(Page):
             self._begin()
 
     def _begin(self) -> None:
-        """Follow the orbit on the screen if there is one, and its branch is not too long for what nobody asked for."""
+        """Follow the orbit on the screen, if there is one and its branch may be computed without being asked for."""
         self._begun, self._waits = True, False
         scene, picture = self._host.session.scene, self._host.session.picture
         if picture is None or not scene.is_driven or not curve_affordable(scene):
@@ -220,5 +220,5 @@ class BranchesPage(Page):
         if status == "following":
             words += "; now at " + " and ".join(f"{arm.points[-1].knob:.1f} Hz" for arm in arms if not arm.ended)
         self._view.update_state(**WORDS.of(status), failure=sentence, words=words,
-                           ended=[arm.reason for arm in arms if arm.ended],
-                           unfinished=any(not arm.ended for arm in arms))
+                                ended=[arm.reason for arm in arms if arm.ended],
+                                unfinished=any(not arm.ended for arm in arms))

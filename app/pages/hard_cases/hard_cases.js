@@ -8,7 +8,7 @@ const raised = (text) =>
   text
     .split(/(\^\{[^}]+\}|\^-?\d+)/)
     .map((piece) => (piece.startsWith("^") ? element("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
-const PATIENCE = 20; // seconds after which the card says why the first run on a computer takes long
+const EXPLAINED_AFTER = 20; // seconds after which the card says why the first run on a computer takes long
 
 function rowTable(rows) {
   const body = element("tbody");
@@ -73,7 +73,8 @@ class Card {
   tick() {
     const { status, progress, time } = this.report ?? {};
     const seconds = this.began === null ? 0 : Math.round((performance.now() - this.began) / 1000);
-    const first = seconds > PATIENCE ? "; the first run on a computer compiles kernels, which can take minutes" : "";
+    const first =
+      seconds > EXPLAINED_AFTER ? "; the first run on a computer compiles kernels, which can take minutes" : "";
     this.status.textContent =
       status === "computing" ? `${progress} ${seconds} s${first}` : progress || (time ? `took ${time}` : "");
   }

@@ -15,7 +15,7 @@ from ...session.host import Host
 from ...session.message_checks import quoted
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
-from .view import HardCases, described, summary
+from .view import HardCases, described_results, summary
 from .work import CaseProcess, Ended, case_of
 
 _FAULT = "The process that ran this case ended unexpectedly; run it again, and please report it."
@@ -102,7 +102,7 @@ class HardCasesPage(Page):
 
     def _measured(self, name: str, rows: list[Check]) -> None:
         self.rows[name] = rows
-        self._change(name, **WORDS.of("drawing"), **described(name, rows))
+        self._change(name, **WORDS.of("drawing"), **described_results(name, rows))
 
     def _draw(self, name: str, picture: Picture | None) -> None:
         if picture is not None:
@@ -127,4 +127,4 @@ class HardCasesPage(Page):
 
     def _show(self) -> None:
         self._view.update_state(results=self._shown, summary=summary(self.rows), running=bool(self.waiting),
-                           done=1.0 - len(self.waiting) / max(1, self._asked))
+                                done=1.0 - len(self.waiting) / max(1, self._asked))

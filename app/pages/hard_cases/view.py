@@ -41,7 +41,7 @@ def described_cases() -> list[dict[str, Any]]:
 
 
 def digits_of(value: float, digits: int) -> str:
-    """A number to so many significant digits, "7.1e-13"; exponents without leading zeros."""
+    """A number to `digits` significant digits, "7.1e-13"; exponents without leading zeros."""
     mantissa, _, exponent = f"{value:.{digits}g}".partition("e")
     return f"{mantissa}e{int(exponent)}" if exponent else mantissa
 
@@ -57,9 +57,11 @@ def value_beside(value: float, limit: float) -> str:
     return repr(value)
 
 
-def described(name: str, rows: list[Check]) -> dict[str, Any]:
-    """The rows of one case as the browser shows them, and its time; a value that could not be computed has its
-    sentence as note."""
+def described_results(name: str, rows: list[Check]) -> dict[str, Any]:
+    """The rows of one case as the browser shows them, and its time.
+
+    A value that could not be computed has a note that says why.
+    """
     return {"time": duration(rows[0].seconds), "rows": [
         {"what": row.case.removeprefix(f"{name}: "), "value": value_beside(row.value, row.limit),
          "limit": digits_of(row.limit, 3), "passed": row.passed, "note": row.note} for row in rows]}

@@ -16,7 +16,7 @@ from granchain_core.stop import Stop
 from ...serve.delays import STOP_POLL
 
 #: Niceness: the page's pictures come first when cores are scarce.
-_NICE = 5
+_NICENESS = 5
 
 
 class Ended(Exception):
@@ -32,7 +32,7 @@ def serve_cases(asked: Connection) -> None:
     """Run in the process: answer each name with the rows of the quick form, then with the picture or None."""
     end_with_parent(os.getppid())
     if hasattr(os, "nice"):
-        os.nice(_NICE)
+        os.nice(_NICENESS)
     while True:
         name = asked.recv()
         case = case_of(name)

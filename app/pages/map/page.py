@@ -29,16 +29,17 @@ from ...session.message_checks import listed
 from ...session.progress import Status, StatusWords
 from ...session.session import slider_range
 from ...session.task import Job, Task
-from .view import cells_message, described, head_message
+from .view import cells_message, described_attractor, head_message
 
 #: Cells along f and A0: few enough to be computed in about ten seconds on one core.
-COLUMNS, ROWS = 60, 40
+COLUMNS = 60
+ROWS = 40
 #: Random states from which attractors are looked for.
 _RANDOM_STATES = 64
 #: Random states for a scene that cannot be computed in batches.
 _FEW_RANDOM_STATES = 12
 
-WORDS = StatusWords(kept="the cells computed so far", instead={"waiting": "waiting for the curve …"})
+WORDS = StatusWords(kept="the cells computed so far")
 SEARCH_WORDS = StatusWords(instead={"searching": "searching from rest, from both sweeps and from random states …"})
 
 
@@ -190,7 +191,7 @@ class MapPage(Page):
     def _find(self) -> None:
         self._search.cancel()
         self._found = []
-        self._show_attractors("searching")
+        self._show_attractors("waiting")
         self._search.start(partial(self._search_work, self._host.session.scene))
 
     def _search_work(self, scene: Scene, job: Job) -> None:
@@ -198,7 +199,7 @@ class MapPage(Page):
         job.say("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
         found = attractors(scene, starts, stop=job.stop)
-        job.next_tick(self._arrived, scene, found, [described(one) for one in found])
+        job.next_tick(self._arrived, scene, found, [described_attractor(one) for one in found])
 
     def _say_search(self, status: Status, sentence: str) -> None:
         self._show_attractors(status, sentence)

@@ -30,7 +30,7 @@ def cells_message(grid: Grid, cells: np.ndarray, every: np.ndarray) -> dict[str,
             "models": scale_models(computed)}
 
 
-def described(attractor: Attractor) -> dict[str, Any]:
+def described_attractor(attractor: Attractor) -> dict[str, Any]:
     """One attractor for the list: category, words, force, share, and which named starts lead to it."""
     regime = attractor.regime
     period = regime.period

@@ -10,13 +10,13 @@ from granchain_core.scene.effects import effects_of
 from ...format import in_words
 
 #: Instants of a table over time; the file has all.
-_INSTANTS = 25
+_MOST_INSTANTS = 25
 #: A value below this part of the largest of its series is a rounded zero, such as the sine of a full turn.
-_ROUNDING = 1e-12
+_LARGEST_ROUNDED_ZERO = 1e-12
 #: Effects with which contacts alone lose energy: the others store it, or cut the damped force.
 _ONLY_CONTACTS_LOSE = {"dashpot", "tension", "foundation", "preload"}
 #: Most beads of a table; the file has all.
-_BEADS = 200
+_MOST_BEADS = 200
 
 
 def summary(run: Run) -> str:
@@ -60,7 +60,7 @@ def _where_energy_goes(run: Run) -> str:
 
 def forces_over_time(run: Run) -> list[list[str]]:
     """Time, drive, input and output force at equal distances."""
-    rows = np.unique(np.linspace(0, len(run.time) - 1, _INSTANTS).round().astype(int))
+    rows = np.unique(np.linspace(0, len(run.time) - 1, _MOST_INSTANTS).round().astype(int))
     series = ((run.drive_displacement, "m"), (run.input_force, "N"), (run.output_force, "N"))
     return [[_time(run, int(row)), *(_value(values, int(row), unit) for values, unit in series)] for row in rows]
 
@@ -68,7 +68,8 @@ def forces_over_time(run: Run) -> list[list[str]]:
 def _value(values: np.ndarray, row: int, unit: str) -> str:
     """A value of a series; a rounded zero is shown as zero."""
     value = float(values[row])
-    return f"0 {unit}" if abs(value) <= _ROUNDING * float(np.abs(values).max()) else in_words(value, unit, 3)
+    is_zero = abs(value) <= _LARGEST_ROUNDED_ZERO * float(np.abs(values).max())
+    return f"0 {unit}" if is_zero else in_words(value, unit, 3)
 
 
 def beads(run: Run) -> list[list[str]]:
@@ -77,7 +78,7 @@ def beads(run: Run) -> list[list[str]]:
     return [[str(bead + 1), in_words(float(np.abs(run.displacement[:, bead]).max()), "m", 3),
              in_words(float(np.abs(run.velocity[:, bead]).max()), "m/s", 3),
              in_words(float(energy[:, bead].max()), "J", 3), _time(run, int(energy[:, bead].argmax()))]
-            for bead in range(min(run.scene.N, _BEADS))]
+            for bead in range(min(run.scene.N, _MOST_BEADS))]
 
 
 def _energy(energy: np.ndarray, row: int, bead: int) -> str:

@@ -1,4 +1,4 @@
-// The Observer tab: the distance in small, and the way to the page. What fills the figure serves the page as well.
+// The Observer tab: the distance in small, and the way to the page. The page fills its figure with the same function.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";

@@ -94,5 +94,5 @@ class ObserverPage(Page):
     def _show(self, moved: _Moved) -> None:
         run = moved.run
         self._view.update_state(**WORDS.of("done"), sentence=run.sentence, predicted=run.predicted,
-                           measured=run.measured)
+                                measured=run.measured)
         self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)

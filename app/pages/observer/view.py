@@ -22,7 +22,7 @@ from ...scripts import module
 from .work import NUDGE, ObserverStep
 
 #: Drive periods after a start during which no multiplier describes the distance.
-_TRANSIENT = 2
+_TRANSIENT_PERIODS = 2
 
 
 @cache
@@ -47,7 +47,7 @@ class Observer(FigurePart):
         self.need_figures()
         if began:
             self._anchor = None
-        if self._anchor is None and step.number >= since + _TRANSIENT:
+        if self._anchor is None and step.number >= since + _TRANSIENT_PERIODS:
             self._anchor = float(step.number), float(step.distance[0])
         line = prediction(*self._anchor, factor) if self._anchor else []
         self.send(**step_message(step, scene, began), prediction=line)

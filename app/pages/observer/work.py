@@ -25,8 +25,10 @@ from ...frames import samples_for
 
 #: Root-mean-square displacement of the observer's beads by a nudge, over A0.
 NUDGE = 1e-3
+#: Most rows of a drive period.
 _MOST_ROWS = 192
-_REMEMBERED = 400
+#: Drive periods whose stroboscopic differences are kept.
+_MOST_STROBES = 400
 
 
 @dataclass(frozen=True)
@@ -122,10 +124,10 @@ class ObserverRun:
 
     @property
     def _orbits_needed(self) -> float:
-        """How many orbits are measured at least: in half of the leading mode's time the faster ones have died out."""
+        """Fewest orbits to measure: after half the time constant of the leading mode the faster modes have died out."""
         if self.leading is None or abs(self.leading) in (0.0, 1.0):
             return 0.0
-        return min(0.5 / abs(math.log(abs(self.leading))), 0.5 * _REMEMBERED / self._every)
+        return min(0.5 / abs(math.log(abs(self.leading))), 0.5 * _MOST_STROBES / self._every)
 
     @property
     def _every(self) -> int:
@@ -134,7 +136,7 @@ class ObserverRun:
 
     @property
     def _linear(self) -> np.ndarray:
-        """The stroboscopic differences, one an orbit, after the transient, and neither too large nor rounding."""
+        """The stroboscopic differences after the transient, one per orbit, where they are small but above rounding."""
         strobes = np.array(self.strobes).reshape(len(self.strobes), -1)[:: self._every]
         first, end = linear_window(np.sqrt((strobes**2).sum(axis=1)))
         return strobes[first:end]
@@ -147,7 +149,7 @@ class ObserverRun:
         difference = self.pair.difference(rows)
         if not self.strobes:
             self.strobes.append(difference[0])
-        self.strobes = [*self.strobes[1 - _REMEMBERED :], difference[-1]]
+        self.strobes = [*self.strobes[1 - _MOST_STROBES :], difference[-1]]
         self.in_step = bool(np.abs(difference).max() < SYNCHRONISED)
         scales, number = engine.scaled.scales, self.number
         self.number += 1

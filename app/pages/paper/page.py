@@ -24,9 +24,9 @@ _KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
     "11": tuple((name, (*MOTION_KERNELS, ORBIT_KERNELS, OBSERVER_KERNELS)) for name in ("fig11-free", "fig11-founded")),
 }
 #: The figure that the page begins with: the resonance curve of section 2, which takes a second.
-_FIRST = "2"
+_FIRST_FIGURE = "2"
 #: Parts of a computation between two reports of how far it is.
-_STEPS = 50
+_PROGRESS_STEPS = 50
 
 WORDS = StatusWords("the figure's kernels", 20)
 
@@ -44,7 +44,7 @@ class PaperPage(Page):
     def visibility_changed(self, visible: bool) -> None:
         """Somebody opens the page: it begins with a figure rather than empty."""
         if visible and not self._chosen:
-            self._show({"figure": _FIRST})
+            self._show({"figure": _FIRST_FIGURE})
 
     def _stop(self) -> None:
         if self._task.cancel():
@@ -72,8 +72,8 @@ class PaperPage(Page):
         def report(done: float) -> None:
             if done < 1.0:
                 job.give_way()
-            if int(_STEPS * done) > reported[0]:
-                reported[0] = int(_STEPS * done)
+            if int(_PROGRESS_STEPS * done) > reported[0]:
+                reported[0] = int(_PROGRESS_STEPS * done)
                 job.next_tick(self._view.update_state, done=done)
 
         job.next_tick(self._arrived, figure, compute(figure.number, stop=job.stop, progress=report))

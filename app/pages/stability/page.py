@@ -216,8 +216,8 @@ class StabilityPage(Page):
         """Show no multipliers, and a sentence that says why."""
         self._analysis, self.status = None, "none"
         self._view.update_state(**WORDS.of("none"), failure="", stale=False, sentence=sentence,
-                           plane=plane_state(None), count=0, chosen="", searched=False, evidence=[],
-                           observer=self._observer)
+                                plane=plane_state(None), count=0, chosen="", searched=False, evidence=[],
+                                observer=self._observer)
         self._view.send(type="no-mode")
         if self._host.session.mode == "live":
             self._view.send(type="no-section")
@@ -228,7 +228,7 @@ class StabilityPage(Page):
         self._view.update_state(**WORDS.of(status), failure=sentence)
         if status == "failed" and self._analysis is None and self._target is not None:
             self._view.update_state(sentence=sentence, failure="", plane=plane_state(None), count=0, chosen="",
-                               stale=False)
+                                    stale=False)
             self._view.send(type="no-mode")
 
     # What the visitor does

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-_MOST = 14
-_SAME = 1e-4
+#: Most sets of multipliers in the trail.
+_MOST_SETS = 14
+#: Sets that differ by less than this are of one orbit.
+_SAME_SET = 1e-4
 
 
 class Trail:
@@ -21,7 +23,7 @@ class Trail:
         if scene != self._scene:
             self._sets, self._last, self._scene = [], None, scene
         if self._last is not None and not _same(self._last[1], found):
-            self._sets = [*self._sets, self._last][-_MOST:]
+            self._sets = [*self._sets, self._last][-_MOST_SETS:]
         self._last = period, found
 
     def before(self, period: int) -> list[np.ndarray]:
@@ -30,4 +32,4 @@ class Trail:
 
 
 def _same(one: np.ndarray, other: np.ndarray) -> bool:
-    return one.shape == other.shape and bool((np.abs(one - other) < _SAME).all())
+    return one.shape == other.shape and bool((np.abs(one - other) < _SAME_SET).all())

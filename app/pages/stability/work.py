@@ -18,14 +18,16 @@ from granchain_core.stop import Stop
 
 #: Phases of the drive period at which the section is kept.
 PHASES = 48
-#: Fewest periods of a section, and those of one whose motion is not periodic.
-_FEWEST, _CLOUD = 24, 1200
-#: Values of one mode; beyond it its samples lie farther apart.
-_MODE_VALUES = 60_000
+#: Fewest drive periods of a section.
+_FEWEST_PERIODS = 24
+#: Drive periods of a section whose motion is not periodic.
+_CLOUD_PERIODS = 1200
+#: Most values of a mode; a mode that would have more has fewer samples in time.
+_MOST_MODE_VALUES = 60_000
 #: A mode that ends farther than this from μ times itself contradicts μ; correct ones are within about 1e-8.
-_TRUSTED = 1e-4
+_LARGEST_MODE_ERROR = 1e-4
 #: If Newton's method ends farther than this from a settled motion, it has found another orbit.
-_SAME_ORBIT = 1e-3
+_SAME_ORBIT_DISTANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -61,13 +63,13 @@ def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> Orbit
     scene = target.scene
     orbit = periodic_orbit(scene, target.period, target.start, observer=observer, stop=stop)
     distance = _apart(orbit.state, target.start)
-    if target.followed and distance > _SAME_ORBIT:
+    if target.followed and distance > _SAME_ORBIT_DISTANCE:
         raise NumbersFailed(f"Newton's method ended {distance:.0e} away from the settled motion, on another orbit; its "
                             "multipliers are not those of what the chain does.", "another-orbit")
     orbit.find_errors(stop)  # here, because the words about the orbit are made in the event loop
-    samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MODE_VALUES), 8)
+    samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MOST_MODE_VALUES), 8)
     found = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
-    if not found.closure <= _TRUSTED * max(1.0, abs(found.multiplier)):
+    if not found.closure <= _LARGEST_MODE_ERROR * max(1.0, abs(found.multiplier)):
         raise NumbersFailed("No multipliers are shown: after one orbit a small disturbance differs from their "
                             f"prediction by {found.closure:.1g} of its size.", "contradicted")
     section = orbit_section(orbit, PHASES, stop)
@@ -83,7 +85,7 @@ def _apart(one: State, other: State) -> float:
 def section_of(picture: Settled, start: State | None, stop: Stop) -> Iterator[Section]:
     """The section from the start of the picture's chain: a transient and, if it is not periodic, a cloud."""
     regime = picture.regime
-    periods = max(regime.periods_run, _FEWEST) if regime.name == "periodic" else max(_CLOUD, regime.periods_run)
+    periods = max(regime.periods_run, _FEWEST_PERIODS if regime.name == "periodic" else _CLOUD_PERIODS)
     yield from iter_section(picture.run.scene, start, periods, PHASES, stop=stop)
 
 
@@ -106,7 +108,7 @@ def search(picture: Settled, section: Section | None, period: int, stop: Stop) -
     found = search_orbit(scene, period, picture.state, strobes, stop)
     run = picture.run
     here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
-    if picture.regime.name == "periodic" and min(_apart(found.state, state) for state in here) < _SAME_ORBIT:
+    if picture.regime.name == "periodic" and min(_apart(found.state, one) for one in here) < _SAME_ORBIT_DISTANCE:
         raise NumbersFailed(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
                             f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
     return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)

@@ -48,11 +48,11 @@ class StoriesPage(Page):
         self.address_taken()
 
     def scene_changed(self) -> None:
-        """The visitor has moved on, or the story has: a step that is still being settled is not shown any more."""
+        """The knobs have moved: a step that is still being settled will not be shown."""
         self._task.cancel()
 
     def picture_ready(self, picture: Settled) -> None:
-        """The first picture of a link that names a step alone, whose motion comes from others."""
+        """Settle the step of a link that names it alone, if its motion is reached through others (`StoryStep.via`)."""
         if picture.final and self._host.session.story_to_settle:
             self._host.session.story_to_settle = False
             self._task.start(partial(self._through, story_step(self._host.session.story)))
@@ -89,7 +89,7 @@ class StoriesPage(Page):
             self._show(step, None)
 
     def _through(self, step: StoryStep, job: Job) -> None:
-        """In a worker thread: settle the chain where it comes from."""
+        """In a worker thread: settle the frequencies through which the step's motion is reached, then show it."""
         job.compile(step.scene, *PICTURE_PIECES)
         job.next_tick(self._show, step, state_before(step, job.stop))
 

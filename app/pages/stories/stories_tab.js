@@ -60,7 +60,7 @@ function comeUp(story) {
   if (step === told) return;
   const before = told;
   told = step;
-  // The list of stories as well, which stands below the pictures: but not when the page is opened.
+  // The same for the list of stories, which stands below the pictures, except when the page has just been opened.
   if ((step || before) && PHONE.matches) requestAnimationFrame(() => document.getElementById("tabs").scrollIntoView());
 }
 

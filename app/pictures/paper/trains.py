@@ -71,7 +71,7 @@ def _limits(shown: Trains, name: str, unit: float) -> tuple[float, float]:
     room = 0.08 * (high - low)
     lines = 1 + (2 if name == "velocity" else 0) + any(column.measured is not None for column in shown.columns)
     lines += any(column.observer is not None and name == "output_force" for column in shown.columns)
-    return low - room, high + 2.0 * lines * room  # with room for a legend of so many lines
+    return low - room, high + 2.0 * lines * room  # with room for a legend of `lines` lines
 
 
 def _line(plot: figure, time: Any, values: Any, role: str, words: str, label: str, dash: list[int] | None = None,

@@ -31,4 +31,3 @@ def transmission(shown: Transmission, theme: Theme) -> figure:
     highest = largest if shown.measured is None else max(largest, float(shown.measured.force.max()))
     plot.y_range.update(end=1.12 * highest / scale)
     return apply_theme(plot, theme)
-

@@ -277,5 +277,3 @@ def _top(law, mode, which, t, y, h, f, a, b):
             d = a + _GOLDEN * (b - a)
             at_d = _force_between(law, mode, which, t, y, h, f, d)
     return 0.5 * (a + b)
-
-

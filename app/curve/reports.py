@@ -1,0 +1,51 @@
+"""Reports of a curve that grows, on their way from the worker thread to the figure."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable
+
+from ..serve.delays import CURVE_EVERY
+from ..session.host import Host
+from .sweep import Progress
+
+
+class Reports:
+    """Collects reports and hands them to `draw` together, at most once in `CURVE_EVERY` seconds.
+
+    Drawn one by one, the curves of a whole class would keep the event loop busy.
+    """
+
+    def __init__(self, host: Host, draw: Callable[[list[Progress]], None]) -> None:
+        self._host = host
+        self._draw = draw
+        self._lock = threading.Lock()
+        self._waiting: list[Progress] = []
+        self._drawn = -math.inf
+
+    def add(self, report: Progress) -> None:
+        """Take a report; from the worker thread."""
+        with self._lock:
+            self._waiting.append(report)
+            first = len(self._waiting) == 1
+        if first:
+            self._host.next_tick(self._hand_over)
+
+    def drop(self) -> None:
+        """Forget the reports that have not been drawn."""
+        with self._lock:
+            self._waiting = []
+
+    def _hand_over(self) -> None:
+        """With the document locked: draw what waits, now or when the last drawing is long enough ago."""
+        left = self._drawn + CURVE_EVERY - time.monotonic()
+        if left > 0.0:
+            self._host.call_later(left, self._hand_over)
+            return
+        self._drawn = time.monotonic()
+        with self._lock:
+            reports, self._waiting = self._waiting, []
+        if reports:  # they may have been dropped
+            self._draw(reports)

@@ -1,0 +1,26 @@
+"""The hosts that tests give to pages are called as the dashboard is."""
+
+from __future__ import annotations
+
+import inspect
+
+from host import FakeHost
+
+from app.session.host import Host
+
+
+def test_what_the_fake_host_has_is_called_as_a_host_is() -> None:
+    shared = [name for name in vars(FakeHost) if name in vars(Host) and not name.startswith("_")]
+    assert {"next_tick", "call_later", "on_close", "failed", "fault", "busy"} <= set(shared)
+    for name in shared:
+        fake, real = getattr(FakeHost, name), getattr(Host, name)
+        if callable(fake):
+            assert list(inspect.signature(fake).parameters) == list(inspect.signature(real).parameters), name
+        else:
+            assert isinstance(real, property), name
+
+
+def test_what_drives_the_fake_host_is_no_part_of_a_host() -> None:
+    """A page that called it would only work in tests."""
+    assert {name for name in vars(FakeHost) if not name.startswith("_")} - set(vars(Host)) == {
+        "leave", "call_waiting", "run_callbacks_until"}
