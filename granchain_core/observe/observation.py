@@ -100,6 +100,11 @@ class Observation(Motion):
         return self.record.time
 
     @property
+    def max_input_force(self) -> float:
+        """Largest sample of the force that pushes bead 1 [N]."""
+        return float(self.input_force.max())
+
+    @property
     def error_estimate(self) -> float:
         """Both errors together."""
         return self.integration_error + self.interpolation_error
