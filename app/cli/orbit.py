@@ -57,16 +57,12 @@ def do(arguments: argparse.Namespace) -> None:
             data["observer_stability_certain"] = found.observer_stability_certain
         show_json(data)
         return
-    print(f"{chosen.name}: orbit of period {found.period}, {'stable' if found.stable else 'unstable'}, "
+    print(f"{chosen.name}: orbit of period {found.period}, {found.stability_words()}, "
           f"residual {found.residual:.1e} after {len(found.newton_residuals) - 1} Newton iterations")
     _show_multipliers("multipliers", found.multipliers, found.multiplier_errors)
     if found.observer_multipliers is not None:
-        _show_multipliers("observer", found.observer_multipliers, found.observer_multiplier_errors)
-    if found.multiplier_errors is not None and not found.stability_certain:
-        print("a multiplier is no farther from the unit circle than its error: the stability is not certain")
-    if found.observer_multiplier_errors is not None and not found.observer_stability_certain:
-        print("a multiplier of the observer is no farther from the unit circle than its error: its stability is not "
-              "certain")
+        _show_multipliers(f"observer, {found.observer_stability_words()}", found.observer_multipliers,
+                          found.observer_multiplier_errors)
 
 
 def _pairs(multipliers: Any) -> list[list[float]]:

@@ -167,6 +167,7 @@ def unsettled(job: Job, batch: Batch, member: int, run: int) -> SteadyState:
 
 def failed(job: Job) -> SteadyState:
     """A member whose numbers stopped being finite."""
-    sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping or ask for higher accuracy."
+    sentence = (f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping, or compute this frequency "
+                f"alone: granchain run SCENE --set f={job.scene.f:g}.")
     return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(0), None, rest(job.scene), sentence,
                        "not-finite", job.number)
