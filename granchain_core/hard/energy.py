@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, State, adaptive_setting, fixed_step_setting
+from ..integrate import Engine, adaptive_setting, fixed_step_setting
 from ..integrate.methods import ADAPTIVE
 from ..kernels.effects.driver import Harmonic
 from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene, scene
+from ..state import State
 from ..steady.curve.resonance_curve import iter_curve
 from ..steady.lyapunov import exponents
 from .case import Measurement, Picture, Trace

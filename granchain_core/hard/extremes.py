@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, adaptive_setting, fixed_step_setting
+from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..run.run import run
 from ..scene import Scene, scene
+from ..state import State
 from .case import Measurement, Picture, Trace
 from .naive_solvers import plain_slope, rk4
 from .oracle import Plain, solved

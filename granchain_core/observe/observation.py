@@ -18,7 +18,6 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import State
 from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR, REGULAR
@@ -26,7 +25,7 @@ from ..integrate.stated import relative_difference
 from ..motion import MOST_RECORDED, Motion, elastic_output, motion_columns
 from ..result import Cost
 from ..scene import Scene
-from ..state import rest
+from ..state import State, rest
 from ..stop import Stop
 from ..tables import Column, Table, axis, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..integrate import State
 from ..scene import Scene
+from ..state import State
 from ..stop import Stop
 from .stroboscopic_map import TOLERANCE, StroboscopicMap
 

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed, check_range
-from ..integrate import State
 from ..integrate.methods import ADAPTIVE
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
+from ..state import State
 from ..steady.regime_criteria import LONGEST_PERIOD
 from ..steady.returns import relative_change
 from ..steady.settling.advance import run_until_settled

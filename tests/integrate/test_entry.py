@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from granchain_core import continue_branch, resonance_curve, scene
-from granchain_core.integrate import Engine, State, entry
+from granchain_core.integrate import Engine, entry
 from granchain_core.integrate.methods import FIXED_STEP, METHODS, Setting
 from granchain_core.kernels.samples import first_not_finite
+from granchain_core.state import State
 
 #: Chains of one vector and of blocks, and effects in every slot.
 CHAINS = [{}, {"N": 2}, {"N": 40}, {"dissipation": "none"}, {"dissipation": "tsuji", "tension": "cut"},

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...integrate import Engine, State, fixed_step_setting
+from ...integrate import Engine, fixed_step_setting
 from ...integrate.batch import Batch
 from ...integrate.methods import AT_A_JUMP, typical_error
 from ...integrate.stated import relative_changes
@@ -15,7 +15,7 @@ from ...kernels.batch.period_end import CHECK_DISTANCE, CHECK_PERIOD
 from ...regime import Regime
 from ...scaling import ScaledChain
 from ...scene import Scene
-from ...state import rest
+from ...state import State, rest
 from ...stop import Stop
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
 from ..regime_criteria import SLOW_RECORD, converging

@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import NumbersFailed
-from ...integrate import Engine, State
+from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
+from ...state import State
 from ...stop import Stop
 from ..orbit_errors import errors_between
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
