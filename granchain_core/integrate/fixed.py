@@ -29,7 +29,7 @@ from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
 from ..stop import Stop
-from .entry import Entries, structure
+from .entry import Entries, types_of
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
 from .stepper import Start, empty_samples
 
@@ -69,7 +69,7 @@ class FixedStep:
     def work(self, work: Any) -> None:
         """Use another workspace, maybe of another type: another version of the kernels is called then."""
         self._work = work
-        self._structure = structure((self.method, self.scaled.slots, work))
+        self._structure = types_of((self.method, self.scaled.slots, work))
 
     def _driver_table(self, scaled: ScaledChain) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""

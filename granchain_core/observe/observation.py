@@ -22,7 +22,7 @@ from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR, REGULAR
 from ..integrate.stated import relative_difference
-from ..motion import MOST_RECORDED, Motion, elastic_output, motion_columns
+from ..recorded_motion import MOST_RECORDED, Motion, elastic_output, motion_columns
 from ..result import Cost
 from ..scene import Scene
 from ..state import State, rest

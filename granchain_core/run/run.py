@@ -17,7 +17,7 @@ from ..integrate import Counts, Engine, Setting, fixed_step_setting, method_for
 from ..integrate.methods import setting_of
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
-from ..motion import MOST_RECORDED
+from ..recorded_motion import MOST_RECORDED
 from ..regime import Regime
 from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene

@@ -73,5 +73,5 @@ def test_what_makes_a_type_is_in_the_key() -> None:
                  [*tuples]]
     frozen = plain.copy()
     frozen.flags.writeable = False
-    keys = [entry.structure(one) for one in (*different, frozen)]
+    keys = [entry.types_of(one) for one in (*different, frozen)]
     assert len(set(keys)) == len(keys) - 1, "a transposed array and one with gaps are both neither"

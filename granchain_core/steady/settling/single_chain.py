@@ -54,8 +54,8 @@ def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
                            failed.status)
 
 
-def settled_alone(doubtful: SteadyState, stop: Stop) -> SteadyState:
-    """The steady state of a chain that a batch left in doubt, settled alone from its last state."""
-    found = safe_state(doubtful.scene, doubtful.state, stop)
-    run = doubtful.regime.periods_run + found.regime.periods_run
-    return replace(found, regime=replace(found.regime, periods_run=run), number=doubtful.number)
+def settled_alone(undecided: SteadyState, stop: Stop) -> SteadyState:
+    """The steady state of a chain that a batch left undecided, settled alone from its last state."""
+    found = safe_state(undecided.scene, undecided.state, stop)
+    run = undecided.regime.periods_run + found.regime.periods_run
+    return replace(found, regime=replace(found.regime, periods_run=run), number=undecided.number)
