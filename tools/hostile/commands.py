@@ -22,8 +22,9 @@ from pathlib import Path
 from .values import text
 
 _SMALL = "--set N=2 --set f=3000 --set accuracy=1e-3"
-#: At least one that the parser takes for each command. Each ends within seconds as it stands, and with a word less; none
-#: can harm a file outside its folder, and none can serve: of the words of `serve` at least one is always wrong.
+#: At least one that the parser takes for each command. Each ends within seconds as it stands, and with a word less: the
+#: longest, `check`, `accuracy` and `serve`, have a word that is refused after the parser. None can harm a file outside
+#: its folder.
 BASES = tuple(line.split() for line in (
     f"run sec2 {_SMALL} --periods 0 --record 1 --samples 4 --json",
     f"run sec2 {_SMALL} --periods 2 --record 1 --samples 8 --out run.h5 --explain",
@@ -41,8 +42,8 @@ BASES = tuple(line.split() for line in (
     f"basins sec2 {_SMALL} --x u1=0:2e-7:2 --y v1=0:1e-3:2 --json",
     f"virtual sec2 {_SMALL} --periods 2 --noise 0.01 --out virtual.csv",
     f"fit sec2 {_SMALL} --data curve.csv --free D=100:110 --error 0.03 --design 4 --no-intervals --json",
-    "accuracy sec2 --set N=1 --set f=3000 --json",
-    "check --quick --picture refused.png", "warm nowhere neither", "serve --port 70000 --address 256.1.1.1",
+    "accuracy sec2 --set N=1 --set f=3000 --picture refused.png", "check --quick --picture refused.png",
+    "warm nowhere neither", "serve --port 70000 --address 256.1.1.1",
     "pulse impact --set N=4 --json", "bands precompressed --json", "scenes --json", "cite sec2 --json",
     "figure 5 --out five.csv",
     "check --quack --quock", "accuracy sec2 --set N=zwei --set f=lots", "lyapunov sec2 --set N=0 --set D=-1",
