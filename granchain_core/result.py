@@ -11,7 +11,7 @@ import numpy as np
 from .integrate import Counts
 from .integrate.engine import Engine
 from .kernels.samples import Samples
-from .motion import Motion, motion_columns
+from .recorded_motion import Motion, motion_columns
 from .regime import Regime
 from .scene import Scene
 from .scene.validity import overlap_warnings

@@ -22,7 +22,7 @@ from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import new_tension_cut
-from .kernels.entry import Entries, structure
+from .kernels.entry import Entries, types_of
 from .kernels.equations.body_forces import add_force_slope
 from .kernels.equations.motion import Forces, Slots, place
 from .laws import LAWS, require_complete
@@ -127,7 +127,7 @@ class ScaledChain:
         displacement, velocity = self.rows(y)
         displacement[:] = state.displacement / self.scales.length
         velocity[:] = state.velocity / self.scales.velocity
-        _PLACE(structure(self.slots), self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
+        _PLACE(types_of(self.slots), self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
         y[0] = 0.0
         return y
 
@@ -137,7 +137,7 @@ class ScaledChain:
         The second half of y is w, not velocity; v is recovered from w and the overlaps.
         """
         slope = np.zeros_like(y)
-        _PLACE(structure(self.slots), self.slots, 0.0, y.copy(), slope, self.forces(), False)
+        _PLACE(types_of(self.slots), self.slots, 0.0, y.copy(), slope, self.forces(), False)
         return State(self.rows(y)[0] * self.scales.length, self.rows(slope)[0] * self.scales.velocity)
 
     @cached_property

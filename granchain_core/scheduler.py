@@ -23,8 +23,9 @@ def connect(address: str) -> Any:
     try:
         from distributed import Client
     except ImportError:
-        raise BadInput("--scheduler needs the package distributed; install it with "
-                       "`pip install 'granchain[scheduler]'` here and on every worker.") from None
+        raise BadInput("--scheduler needs the package distributed; install it here and on every worker with "
+                       "`pip install distributed`, or with `pip install -e '.[scheduler]'` in a clone of "
+                       "granchain.") from None
     try:
         return Client(address, timeout=_ANSWERS)
     except (OSError, ValueError, TimeoutError) as problem:

@@ -7,6 +7,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
+from .forces import forces_json
 from .options import add_json, add_scene, whole
 from .picture import add_option as add_picture
 from .picture import check_files, write_picture
@@ -64,8 +65,7 @@ def _json(found: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
     return {"scene": found.scene.name, "knobs": found.scene.knobs, "random_states": arguments.random_states,
             "seed": arguments.seed, "attractors": [{
                 "regime": one.regime.name, "period": one.regime.period, "stable": one.stable,
-                "max_output_force": one.max_output_force, "max_output_force_elastic": one.max_output_force_elastic,
-                "max_input_force": one.max_input_force, "error_estimate": one.error_estimate,
+                **forces_json(one), "error_estimate": one.error_estimate,
                 "error_estimate_elastic": one.force_errors.elastic, "error_estimate_input": one.force_errors.input,
                 "share": one.share if tried else None, "share_error": one.share_error if tried else None,
                 "starts": [origin.name for origin in one.origins]} for one in found]}

@@ -30,7 +30,7 @@ class _Parser(argparse.ArgumentParser):
 
 #: What each command is for, in the order of `granchain --help`. The module of its name has its options, `add_options`,
 #: and does it, `do`; only the one that is asked for is imported, because some need what takes a second to load.
-_COMMANDS = {
+COMMANDS = {
     "serve": "open the dashboard",
     "scenes": "list the scenes and what to look at",
     "warm": "compile the kernels of the paper's scenes, or of those named, ahead of time",
@@ -62,7 +62,7 @@ def parser_for(words: Sequence[str]) -> _Parser:
     parser = _Parser(prog="granchain", description="Driven granular chains: simulate, sweep, show.",
                      allow_abbrev=False)
     known = parser.add_subparsers(dest="command", parser_class=_Parser, metavar="COMMAND", required=True)
-    for name, about in _COMMANDS.items():
+    for name, about in COMMANDS.items():
         command = known.add_parser(name, help=about, description=about, allow_abbrev=False)
         if name == asked_for:
             module = import_module(f".{name}", __package__)
@@ -74,8 +74,8 @@ def parser_for(words: Sequence[str]) -> _Parser:
 def do(words: list[str]) -> int:
     """Run one command; returns the exit status."""
     try:
-        if words and not words[0].startswith("-") and words[0] not in _COMMANDS:
-            raise unknown_name("command", words[0], _COMMANDS)
+        if words and not words[0].startswith("-") and words[0] not in COMMANDS:
+            raise unknown_name("command", words[0], COMMANDS)
         parsed = parser_for(words).parse_args(words)
         return parsed.do(parsed) or DONE
     except (BadInput, NumbersFailed) as problem:

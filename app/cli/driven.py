@@ -10,6 +10,7 @@ from granchain_core import BadInput, Scene
 
 from .common import in_background, say, show_json, unbroken
 from .data_options import with_answers
+from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json
 from .picture import write_picture
 
 if TYPE_CHECKING:
@@ -77,24 +78,14 @@ def _measured(path: str, answers: Answers) -> Signal:
 
 
 def _json(found: Driven) -> dict[str, Any]:
-    chosen = found.scene
-    return {
-        "scene": chosen.name, "knobs": chosen.knobs, "effects": chosen.effects, "drive": found.signal.words,
-        "duration": float(found.time[-1] - found.time[0]), "status": found.status,
-        "max_output_force": found.max_output_force, "max_output_force_elastic": found.max_output_force_elastic,
-        "max_input_force": found.max_input_force, "error_estimate": found.error_estimate,
-        "error_estimate_output": found.force_errors.output, "error_estimate_input": found.force_errors.input,
-        "error_estimate_elastic": found.force_errors.elastic, "energy_residual": found.energy_residual,
-        "cost": asdict(found.cost)}
+    """A driven motion as one JSON object."""
+    return {**scene_json(found.scene), "drive": found.signal.words,
+            "duration": float(found.time[-1] - found.time[0]), "status": found.status, **forces_json(found),
+            **errors_json(found), "cost": asdict(found.cost)}
 
 
 def _show(found: Driven) -> None:
-    errors = found.force_errors
-    inward, outward, elastic = ("none stated" if e is None else f"{e:.1e}"
-                                for e in (errors.input, errors.output, errors.elastic))
+    """A driven motion in a few lines."""
     print(f"{found.scene.name}: {found.signal.words}; {found.status}")
-    print(f"largest output force {found.max_output_force:.6g} N (elastic {found.max_output_force_elastic:.6g} N), "
-          f"input force {found.max_input_force:.6g} N")
-    print(f"relative errors: displacement {found.error_estimate:.1e}, output force {outward} (elastic {elastic}), "
-          f"input force {inward}; energy closes to {found.energy_residual:.1e}; {found.cost.method}, "
-          f"{found.cost.steps} steps, {found.cost.events} contact events, {1e3 * found.cost.wall_s:.1f} ms")
+    print(forces_in_words(found))
+    print(errors_in_words(found))

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from granchain_core import BadInput
 
 from .common import chosen_scene, in_background, say, show_json
 from .data_options import add_answers, with_answers
+from .forces import cost_in_words, forces_in_words, forces_json, scene_json
 from .options import add_result
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
+
+if TYPE_CHECKING:
+    from granchain_core.observe import Observation
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -62,32 +66,26 @@ def do(arguments: argparse.Namespace) -> None:
         save_observation(seen, arguments.out)
     write_picture(arguments.picture, f"An observer of {chosen.name}", seen)
     if arguments.json:
-        show_json(described(seen))
+        show_json(_json(seen))
         return
     print(f"{chosen.name}: {len(seen.time)} samples, {seen.time[-1] - seen.time[0]:.6g} s; {seen.status}")
-    print(f"largest output force {seen.max_output_force:.6g} N (elastic {seen.max_output_force_elastic:.6g} N), "
-          f"input force {seen.input_force.max():.6g} N")
+    print(forces_in_words(seen))
     if seen.residual is not None:
         print(f"measured output force: rms difference {seen.residual.rms:.4g} N "
               f"({100 * seen.residual.relative:.3g} %), largest {seen.residual.largest:.4g} N")
     print(f"relative error {seen.integration_error:.1e} of integration, "
-          f"{seen.interpolation_error:.1e} between samples; {seen.cost.method}, {seen.cost.steps} steps, "
-          f"{seen.cost.events} contact events, {1e3 * seen.cost.wall_s:.1f} ms")
+          f"{seen.interpolation_error:.1e} between samples; {cost_in_words(seen.cost)}")
 
 
-
-def described(seen: Any) -> dict[str, Any]:
+def _json(seen: Observation) -> dict[str, Any]:
     """An observation as one JSON object."""
-    return {
-        "scene": seen.scene.name, "knobs": seen.scene.knobs,
-        "effects": ["given force" if e.startswith("driver") else e for e in seen.scene.effects],
-        "status": seen.status, "input": {
-            "understood": seen.record.understood, "notes": list(seen.record.notes), "samples": len(seen.time),
-            "spacing": seen.record.spacing, "from": float(seen.time[0]), "to": float(seen.time[-1])},
-        "max_output_force": seen.max_output_force, "max_output_force_elastic": seen.max_output_force_elastic,
-        "max_input_force": float(seen.input_force.max()),
-        "residual": None if seen.residual is None else asdict(seen.residual),
-        "residual_elastic": None if seen.residual_elastic is None else asdict(seen.residual_elastic),
-        "error_estimate": seen.error_estimate, "integration_error": seen.integration_error,
-        "interpolation_error": seen.interpolation_error, "cost": asdict(seen.cost),
-    }
+    scene = scene_json(seen.scene)
+    return {**scene, "effects": ["given force" if e.startswith("driver") else e for e in scene["effects"]],
+            "status": seen.status, "input": {
+                "understood": seen.record.understood, "notes": list(seen.record.notes), "samples": len(seen.time),
+                "spacing": seen.record.spacing, "from": float(seen.time[0]), "to": float(seen.time[-1])},
+            **forces_json(seen),
+            "residual": None if seen.residual is None else asdict(seen.residual),
+            "residual_elastic": None if seen.residual_elastic is None else asdict(seen.residual_elastic),
+            "error_estimate": seen.error_estimate, "integration_error": seen.integration_error,
+            "interpolation_error": seen.interpolation_error, "cost": asdict(seen.cost)}

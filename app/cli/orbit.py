@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from granchain_core import BadInput, Scene
-from granchain_core.integrate import State
 from granchain_core.pieces import ORBIT_KERNELS
+from granchain_core.state import State
 
 from .common import chosen_scene, in_background, show_json
 from .compiling import compiling_beside
@@ -57,16 +57,12 @@ def do(arguments: argparse.Namespace) -> None:
             data["observer_stability_certain"] = found.observer_stability_certain
         show_json(data)
         return
-    print(f"{chosen.name}: orbit of period {found.period}, {'stable' if found.stable else 'unstable'}, "
+    print(f"{chosen.name}: orbit of period {found.period}, {found.stability_words()}, "
           f"residual {found.residual:.1e} after {len(found.newton_residuals) - 1} Newton iterations")
     _show_multipliers("multipliers", found.multipliers, found.multiplier_errors)
     if found.observer_multipliers is not None:
-        _show_multipliers("observer", found.observer_multipliers, found.observer_multiplier_errors)
-    if found.multiplier_errors is not None and not found.stability_certain:
-        print("a multiplier is no farther from the unit circle than its error: the stability is not certain")
-    if found.observer_multiplier_errors is not None and not found.observer_stability_certain:
-        print("a multiplier of the observer is no farther from the unit circle than its error: its stability is not "
-              "certain")
+        _show_multipliers(f"observer, {found.observer_stability_words()}", found.observer_multipliers,
+                          found.observer_multiplier_errors)
 
 
 def _pairs(multipliers: Any) -> list[list[float]]:
@@ -87,8 +83,8 @@ def _show_multipliers(title: str, multipliers: Any, errors: Any) -> None:
 
 def _start(chosen: Scene, name: str, seed: int) -> State | None:
     """The state in which Newton's method starts: the last sample if `name` is a file, None for the settled motion."""
-    from granchain_core.integrate.engine import rest
     from granchain_core.orbits import random_state
+    from granchain_core.state import rest
     from granchain_core.store import load
 
     if name == "settled":

@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from .common import chosen_scene, finite_or_null, in_background, show_json
+from .forces import energy_in_words
 from .options import add_json, add_scene, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
@@ -59,6 +60,5 @@ def _show(found: Pulse) -> None:
             (solitary_speed(chosen, force, CONTINUUM), 9, 6), (found.width[i], 11, 4)
         shown = "  ".join(f"{'–' if math.isnan(x) else f'{x:.{digits}g}':>{wide}}" for x, wide, digits in row)
         print(f"{contact:7}  {found.time[i]:9.4e}  {force:10.6g}  {shown}")
-    energy = found.run.energy_residual
     print(f"relative error of displacements {found.run.error_estimate:.1e}; "
-          f"{'no energy account' if energy is None else f'energy closes to {energy:.1e}'}")
+          f"{energy_in_words(found.run.energy_residual)}")

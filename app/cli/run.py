@@ -16,6 +16,7 @@ from granchain_core.run.budget import BUDGET
 from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
 from .data_options import add_answers
 from .driven import do_driven
+from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
 from .picture import add_option as add_picture
@@ -132,17 +133,9 @@ def _warn(result: Run, budget: float) -> None:
 
 def _run_json(result: Run) -> dict[str, Any]:
     """A run as one JSON object."""
-    chosen = result.scene
-    return {
-        "scene": chosen.name, "knobs": chosen.knobs, "effects": chosen.effects, "status": result.status,
-        "regime": result.regime.name, "period": result.regime.period, "evidence": _evidence(result.regime),
-        "max_output_force": result.max_output_force,
-        "max_output_force_elastic": result.max_output_force_elastic,
-        "max_input_force": result.max_input_force, "error_estimate": result.error_estimate,
-        "error_estimate_output": result.force_errors.output, "error_estimate_input": result.force_errors.input,
-        "error_estimate_elastic": result.force_errors.elastic,
-        "energy_residual": result.energy_residual, "cost": asdict(result.cost),
-    }
+    return {**scene_json(result.scene), "status": result.status, "regime": result.regime.name,
+            "period": result.regime.period, "evidence": _evidence(result.regime), **forces_json(result),
+            **errors_json(result), "cost": asdict(result.cost)}
 
 
 def _evidence(regime: Regime) -> dict[str, Any]:
@@ -155,14 +148,5 @@ def _evidence(regime: Regime) -> dict[str, Any]:
 def _show_run(result: Run) -> None:
     """A run in a few lines."""
     print(f"{result.scene.name}: {result.regime.sentence}; {result.status}")
-    print(f"largest output force {result.max_output_force:.6g} N (elastic {result.max_output_force_elastic:.6g} N), "
-          f"input force {result.max_input_force:.6g} N")
-    errors = result.force_errors
-    inward, outward, elastic = ("none stated" if e is None else f"{e:.1e}"
-                                for e in (errors.input, errors.output, errors.elastic))
-    energy = ("no energy account" if result.energy_residual is None
-              else f"energy closes to {result.energy_residual:.1e}")
-    print(f"relative errors: displacement {result.error_estimate:.1e}, output force {outward} (elastic {elastic}), "
-          f"input force {inward}; {energy}; "
-          f"{result.cost.method}, {result.cost.steps} steps, {result.cost.events} contact events, "
-          f"{1e3 * result.cost.wall_s:.1f} ms")
+    print(forces_in_words(result))
+    print(errors_in_words(result))

@@ -54,7 +54,7 @@ def _log_failure(ended: Future[None]) -> None:
 
 
 class Compiler:
-    """Compiles kernels in other processes, each once."""
+    """Compiles kernels in other processes, each once; again where that failed."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -71,12 +71,13 @@ class Compiler:
         return True
 
     def ask(self, scene: Scene, piece: str) -> Future[None]:
-        """Begin to compile in another process, unless that is under way."""
+        """Begin to compile in another process, unless that is under way or done; what failed is tried again."""
         key = structure(scene), piece
         with self._lock:
-            if key not in self._asked:
-                self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
-            return self._asked[key]
+            asked = self._asked.get(key)
+            if asked is None or (asked.done() and asked.exception() is not None):
+                asked = self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
+            return asked
 
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
         """Wait for these kernels; False when the stop flag went up first. Call it from a worker thread."""

@@ -50,7 +50,7 @@ _LEAST_RTOL = 3e-14
 _SAME_EVENT = 1e-9
 
 
-class Motion:
+class ScipyMotion:
     """The beads' equations as SciPy wants them: a function of time and one flat array (u_1..u_N, w_1..w_N), (2N,).
 
     All is scaled, and time is counted from the start of the period.
@@ -93,7 +93,7 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
     wherever a contact opens or closes, as a careful user would do it. Raises `NumbersFailed` and `Cancelled`.
     """
     scaled = scale_chain(scene)
-    motion = Motion(scaled, Stop() if stop is None else stop)
+    motion = ScipyMotion(scaled, Stop() if stop is None else stop)
     inner = motion.inner(scaled.from_si(rest(scene)))
     out = np.full((periods * samples + 1, scene.N), np.nan)
     out[0] = inner[: scene.N]
@@ -108,7 +108,7 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
     return out, counts
 
 
-def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray, samples: int,
+def _period(motion: ScipyMotion, solver: Solver, tolerance: float, inner: np.ndarray, samples: int,
             located: bool) -> tuple[np.ndarray, np.ndarray]:
     """One drive period from the state `inner` (2N,): the state at its end, and the displacements (samples, N).
 
@@ -149,7 +149,7 @@ def _period(motion: Motion, solver: Solver, tolerance: float, inner: np.ndarray,
     return inner, rows
 
 
-def _first_event(motion: Motion, dense: Any, one: Any, before: np.ndarray) -> float:
+def _first_event(motion: ScipyMotion, dense: Any, one: Any, before: np.ndarray) -> float:
     """Scaled time at which the first contact opens or closes inside the step just taken; infinite where none does.
 
     `dense` is the step's interpolant, `one` the solver after it, and `before` the state (2N,) where it began.

@@ -49,7 +49,7 @@ _SLOW = 0.5
 _BRIEF = 0.1
 
 
-class Measured(NamedTuple):
+class Computed(NamedTuple):
     """One computation: displacements in scaled units, evaluations, and the seconds it took."""
 
     moved: np.ndarray
@@ -57,7 +57,7 @@ class Measured(NamedTuple):
     seconds: float
 
 
-Measure = Callable[[Stop], Measured]
+Measure = Callable[[Stop], Computed]
 
 
 @dataclass(frozen=True)
@@ -232,7 +232,7 @@ def compile_methods(scene: Scene) -> None:
 def _row(scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -> Row:
     """Measure one setting; a failure is recorded in its row."""
 
-    def measure(limit: Stop) -> Measured:
+    def measure(limit: Stop) -> Computed:
         if choice.setting is not None:
             return _ours(scene, choice.setting, limit)
         return _scipys(scene, choice.method.removeprefix(SCIPY), choice.value, limit)
@@ -252,9 +252,9 @@ def _faster(before: Row, scene: Scene, choice: MeasuredSetting, exact: np.ndarra
     return again if again.wall_s < before.wall_s and not again.failure else before
 
 
-def _fastest(stop: Stop, measure: Measure) -> Measured:
+def _fastest(stop: Stop, measure: Measure) -> Computed:
     """The run with the least time of several; a slow setting is run once or twice."""
-    runs: list[Measured] = []
+    runs: list[Computed] = []
     while len(runs) < _MOST_RUNS:
         runs.append(_within("It", stop, _ROW_LIMIT, measure))
         spent = sum(run.seconds for run in runs)
@@ -263,7 +263,7 @@ def _fastest(stop: Stop, measure: Measure) -> Measured:
     return min(runs, key=lambda run: run.seconds)
 
 
-def _within(what: str, stop: Stop, seconds: float, measure: Measure) -> Measured:
+def _within(what: str, stop: Stop, seconds: float, measure: Measure) -> Computed:
     """Run `measure` with a flag that is also set after `seconds`, which is then a failure and not a cancellation."""
     try:
         with Limited(stop, seconds) as limit:
@@ -278,19 +278,19 @@ def _periods(scene: Scene) -> int:
     return PERIODS if scene.is_driven else 1
 
 
-def _ours(scene: Scene, setting: Setting, stop: Stop) -> Measured:
+def _ours(scene: Scene, setting: Setting, stop: Stop) -> Computed:
     """The motion by one of granchain's methods."""
     engine = Engine(scene, setting, SAMPLES, stop=stop)
     began = time.perf_counter()
     moved = engine.record(_periods(scene) * SAMPLES).displacement
-    return Measured(moved, engine.counts.rhs, time.perf_counter() - began)
+    return Computed(moved, engine.counts.rhs, time.perf_counter() - began)
 
 
-def _scipys(scene: Scene, solver: str, tolerance: float, stop: Stop, located: bool = False) -> Measured:
+def _scipys(scene: Scene, solver: str, tolerance: float, stop: Stop, located: bool = False) -> Computed:
     """The motion by one of SciPy's solvers."""
     began = time.perf_counter()
     moved, counts = solve(scene, solver, tolerance, _periods(scene), SAMPLES, stop, located)
-    return Measured(moved, counts.rhs, time.perf_counter() - began)
+    return Computed(moved, counts.rhs, time.perf_counter() - began)
 
 
 def _distance(moved: np.ndarray, exact: np.ndarray) -> float:

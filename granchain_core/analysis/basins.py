@@ -15,8 +15,8 @@ import numpy as np
 from ..diagram.attractor import Attractor, Origin, attractors_table
 from ..diagram.attractors import attractors_from
 from ..errors import BadInput
-from ..integrate import State
 from ..scene import Scene
+from ..state import State
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, provenance
 from ..tables.provenance import Attribute

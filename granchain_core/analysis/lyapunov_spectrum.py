@@ -18,10 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import check_range
-from ..integrate import State
 from ..integrate.methods import ADAPTIVE
 from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene
+from ..state import State
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from ..stop import Stop

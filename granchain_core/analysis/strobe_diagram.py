@@ -14,11 +14,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import BadInput, NumbersFailed, check_range, unknown_name
-from ..integrate import State
 from ..integrate.methods import FIXED_STEP
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..scene import Scene
+from ..state import State
 from ..steady.batch.threads import on_all_cores
 from ..steady.curve.order import CURVE_STARTS, coarse_first
 from ..steady.settling.advance import run_until_settled

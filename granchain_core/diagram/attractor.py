@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..integrate import State
 from ..orbits import Orbit
 from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
+from ..state import State
 from ..tables import (
     MAXIMA,
     Column,

@@ -13,11 +13,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import NumbersFailed, check_range
-from ..integrate import Engine, State
+from ..integrate import Engine
 from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
-from ..state import rest
+from ..state import State, rest
 from ..steady.batch.job import Start
 from ..steady.regime_criteria import grows, is_neutral
 from ..steady.steady_state import SteadyState

@@ -22,11 +22,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
-from ..integrate import State
 from ..orbits.branch.special import BIFURCATIONS
 from ..orbits.stroboscopic_map import StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene
+from ..state import State
 from ..stop import Stop
 from .grid import KNOBS
 

@@ -43,7 +43,7 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
     together = _chained(first, rest_of_them)
     if can_share_batch(first.scene):
         for result in batch_states(together, stop):
-            yield settled_alone(result, stop) if result.doubtful else result
+            yield settled_alone(result, stop) if result.undecided else result
         return
     for one in together:
         yield replace(safe_state(one.scene, one.state, stop), number=one.number)

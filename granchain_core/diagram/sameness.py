@@ -14,11 +14,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput, NumbersFailed
-from ..integrate import Engine, Setting, State, adaptive_setting, fixed_step_setting
+from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.search import least_period_of
 from ..scaling import scale_chain
 from ..scene import Scene
+from ..state import State
 from ..steady.steady_state import SteadyState
 
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are the same.

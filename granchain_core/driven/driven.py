@@ -14,14 +14,14 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import State, fixed_step_setting
+from ..integrate import fixed_step_setting
 from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
-from ..motion import MOST_RECORDED, Motion, motion_columns
+from ..recorded_motion import MOST_RECORDED, Motion, motion_columns
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
-from ..state import rest
+from ..state import State, rest
 from ..stop import Stop
 from ..tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute

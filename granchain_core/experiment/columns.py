@@ -166,7 +166,8 @@ def in_si(values: dict[str, np.ndarray], chosen: Chosen, asked: Asked, lines: Se
     kinds = [kind for kind in kinds_of(list(scaled)) if kind in wanted]
     if not kinds:
         there = " and ".join(one.replace("_", " ") for one in scaled)
-        raise BadInput(f"{there[0].upper()}{there[1:]} do not make {' or '.join(_WORDS[kind] for kind in wanted)}.")
+        needed = " or ".join(_WORDS[kind] for kind in wanted)
+        raise BadInput(f"{there[0].upper()}{there[1:]} are not enough for {needed}.")
     if not asked_for:
         _check_plausible(scaled, chosen, asked)
     return assembled(Columns(scaled, lines, units), kinds[0], layout, source, note)

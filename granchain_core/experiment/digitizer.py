@@ -39,7 +39,8 @@ def datasets_in(content: bytes) -> dict[str, list[tuple[float, float]]]:
     try:
         project = json.loads(_archived(content) if _is_archive(content) else content.decode("utf-8-sig"))
     except (ValueError, RecursionError) as problem:
-        raise BadInput(f"The file begins as JSON and is none: {' '.join(str(problem).split())[:100]}.") from None
+        said = " ".join(str(problem).split())[:100]
+        raise BadInput(f"The file looks like JSON but cannot be parsed: {said}.") from None
     if not isinstance(project, dict):
         raise BadInput("The file is JSON, but no project of WebPlotDigitizer.")
     if "datasetColl" in project:

@@ -37,7 +37,7 @@ _LOOKED_AT = 60
 
 
 @dataclass(frozen=True)
-class Grid:
+class TextGrid:
     """Rows of fields with their lines, the comments, and how the text was taken apart."""
 
     rows: list[Row]
@@ -46,7 +46,7 @@ class Grid:
     encoding: str
 
 
-def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | None = None) -> Grid:
+def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | None = None) -> TextGrid:
     """The fields of a text. Raises `BadInput`."""
     if len(content) > most_bytes:
         raise BadInput(f"The file has {len(content)} bytes; at most {most_bytes} are read.")
@@ -71,7 +71,7 @@ def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | No
     rows = [(number, fields) for number, fields in _split(kept, mark) if any(fields)]
     if not rows:
         raise BadInput(f"Line {kept[0][0]}: there is nothing between the separators.")
-    return Grid(rows, [one for one in comments if one], mark, encoding)
+    return TextGrid(rows, [one for one in comments if one], mark, encoding)
 
 
 def _decoded(content: bytes) -> tuple[str, str]:

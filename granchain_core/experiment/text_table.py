@@ -10,7 +10,7 @@ import numpy as np
 
 from ..errors import BadInput
 from .columns import NO_CONVENTION, Asked, Convention, chosen_columns, in_si
-from .grid import LIKE_A_NUMBER, Grid, Row
+from .grid import LIKE_A_NUMBER, Row, TextGrid
 from .measured import Measured, note_of
 from .numerals import decimal_mark, number_as
 from .question import Answers, Guess, Question, Unclear, first_rows
@@ -31,7 +31,7 @@ class _Parts:
     header_line: int
 
 
-def _parted(grid: Grid) -> _Parts:
+def _parted(grid: TextGrid) -> _Parts:
     rows = grid.rows
     width = _width(rows)
     begin = next((i for i, (_, fields) in enumerate(rows) if len(fields) == width and (
@@ -111,7 +111,7 @@ def _trimmed(data: list[Row], width: int) -> list[Row]:
     return found
 
 
-def read_text_table(grid: Grid, answers: Answers, wanted: Sequence[str], source: str,
+def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], source: str,
                     convention: Convention = NO_CONVENTION) -> Series | Shaker | Measured:
     """The measurement in a grid."""
     parts = _parted(grid)

@@ -1,11 +1,10 @@
 """Minimising a misfit that is smooth within a regime and jumps between regimes.
 
-A Sobol sequence (scipy.stats.qmc) covers the bounds: no slope leads from one regime to the next, so only a look at all
-of them finds the right one. From the best places SciPy's `least_squares` goes down, a trust-region method that keeps to
-bounds (Branch, Coleman & Li 1999): it uses that χ² is a sum of squares, needs some ten times fewer curves than a
-method that does not, and refuses a step over a jump that makes χ² larger. Where the regimes differ around the place
-where it stops, or residuals are not smooth at all (frequencies of peaks), Nelder and Mead's simplex, which uses no
-slopes, goes on.
+A Sobol sequence (scipy.stats.qmc) covers the bounds: no slope leads from one regime to the next, so every regime must
+be sampled. From the best places SciPy's `least_squares` goes down, a trust-region method that keeps to bounds
+(Branch, Coleman & Li 1999): it uses that χ² is a sum of squares, needs some ten times fewer curves than a method that
+does not, and refuses a step over a jump that makes χ² larger. Where the regimes differ around the place where it stops,
+or residuals are not smooth at all (frequencies of peaks), Nelder and Mead's simplex, which uses no slopes, goes on.
 """
 
 from __future__ import annotations

@@ -32,7 +32,7 @@ def virtual_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, error
 
 
 def virtual_series(scene: Scene, periods: int, samples: int, error: float, random: np.random.Generator) -> Series:
-    """The model's forces over so many drive periods, begun at any phase, with normal noise of `error` [N]."""
+    """The model's forces over `periods` drive periods, begun at any phase, with normal noise of `error` [N]."""
     found = settle(scene, samples=_FINER * samples).run
     time = np.arange(periods * samples) / (samples * scene.f)
     begun, width = random.random() * float(found.time[-1] - found.time[0]), 1.0 / (samples * scene.f)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, adaptive_setting
+from ..integrate import Engine, Setting, adaptive_setting
 from ..integrate.methods import ADAPTIVE
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.dissipation import LinearDashpot
@@ -18,6 +18,7 @@ from ..kernels.effects.tension import new_tension_cut
 from ..kernels.samples import Samples
 from ..scene import Scene, scene
 from ..scene.hertz import HERTZ_DURATION
+from ..state import State
 
 
 def contact_time(speed: float, reduced_mass: float = 0.5, stiffness: float = 1.0) -> float:

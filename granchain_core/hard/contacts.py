@@ -10,7 +10,7 @@ from . import touches
 from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time
 from .naive_solvers import euler, one_after_another, plain_slope
-from .oracle import Plain, solved
+from .oracle import PlainChain, solved
 
 
 def brushed(quick: bool) -> list[Measurement]:
@@ -131,10 +131,10 @@ def free_pulse(beads: int, inverse_mass: list[float], time: float = 20.0) -> flo
     bench = Bench(beads, time, 32, ends=(0.0, 0.0), inverse_mass=inverse_mass, tolerance=1e-14)
     bench.throw(np.eye(beads)[0])
     ours = bench.record().displacement
-    chain = Plain(bench.masses, bench.springs, bench.static, 0.0, 0.0, 2.0 * np.pi / time)
+    chain = PlainChain(bench.masses, bench.springs, bench.static, 0.0, 0.0, 2.0 * np.pi / time)
     apart = np.full(beads + 1, 0.0)
     apart[[0, -1]] = -1e6
-    true = solved(Plain(chain.masses, chain.springs, apart, 0.0, 0.0, chain.beta),
+    true = solved(PlainChain(chain.masses, chain.springs, apart, 0.0, 0.0, chain.beta),
                   np.concatenate([np.zeros(beads), np.eye(beads)[0]]), bench.time, rtol=3e-14)[:, :beads]
     return float(np.abs(ours - true).max() / np.abs(true).max())
 
@@ -188,7 +188,7 @@ def collisions_picture() -> Picture:
     bench.throw(np.eye(beads)[0])
     apart = np.full(beads + 1, 0.0)
     apart[[0, -1]] = -1e6
-    slope = plain_slope(Plain(bench.masses, np.ones(beads + 1), apart, 0.0, 0.0, 1.0))
+    slope = plain_slope(PlainChain(bench.masses, np.ones(beads + 1), apart, 0.0, 0.0, 1.0))
     start = np.concatenate([np.zeros(beads), np.eye(beads)[0]])
     naive = euler(slope, start, step, samples * every)[::every, beads:]
     return Picture(bench.time, "scaled time", "velocity over the first bead's", tuple(

@@ -11,7 +11,7 @@ from ..run.run import run
 from ..scene import Scene, scene
 from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time
-from .oracle import Plain, restitution, solved
+from .oracle import PlainChain, restitution, solved
 
 
 def overdamped(times: float, beads: int = 3) -> Scene:
@@ -22,7 +22,7 @@ def overdamped(times: float, beads: int = 3) -> Scene:
 def implicit_error(chosen: Scene, samples: int = 16) -> float:
     """Largest difference of `run` from Radau in (u, v) in the first period from rest, over the largest displacement."""
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
-    chain = Plain.of(chosen)
+    chain = PlainChain.of(chosen)
     times = chain.period * np.arange(samples + 1) / samples
     true = solved(chain, np.zeros(2 * chosen.N), times, "Radau", 1e-10)[:, : chosen.N]
     return float(np.abs(ours - true).max() / np.abs(true).max())

@@ -6,17 +6,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, State, adaptive_setting, fixed_step_setting
+from ..integrate import Engine, adaptive_setting, fixed_step_setting
 from ..integrate.methods import ADAPTIVE
 from ..kernels.effects.driver import Harmonic
 from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene, scene
+from ..state import State
 from ..steady.curve.resonance_curve import iter_curve
 from ..steady.lyapunov import exponents
 from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time
 from .naive_solvers import plain_slope, rk4
-from .oracle import Plain
+from .oracle import PlainChain
 
 _BEADS = 7
 
@@ -201,7 +202,7 @@ def switched_picture() -> Picture:
     engine.grid_index = engine.grid // 4
     engine.place()  # the driver is at its amplitude now; the beads, and w, are where they were
     ours = engine.record(shown).velocity.sum(axis=1)
-    chain = Plain.of(chosen)
+    chain = PlainChain.of(chosen)
     naive = rk4(plain_slope(chain), np.zeros(2 * beads), 0.25 * chain.period, chain.period / samples / 2, 2 * shown)
     rest, after = np.zeros(2), np.arange(shown + 1)
     traces = [Trace(label, np.concatenate([rest, momentum]) / np.abs(ours).max()) for label, momentum in (

@@ -6,14 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, State, adaptive_setting, fixed_step_setting
+from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..run.run import run
 from ..scene import Scene, scene
+from ..state import State
 from .case import Measurement, Picture, Trace
 from .naive_solvers import plain_slope, rk4
-from .oracle import Plain, solved
+from .oracle import PlainChain, solved
 
 
 def scaled_difference(frequency: float, setting: Setting, times: tuple[float, ...]) -> float:
@@ -109,7 +110,7 @@ def amplitudes_picture() -> Picture:
 def plain_error(chosen: Scene, samples: int = 16, method: str = "DOP853") -> float:
     """Largest difference of `run` from SciPy restarted at every contact event, over the first period from rest."""
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
-    chain = Plain.of(chosen)
+    chain = PlainChain.of(chosen)
     times = chain.period * np.arange(samples + 1) / samples
     true = solved(chain, np.zeros(2 * chosen.N), times, method, 1e-11)[:, : chosen.N]
     return float(np.abs(ours - true).max() / np.abs(true).max())
@@ -167,7 +168,7 @@ def sizes_picture() -> Picture:
     """A bead of a thousandth of the mass between two others: ours, and plain RK4 with one step for all of them."""
     chosen, samples, every, light = unequal({2: 1e-3}, 3), 200, 10, 1
     ours = run(chosen, periods=0, record=1, samples=samples).displacement / chosen.A0
-    chain = Plain.of(chosen)
+    chain = PlainChain.of(chosen)
     steps = samples * every
     naive = rk4(plain_slope(chain), np.zeros(2 * chosen.N), 0.0, chain.period / steps, steps)[::every, light]
     naive[np.logical_or.accumulate(~(np.abs(naive) < 4.0))] = np.nan

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from .oracle import Plain
+from .oracle import PlainChain
 
 Slope = Callable[[float, np.ndarray], np.ndarray]
 
 
-def plain_slope(chain: Plain, push: tuple[np.ndarray, np.ndarray] | None = None) -> Slope:
+def plain_slope(chain: PlainChain, push: tuple[np.ndarray, np.ndarray] | None = None) -> Slope:
     """(u̇, v̇) of a chain whose contacts act where their overlap is above zero.
 
     With a `push`, times and forces that are interpolated linearly, the first bead feels that force and no driver.
@@ -76,7 +76,7 @@ def one_after_another(velocity: np.ndarray, damping: float, step: float, count: 
     return out
 
 
-def observed_apart(chain: Plain, start: np.ndarray, periods: int, rtol: float) -> np.ndarray:
+def observed_apart(chain: PlainChain, start: np.ndarray, periods: int, rtol: float) -> np.ndarray:
     """Largest difference (periods + 1,) between a chain and its observer, each a run of SciPy's solve_ivp of its own.
 
     Both start in `start`. The observer's first bead is pushed by the force that the driver had in the first run, read

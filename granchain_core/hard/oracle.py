@@ -24,7 +24,7 @@ _MOST_EVENTS = 20_000
 
 
 @dataclass(frozen=True, eq=False)
-class Plain:
+class PlainChain:
     """A chain in scaled units, with the linear dashpot only.
 
     `masses` (N,); `springs`, the stiffness of contacts, and `static`, their overlap at rest, (N+1,); `damping` of a
@@ -40,7 +40,7 @@ class Plain:
     beta: float
 
     @classmethod
-    def of(cls, scene: Scene) -> Plain:
+    def of(cls, scene: Scene) -> PlainChain:
         """The plain form of a scene; its dissipation must be the linear dashpot or none, its tension allowed."""
         mass, stiffness, length = scene.bead(1).mass, scene.K, scene.A0
         rate = np.sqrt(stiffness * np.sqrt(length) / mass)
@@ -71,7 +71,7 @@ class Plain:
         return np.concatenate([state[n:], (force[:-1] - force[1:] - self.foundation * state[:n]) / self.masses])
 
 
-def solved(chain: Plain, start: np.ndarray, times: np.ndarray, method: str = "DOP853",
+def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str = "DOP853",
            rtol: float = 1e-12) -> np.ndarray:
     """States (T, 2N) of displacements and velocities at scaled `times` (T,), from `start` (2N,) at the first of them.
 
@@ -105,7 +105,7 @@ def solved(chain: Plain, start: np.ndarray, times: np.ndarray, method: str = "DO
     raise NumbersFailed(f"SciPy's {method} met more than {_MOST_EVENTS} contact events.", "chatter")
 
 
-def _event(chain: Plain, contact: int, closed: bool) -> Callable[[float, np.ndarray], float]:
+def _event(chain: PlainChain, contact: int, closed: bool) -> Callable[[float, np.ndarray], float]:
     def gap(t: float, state: np.ndarray) -> float:
         return float(chain.overlaps(t, state)[contact])
 

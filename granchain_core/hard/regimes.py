@@ -16,7 +16,7 @@ from ..steady.regime_criteria import find_period
 from ..steady.settling.settle import settle
 from .case import Measurement, Picture, Trace
 from .naive_solvers import observed_apart
-from .oracle import Plain
+from .oracle import PlainChain
 
 #: Strobes of a normal form.
 _STROBES = 400
@@ -235,5 +235,5 @@ def _two_runs(tolerance: float, count: int) -> np.ndarray:
     orbit = periodic_orbit(scene("fig11-free"))
     scales = Engine(orbit.scene, adaptive_setting()).scaled.scales
     start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])
-    apart = observed_apart(Plain.of(orbit.scene), start, count - 1, tolerance)
+    apart = observed_apart(PlainChain.of(orbit.scene), start, count - 1, tolerance)
     return np.where(apart > 0.0, apart, np.nan)

@@ -51,7 +51,7 @@ class File:
                 rows: int | None = None) -> np.ndarray:
         """Numbers of a shape, checked before they are read: floats of eight bytes ("f"), whole numbers ("i") or both.
 
-        A unit that the file states must be `unit`. With `rows`, only the first so many are read.
+        A unit that the file states must be `unit`. With `rows`, only the first `rows` are read.
         """
         stored = self._stored(path)
         if stored.shape != shape:

@@ -17,7 +17,7 @@ import numpy as np
 from . import plain
 from .plain import Refused, Stored
 
-#: Time that opening and reading may take, and one second more for so many bytes of the file.
+#: Time that opening and reading may take, and one second more for each of this many bytes of the file.
 _SECONDS, _BYTES_A_SECOND = 10, 20_000_000
 #: Longest answer that is not numbers [bytes].
 _LONGEST = 64_000_000

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..kernels.contact_cubic import ENDS
-from ..kernels.entry import Entries, structure
+from ..kernels.entry import Entries, types_of
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
 from ..kernels.jit import all_in_simd_kernels
@@ -69,7 +69,7 @@ class FixedStep:
     def work(self, work: Any) -> None:
         """Use another workspace, maybe of another type: another version of the kernels is called then."""
         self._work = work
-        self._structure = structure((self.method, self.scaled.slots, work))
+        self._structure = types_of((self.method, self.scaled.slots, work))
 
     def _driver_table(self, scaled: ScaledChain) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""

@@ -50,10 +50,10 @@ class Entries:
         return found(*arguments)
 
 
-def structure(value: Any) -> Any:
+def types_of(value: Any) -> Any:
     """A key for a value's Numba type: classes of nested tuples, kind and layout of arrays, type of the rest."""
     if isinstance(value, tuple):
-        return type(value), *map(structure, value)
+        return type(value), *map(types_of, value)
     if isinstance(value, np.ndarray):
         return value.dtype.char, value.ndim, value.flags.c_contiguous, value.flags.writeable
     return type(value)

@@ -18,15 +18,14 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import State
 from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR, REGULAR
 from ..integrate.stated import relative_difference
-from ..motion import MOST_RECORDED, Motion, elastic_output, motion_columns
+from ..recorded_motion import MOST_RECORDED, Motion, elastic_output, motion_columns
 from ..result import Cost
 from ..scene import Scene
-from ..state import rest
+from ..state import State, rest
 from ..stop import Stop
 from ..tables import Column, Table, axis, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
@@ -98,6 +97,11 @@ class Observation(Motion):
     def time(self) -> np.ndarray:
         """Times of the samples (T,) [s], as in the input."""
         return self.record.time
+
+    @property
+    def max_input_force(self) -> float:
+        """Largest sample of the force that pushes bead 1 [N]."""
+        return float(self.input_force.max())
 
     @property
     def error_estimate(self) -> float:

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, State, adaptive_setting
+from ..integrate import Engine, adaptive_setting
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import BODY_FAR_AWAY
 from ..kernels.effects.given_force import ObserverCoupling
@@ -20,6 +20,7 @@ from ..kernels.samples import Samples
 from ..orbits.stroboscopic_map import TOLERANCE
 from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
+from ..state import State
 from ..stop import Stop
 
 

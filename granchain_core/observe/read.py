@@ -15,7 +15,7 @@ from ..experiment.measured import MOST_BYTES, MOST_ROWS
 from ..experiment.units import UNITS, unit_named
 from ..hdf5 import SIGNATURE, File, opened
 from ..hdf5.plain import Refused
-from ..integrate import State
+from ..state import State
 from .record import ForceRecord, checked
 
 #: Endings of the names of HDF5 files, whose beginning may be damaged.

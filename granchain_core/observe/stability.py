@@ -70,7 +70,7 @@ def observer_stability(scene: Scene, knob: str, values: Sequence[float], period:
     `period` of the orbit in drive periods; else that of the steady state at the first value. Raises `BadInput`.
     """
     if knob not in CONTINUOUS:
-        raise BadInput(f"{knob!r} is no knob an observer is followed along; known: {', '.join(CONTINUOUS)}.")
+        raise BadInput(f"Observer stability cannot be followed over {knob!r}; possible: {', '.join(CONTINUOUS)}.")
     if not 1 <= len(values) <= MOST_VALUES:
         raise BadInput(f"{len(values)} values are outside 1 to {MOST_VALUES}; the nearest valid number is "
                        f"{min(max(len(values), 1), MOST_VALUES)}.")

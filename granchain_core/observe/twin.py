@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, check_range
-from ..integrate import State
 from ..integrate.methods import ADAPTIVE
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
+from ..state import State
 from ..steady.settling.advance import run_until_settled
 from ..stop import Stop
 from .drift import is_drift, share_of_translation

@@ -5,16 +5,17 @@ Equation   Δμ_i = y_i* ΔM x_i / y_i* x_i to first order, with x_i and y_i the
 Source     Wilkinson 1965, The Algebraic Eigenvalue Problem, chapter 2
 Note       ΔM is measured: M minus the derivative of a map whose steps have ten times the tolerance, at that map's own
            fixed point. Its entries may cancel by chance in y* ΔM x, which is why their moduli count too. The rounding
-           of M is added. Where two multipliers meet, y* x goes to zero and the error grows beyond all bounds, as the
-           multipliers' dependence on M does.
+           of M is added. Beyond a grazing M varies as the root of the depth, so a shift of the orbit by the tolerance
+           changes it by the root of the tolerance: there ΔM is large (docs/orbits.md). Where two multipliers meet, y* x
+           goes to zero and the error grows beyond all bounds, as the multipliers' dependence on M does.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..integrate import State
 from ..scene import Scene
+from ..state import State
 from ..stop import Stop
 from .stroboscopic_map import TOLERANCE, StroboscopicMap
 

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed, check_range
-from ..integrate import State
 from ..integrate.methods import ADAPTIVE
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
+from ..state import State
 from ..steady.regime_criteria import LONGEST_PERIOD
 from ..steady.returns import relative_change
 from ..steady.settling.advance import run_until_settled
@@ -127,6 +127,16 @@ class Orbit(Labelled):
         """Whether `stable` holds in spite of the errors; False if these are not known."""
         return _is_certain(self.multipliers, self.multiplier_errors)
 
+    def stability_words(self) -> str:
+        """"stable" or "unstable"; where a multiplier is no farther from the unit circle than its error, that one."""
+        return _stability_words(self.multipliers, self.multiplier_errors)
+
+    def observer_stability_words(self) -> str | None:
+        """The same of the observer; None where it was not requested."""
+        if self.observer_multipliers is None:
+            return None
+        return _stability_words(self.observer_multipliers, self.observer_multiplier_errors)
+
     @property
     def observer_stability_certain(self) -> bool | None:
         """Whether `observer_stable` holds in spite of the errors; None where the observer was not requested."""
@@ -166,8 +176,8 @@ class Orbit(Labelled):
     def summary(self) -> list[str]:
         """Period, stability, the leading multiplier and how well the orbit closes."""
         lead = self.multipliers[0]
-        observer = "" if self.observer_stable is None else f"; observer {'' if self.observer_stable else 'un'}stable"
-        return [f"period {self.period}, {'stable' if self.stable else 'unstable'}{observer}",
+        observer = "" if self.observer_stable is None else f"; observer {self.observer_stability_words()}"
+        return [f"period {self.period}, {self.stability_words()}{observer}",
                 f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}"
                 + ("" if self.multiplier_errors is None else f" ± {self.multiplier_errors[0]:.0e}"),
                 f"closes to {self.residual:.1e} of its largest entry"]
@@ -305,6 +315,14 @@ def _is_certain(multipliers: np.ndarray, errors: np.ndarray | None) -> bool:
     """Whether all multipliers are inside the unit circle by more than their errors, or at least one is outside."""
     sizes = np.abs(multipliers)
     return errors is not None and bool((sizes + errors < 1.0).all() or (sizes - errors > 1.0).any())
+
+
+def _stability_words(multipliers: np.ndarray, errors: np.ndarray | None) -> str:
+    sizes = np.abs(multipliers)
+    if errors is None or _is_certain(multipliers, errors):
+        return "stable" if sizes.max() < 1.0 else "unstable"
+    nearest = int(np.argmin(np.abs(sizes - 1.0) - errors))
+    return f"stability not decided (|μ| {modulus_words(sizes[nearest])} ± {errors[nearest]:.0e})"
 
 
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:

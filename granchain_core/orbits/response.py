@@ -1,20 +1,9 @@
 """The kind of response of a periodic orbit, from the orbit alone: 1:n resonance, anti-resonance, or stop band.
 
-The place of a state on a resonance curve is another matter (steady/curve/resonance.py).
-
-Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives one strong push every n periods, at the
-moment at which the pulse reflected by the wall comes back to it; in an anti-resonance pulses interfere destructively,
-and every period has one push, none much stronger than the others. Both are read from the orbit itself:
-
-pushes     counted as in steady/curve/resonance.py: `strong` pushes in `periods` drive periods, in lowest terms.
-returning  speed with which bead 1 comes towards the driver just before the strongest push, over the drive's largest
-           speed 2πf A0: the reflected pulse, if it is in step.
-rule       one strong push in n ≥ 2 periods is a 1:n resonance. One push a period is a 1:1 resonance if `returning` is
-           at least a third, else an anti-resonance. Where less than `STOPS` of the input force arrives at the wall the
-           chain is in its stop band and the response is neither.
-
-The drive's phase at contact alone does not distinguish the two: for section 2 it is 343° at the 1:1 peak and 355° in
-the valley after it.
+The rule and its thresholds are in docs/orbits.md; the place of a state on a resonance curve is another matter
+(steady/curve/resonance.py). Source: Zhang et al. 2016, sections 2 and 3: in a 1:n resonance the driver gives one strong
+push every n periods, at the moment at which the pulse reflected by the wall comes back to it; in an anti-resonance
+pulses interfere destructively, and every period has one push, none much stronger than the others.
 """
 
 from __future__ import annotations

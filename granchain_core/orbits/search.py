@@ -13,9 +13,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..integrate import State
 from ..scaling import scale_chain
 from ..scene import Scene
+from ..state import State
 from ..steady.returns import least_period
 from ..stop import Stop
 from .orbit import Orbit, periodic_orbit

@@ -51,7 +51,7 @@ ENERGY = {"fig3a": 4, "fig3b": 9}
 _TRAIN, _ENERGY = 960, 192
 #: Drive periods for which model (3) is followed from rest before it is shown.
 _FOLLOWED = 60
-#: The observer of figure 11 starts this part of A0 beside its chain and is followed for so many periods of 100 Hz.
+#: Figure 11: the observer starts `perturbation` · A0 beside its chain and is followed for `periods` drive periods.
 FIGURE_11 = {"frequencies": (100.0,), "periods": 16, "perturbation": 1e-3}
 
 

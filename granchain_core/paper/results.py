@@ -211,7 +211,7 @@ class Observers:
 
 
 def repeated(run: Run, periods: float) -> tuple[np.ndarray, np.ndarray]:
-    """Indices into a recorded orbit, again and again for so many drive periods, and their times from 0 [s].
+    """Indices into a recorded orbit, again and again for `periods` drive periods, and their times from 0 [s].
 
     A motion that does not repeat is shown once, as far as it was recorded.
     """

@@ -139,7 +139,7 @@ def refuse_long_picture(scene: Scene, periods: int, samples: int, budget: float)
     fits = [f"N = {beads}"] if beads else []
     fastest = float(f"{1.1 * scene.f / part:.2g}")
     while fastest <= QUANTITIES["f"].high and picture_seconds(scene.evolve(f=fastest), periods, samples) > budget:
-        fastest = float(f"{1.5 * fastest:.2g}")  # a period has at least so many steps, however short it is
+        fastest = float(f"{1.5 * fastest:.2g}")  # a period has a least number of steps, however short it is
     if fastest <= QUANTITIES["f"].high:
         fits.append(f"f = {fastest:g} Hz")
     remedy = f"{' or '.join(fits)} would fit" if fits else "fewer beads and a higher frequency are needed"

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, State, fixed_step_setting
+from ..integrate import Engine, fixed_step_setting
 from ..kernels.forces.peaks import next_period
 from ..regime import Regime
 from ..result import Cost, Jumps, Run, run_from, start_words
 from ..scene import Scene
-from ..state import rest
+from ..state import State, rest
 from ..stop import Stop
 
 LIVE_SETTING = fixed_step_setting(2)

@@ -13,16 +13,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput, check_range
-from ..integrate import Counts, Engine, Setting, State, fixed_step_setting, method_for
+from ..integrate import Counts, Engine, Setting, fixed_step_setting, method_for
 from ..integrate.methods import setting_of
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
-from ..motion import MOST_RECORDED
+from ..recorded_motion import MOST_RECORDED
 from ..regime import Regime
 from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
-from ..state import rest
+from ..state import State, rest
 from ..steady.regime_criteria import find_period
 from ..steady.settling.regime_decisions import REMEMBERED, regime_without_continuing
 from ..stop import Stop

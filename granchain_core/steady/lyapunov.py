@@ -27,7 +27,7 @@ def put_with_shadow(batch: Batch, member: int, shadow: int, scaled: ScaledChain,
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
+class MeasuredExponents:
     """What a member with a shadow has shown.
 
     `exponents` (blocks,) are mean exponents per period, `strobes` (P, 2, N) displacement and w at the ends of the
@@ -40,7 +40,7 @@ class Measured:
     y: np.ndarray
 
 
-def exponents_of(batch: Batch, member: int, block: int) -> Measured:
+def exponents_of(batch: Batch, member: int, block: int) -> MeasuredExponents:
     """The exponents of a member that is due and has kept its shadow.
 
     In the first block, which does not count, the shadow turns to the leading direction.
@@ -49,8 +49,8 @@ def exponents_of(batch: Batch, member: int, block: int) -> Measured:
     periods, state = len(growth), batch.state
     strobes = state.strobes[member, : periods + 1]
     last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_KEPT
-    return Measured(growth[block:].reshape(-1, block).mean(axis=1), strobes[1:, :, 1:-1].copy(),
-                    state.maxima[member, last, :3].copy(), strobes[-1].ravel().copy())
+    return MeasuredExponents(growth[block:].reshape(-1, block).mean(axis=1), strobes[1:, :, 1:-1].copy(),
+                             state.maxima[member, last, :3].copy(), strobes[-1].ravel().copy())
 
 
 @functools.cache

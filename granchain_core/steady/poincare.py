@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..integrate import Engine, State, fixed_step_setting
+from ..integrate import Engine, fixed_step_setting
 from ..scene import Scene
-from ..state import rest
+from ..state import State, rest
 from ..stop import Stop
 
 #: Most values of displacement that a section keeps: it holds fewer periods of a longer chain.

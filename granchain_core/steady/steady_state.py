@@ -21,7 +21,7 @@ class SteadyState:
 
     `errors` (3,) are their relative errors, None where none is stated; `state` is at drive phase 0. If the computation
     failed, `failure` is a sentence, `status` the name of the failure, and the forces are NaN. `number` is that of the
-    start it was found from. If `doubtful`, the batch could not decide, and `settle` has to continue from `state`.
+    start it was found from. If `undecided`, the batch could not decide, and `settle` has to continue from `state`.
     """
 
     scene: Scene
@@ -32,7 +32,7 @@ class SteadyState:
     failure: str = ""
     status: str = "done"
     number: int = 0
-    doubtful: bool = False
+    undecided: bool = False
 
     @property
     def force_errors(self) -> ForceErrors:

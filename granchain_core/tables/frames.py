@@ -77,5 +77,5 @@ def _imported(library: str, asked: str) -> Any:
     try:
         return importlib.import_module(library)
     except ImportError:
-        raise BadInput(f"{asked} needs the package {library}; install it with "
-                       "`pip install 'granchain[frames]'`.") from None
+        raise BadInput(f"{asked} needs the package {library}; install it with `pip install {library}`, or with "
+                       "`pip install -e '.[frames]'` in a clone of granchain.") from None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from ..errors import BadInput, unknown_name
 from .provenance import Attribute
-from .shown import as_html, as_text, in_words
+from .shown import as_html, as_text, scene_in_words
 from .table import Table
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class Labelled:
 
     def heading(self) -> str:
         """What it is, and of which scene."""
-        return f"{type(self).__name__} of {in_words(self.scene)}"
+        return f"{type(self).__name__} of {scene_in_words(self.scene)}"
 
     def to_xarray(self, table: str = "") -> xarray.Dataset:
         """A table as a dataset of xarray, the main one if none is named.

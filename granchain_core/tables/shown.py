@@ -25,7 +25,7 @@ def as_html(heading: str, sentences: Sequence[str], tables: Sequence[Table]) -> 
             f"<details><summary>names and units</summary>{held}</details></div>")
 
 
-def in_words(scene: Scene) -> str:
+def scene_in_words(scene: Scene) -> str:
     """A scene, and the knobs that are not those of its preset."""
     changed = [f"{name} = {value:g}{_unit(name)}" if isinstance(value, float | int) else f"{name} = {value}"
                for name, value in {"f": scene.f, **scene.differences()}.items()]

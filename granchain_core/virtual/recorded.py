@@ -15,11 +15,12 @@ import numpy as np
 from ..errors import BadInput, check_range
 from ..experiment.measured import VIRTUAL
 from ..fit.trains import Train
-from ..integrate import Engine, State, fixed_step_setting
+from ..integrate import Engine, fixed_step_setting
 from ..integrate.methods import typical_error
 from ..result import GIVEN_STATE, Cost, Run, run_from
 from ..scene import Scene
 from ..scene.driven import refuse_undriven
+from ..state import State
 from ..steady.settling.settle import settle
 from ..stop import Stop
 from ..version import __version__

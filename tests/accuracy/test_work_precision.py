@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import threading
 import time
 from collections.abc import Callable
@@ -77,8 +76,7 @@ def test_a_failed_row_is_never_the_cheapest() -> None:
     assert cheapest([failed], 1e-6) is None
 
 
-def test_progress_reaches_the_end_and_json_has_its_keys(monkeypatch: pytest.MonkeyPatch,
-                                                        capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_reaches_the_end_while_rows_are_added(monkeypatch: pytest.MonkeyPatch) -> None:
     told: list[float] = []
     grown: list[int] = []
     monkeypatch.setattr(granchain_core.accuracy, "work_precision", lambda chosen, stop, progress: entry(
@@ -86,9 +84,6 @@ def test_progress_reaches_the_end_and_json_has_its_keys(monkeypatch: pytest.Monk
     assert main(["accuracy", "sec2", "--set", "N=2", "--set", "f=2000", "--json"]) == 0
     assert told == sorted(told) and told[-1] == pytest.approx(1.0)
     assert grown == sorted(grown) and grown[-1] == len(list(measured_settings()))
-    data = json.loads(capsys.readouterr().out)
-    assert set(data) >= {"reference", "rows"} and set(data["reference"]) >= {"method", "agreement"}
-    assert all(set(row) >= {"method", "setting", "error", "wall_s", "rhs", "failure"} for row in data["rows"])
 
 
 def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

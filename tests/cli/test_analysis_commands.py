@@ -1,4 +1,4 @@
-"""spectrum, lyapunov, strobes, attractors, basins, pulse, bands: their JSON, their words, their pictures, and what they refuse."""
+"""spectrum, lyapunov, strobes, attractors, basins, pulse, bands: their words, their pictures, and what they refuse."""
 
 from __future__ import annotations
 
@@ -20,25 +20,15 @@ COMMANDS = {
     "basins": [*SHORT, "--x", "u1=0:2e-7:2", "--y", "v1=0:1e-3:2"],
     "pulse": ["impact", "--set", "N=5"], "bands": ["precompressed"],
 }
-KEYS = {
-    "spectrum": {"force", "period", "resolution", "aliasing", "frequency", "amplitude", "phase", "transfer"},
-    "lyapunov": {"exponents", "errors", "resolved", "dimension", "dimension_low", "dimension_high", "mean_trace", "liouville", "periods"},
-    "strobes": {"knob", "start", "bead", "values", "regime", "period", "displacement", "velocity"},
-    "attractors": {"scene", "knobs", "random_states", "seed", "attractors"},
-    "basins": {"x", "y", "number", "attractors"}, "bands": {"bands", "cut_off"},
-    "pulse": {"contact", "time", "force", "speed_beads", "speed", "width", "velocity", "error_estimate", "energy_residual"},
-}
 #: A source in the picture of each, where it has one.
 SOURCES = {"spectrum": "lines", "strobes": "strobes", "attractors": "period 1", "basins": "basin 1"}
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_json_has_its_keys_and_a_picture_its_points(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize("command", SOURCES)
+def test_a_picture_has_its_points(command: str, tmp_path: Path) -> None:
     page = tmp_path / "a.html"
-    picture = ["--picture", str(page)] if command in SOURCES else []
-    assert main([command, *COMMANDS[command], "--json", *picture]) == 0
-    assert set(json.loads(capsys.readouterr().out)) == KEYS[command]
-    assert not picture or f'"name": "{SOURCES[command]}"' in page.read_text(encoding="utf-8").replace('\\"', '"').replace('":"', '": "')
+    assert main([command, *COMMANDS[command], "--picture", str(page)]) == 0
+    assert f'"name": "{SOURCES[command]}"' in page.read_text(encoding="utf-8").replace('\\"', '"').replace('":"', '": "')
 
 
 @pytest.mark.parametrize(("command", "words"), [

@@ -68,7 +68,8 @@ def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
     told = follow(tree, "-c", """
 import numpy as np
 from granchain_core import scene
-from granchain_core.integrate import Engine, State, fixed_step_setting
+from granchain_core.integrate import Engine, fixed_step_setting
+from granchain_core.state import State
 from granchain_core.kernels.forces.largest import acceleration
 one = scene("drag").evolve(N=3, c=100.0)
 engine = Engine(one, fixed_step_setting(), 1)

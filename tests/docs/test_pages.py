@@ -144,3 +144,16 @@ def test_dockerfile_has_a_pinned_base_and_copies_what_the_ignore_file_lets_throu
     assert copied == allowed and all((ROOT / name).exists() for name in copied)
     arguments = json.loads(re.sub(r"\\\n\s*", "", docker.split("ENTRYPOINT ")[1]))
     assert parser_for(arguments[1:]).parse_args(arguments[1:]).address == "0.0.0.0"
+
+
+def test_the_readmes_comparison_is_that_of_the_benchmarks():
+    """The readme repeats two numbers; they are the ratios of times in the table of docs/benchmarks.md."""
+    text = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    said = re.findall(r"([\d.]+) times", " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+                      .partition("the next fastest takes")[2].partition(" - ")[0])
+    for error, printed in zip(("1e-8", "1e-10"), said, strict=True):
+        row = re.search(rf"^\| {error} \|(.+)\|$", text.partition("| error | dop853-root |")[2], re.MULTILINE)
+        assert row is not None
+        times = [float(ms) for ms in re.findall(r"([\d.]+) ms", row[1])]
+        ours, others = times[0], times[3:]  # after the root come rk4-split and dop853, which are ours too
+        assert float(printed) == pytest.approx(min(others) / ours, abs=0.051)

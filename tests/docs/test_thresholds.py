@@ -6,6 +6,7 @@ import ast
 import importlib
 import math
 import re
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from granchain_core.integrate import methods
 from granchain_core.kernels.batch import period_end
 from granchain_core.regime import Regime
 from granchain_core.steady import regime_criteria
+from granchain_core.steady.curve import resonance
 from granchain_core.steady.settling import nearby_orbit, refine_orbit, regime_decisions
 
 MODEL, OBSERVERS, DESIGN, REGIMES = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
@@ -60,6 +62,18 @@ def test_every_number_with_a_name_in_these_files_is_on_the_page() -> None:
         numbers = {name for name in named if name.isupper() and isinstance(getattr(module, name), int | float)}
         missing = {name for name in numbers - NO_THRESHOLDS if f"`{name}`" not in REGIMES}
         assert not missing, f"{file}.py: {missing}"
+
+
+def test_the_thresholds_of_a_response_are_those_of_the_code() -> None:
+    """docs/orbits.md tells the rule of resonances; every number with a name in its two files is there."""
+    text = (ROOT / "docs" / "orbits.md").read_text(encoding="utf-8")
+    rows = re.findall(r"\| ([\d./]+) \| `(\w+)` in `([\w/]+)\.py` \|", text)
+    assert len(rows) == text.count(".py` |\n") == 8
+    for printed, name, file in rows:
+        module = importlib.import_module("granchain_core." + file.replace("/", "."))
+        assert float(Fraction(printed)) == pytest.approx(getattr(module, name), rel=1e-15)
+    assert {name for _, name, file in rows if file == "steady/curve/resonance"} == {
+        name for name, value in vars(resonance).items() if name.isupper() and isinstance(value, float)}
 
 
 def test_a_batch_keeps_the_strobes_on_which_a_decision_is_based() -> None:

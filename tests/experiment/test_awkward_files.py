@@ -165,7 +165,7 @@ REFUSED = [
     ("zeros", b"60,1.5\n70,\x002\n", None, "Line 2: the byte 0 does not occur in text"),
     ("half of a UTF-16", "f [Hz],F [N]\n60,1".encode("utf-16")[:-1], None, "damaged further on"),
     ("other JSON", b'{"a": 1}', None, "no project of WebPlotDigitizer"),
-    ("broken JSON", b'{"datasetColl": [', None, "begins as JSON"),
+    ("broken JSON", b'{"datasetColl": [', None, "looks like JSON but cannot be parsed"),
     ("a polar project", project(("a", [[1, 2]]), kind="PolarAxes"), CURVE, "PolarAxes"),
     ("points without values", project(("a", [[]])), CURVE, "Point 1 of dataset 'a'"),
     ("an archive of something else", archived(b"{}", "other.json"), CURVE, "without a wpd.json"),

@@ -14,7 +14,7 @@ from granchain_core.hard.case import Trace
 from granchain_core.hard.contacts import at_once_picture, collisions_picture
 from granchain_core.hard.energy import switched_picture
 from granchain_core.hard.extremes import preloads_picture, sizes_picture
-from granchain_core.hard.oracle import Plain
+from granchain_core.hard.oracle import PlainChain
 from granchain_core.hard.regimes import drifting_picture
 from granchain_core.scene import scene
 
@@ -128,7 +128,7 @@ def test_the_free_observer_grows_by_its_multiplier_in_every_solver() -> None:
 def test_a_jump_is_the_limit_of_a_fast_push() -> None:
     """Ours at the jump and behind it, against SciPy's implicit method with a driver that takes 1e-4 to get there."""
     chosen, width = scene("sec2").evolve(N=4), 1e-4
-    chain = Plain.of(chosen)
+    chain = PlainChain.of(chosen)
     start = 0.25 * chain.period
 
     def slope(t: float, state: np.ndarray) -> np.ndarray:

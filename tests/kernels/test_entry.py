@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from granchain_core import continue_branch, resonance_curve, scene
-from granchain_core.integrate import Engine, State
+from granchain_core.integrate import Engine
 from granchain_core.integrate.methods import FIXED_STEP, METHODS, Setting
 from granchain_core.kernels import entry
 from granchain_core.kernels.samples import first_not_finite
+from granchain_core.state import State
 
 #: Chains of one vector and of blocks, and effects in every slot.
 CHAINS = [{}, {"N": 2}, {"N": 40}, {"dissipation": "none"}, {"dissipation": "tsuji", "tension": "cut"},
@@ -73,5 +74,5 @@ def test_what_makes_a_type_is_in_the_key() -> None:
                  [*tuples]]
     frozen = plain.copy()
     frozen.flags.writeable = False
-    keys = [entry.structure(one) for one in (*different, frozen)]
+    keys = [entry.types_of(one) for one in (*different, frozen)]
     assert len(set(keys)) == len(keys) - 1, "a transposed array and one with gaps are both neither"

@@ -146,13 +146,11 @@ def test_no_orbit_at_the_start_exits_with_3(capsys: pytest.CaptureFixture[str]) 
     assert "found no orbit" in capsys.readouterr().err
 
 
-def test_the_command_prints_the_contracts_keys_and_goes_on_from_its_file(tmp_path: Path,
-                                                                         capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_goes_on_from_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, words = str(tmp_path / "b.h5"), ["branch", "sec2", "--knob", "f", "--from", "1500", "--to", "1600", "--json"]
     assert main([*words, "--period", "1"]) == 0
     out, err = capsys.readouterr()
     whole = json.loads(out)
-    assert {"knob", "max_output_force_elastic", "stable", "special"} <= set(whole)
     assert len(whole["knob"]) == len(whole["stable"]) == len(whole["max_output_force_elastic"])
     assert whole["knob"][0] == 1500.0 and whole["knob"][-1] == 1600.0 and "reached f = 1600 Hz" in err
     special = whole["special"][0]

@@ -67,6 +67,9 @@ def test_as_near_to_the_circle_as_its_error_is_not_decided(found: Orbit) -> None
     undecided = replace(found, multipliers=leading)
     undecided.__dict__["multiplier_errors"] = np.full(len(leading), 1e-8)
     assert not undecided.stability_certain
+    assert undecided.stability_words() == "stability not decided (|μ| 1.000000 ± 1e-08)"
+    assert undecided.summary()[0] == f"period {found.period}, {undecided.stability_words()}"
+    assert found.stability_words() in found.summary()[0] and found.stability_words() in ("stable", "unstable")
     second = replace(found, multipliers=np.array([0.99, 0.98, 0.1, 0.1]))
     second.__dict__["multiplier_errors"] = np.array([1e-9, 0.05, 1e-9, 1e-9])
     assert not second.stability_certain  # not the largest one, but it may be outside
@@ -74,7 +77,7 @@ def test_as_near_to_the_circle_as_its_error_is_not_decided(found: Orbit) -> None
     assert second.stability_certain
     outside = replace(found, multipliers=np.array([1.2, 1.0, 0.1, 0.1]))
     outside.__dict__["multiplier_errors"] = np.full(4, 0.05)
-    assert outside.stability_certain  # one outside is enough
+    assert outside.stability_certain and outside.stability_words() == "unstable"  # one outside is enough
     assert not replace(found, monodromy=None).stability_certain
 
 

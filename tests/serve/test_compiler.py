@@ -39,3 +39,20 @@ def test_a_failure_ahead_of_time_is_in_the_log(monkeypatch: pytest.MonkeyPatch, 
         while "a kernel that cannot be loaded" not in caplog.text:
             assert time.monotonic() < end, "was not reported"
             time.sleep(0.01)
+
+
+def test_a_compilation_that_failed_is_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For a moment the disk was full, say: later visitors do not get the first one's error."""
+    one, tries = Compiler(), []
+
+    def fails_once(_: object, piece: str) -> None:
+        tries.append(piece)
+        if len(tries) == 1:
+            raise OSError("no space left")
+
+    monkeypatch.setattr(compiler, "_compile", fails_once)
+    first = one.ask(scene("sec2"), "a piece")
+    assert isinstance(first.exception(timeout=20), OSError)
+    second = one.ask(scene("sec2"), "a piece")
+    second.result(timeout=20)
+    assert one.ask(scene("sec2"), "a piece") is second and tries == ["a piece"] * 2

@@ -43,7 +43,7 @@ def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest
     real, measured = jobs.put_with_shadow, []
     monkeypatch.setattr(jobs, "put_with_shadow", lambda *words: measured.append(True) or real(*words))
     found = results([1640.0])[1640.0]
-    assert (found.regime.name, found.doubtful, len(measured)) == ("quasi-periodic", False, 2)
+    assert (found.regime.name, found.undecided, len(measured)) == ("quasi-periodic", False, 2)
 
 
 def test_up_and_down_really_differ_there() -> None:

@@ -29,7 +29,7 @@ def told(found: SteadyState) -> tuple[object, ...]:
     """All of a result, bit by bit."""
     errors = [None if one is None else float(one).hex() for one in
               (found.force_errors.input, found.force_errors.output, found.force_errors.elastic)]
-    return (found.regime.name, found.regime.period, found.regime.periods_run, found.regime.lyapunov, found.doubtful,
+    return (found.regime.name, found.regime.period, found.regime.periods_run, found.regime.lyapunov, found.undecided,
             [float(top).hex() for top in found.maxima], errors)
 
 

@@ -11,7 +11,7 @@ from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scaling import ScaledChain, scale_chain
-from granchain_core.steady.lyapunov import Measured, exponents, exponents_of, put_with_shadow
+from granchain_core.steady.lyapunov import MeasuredExponents, exponents, exponents_of, put_with_shadow
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.stop import Stop
 
@@ -19,9 +19,9 @@ CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `ri
 QUASI = scene("sec2").evolve(f=1640.0)
 
 
-def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, blocks: int = 10) -> list[Measured | None]:
+def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, blocks: int = 10) -> list[MeasuredExponents | None]:
     """The exponents of scenes, each in two lanes of a batch, over blocks of 20 periods; None where they are not finite."""
-    found: list[Measured | None] = [None] * len(scenes)
+    found: list[MeasuredExponents | None] = [None] * len(scenes)
     for lane in range(BATCH_SIZE):
         batch.empty(lane)
     for number, (scaled, y) in enumerate(scenes):

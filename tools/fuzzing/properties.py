@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from granchain_core import Scene
-from granchain_core.integrate import Engine, Setting, State
+from granchain_core.integrate import Engine, Setting
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.preload import Preload
 from granchain_core.kernels.samples import Samples
 from granchain_core.scaling import ScaledChain, scale_chain
-from granchain_core.state import rest
+from granchain_core.state import State, rest
 from granchain_core.stop import Stop
 
 SAMPLES = 16

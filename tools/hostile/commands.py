@@ -1,4 +1,4 @@
-"""Hostile command lines: a valid one of each command, in which some words are replaced, dropped, doubled or added.
+"""Hostile command lines: valid ones of all commands, in which some words are replaced, dropped, doubled or added.
 
 Every command line must end with the contract's status: 0, 2 with one printable sentence on stderr and nothing on stdout,
 or 3. They run one after the other in a child, which saves the second that Python and its libraries take to start; a
@@ -22,7 +22,9 @@ from pathlib import Path
 from .values import text
 
 _SMALL = "--set N=2 --set f=3000 --set accuracy=1e-3"
-#: Each ends within seconds as it stands, and with a word less; none can harm a file outside its folder.
+#: At least one that the parser takes for each command. Each ends within seconds as it stands, and with a word less: the
+#: longest, `check`, `accuracy` and `serve`, have a word that is refused after the parser. None can harm a file outside
+#: its folder.
 BASES = tuple(line.split() for line in (
     f"run sec2 {_SMALL} --periods 0 --record 1 --samples 4 --json",
     f"run sec2 {_SMALL} --periods 2 --record 1 --samples 8 --out run.h5 --explain",
@@ -34,15 +36,25 @@ BASES = tuple(line.split() for line in (
     f"map sec2 {_SMALL} --x f=2900:3000:2 --y A0=1e-7:2e-7:2 --out map.h5",
     f"observe sec2 {_SMALL} --input force.csv --json",
     f"spectrum sec2 {_SMALL} --json",
-    f"strobes sec2 {_SMALL} --knob f --from 2990 --to 3000 --points 2 --json",
-    f"fit sec2 {_SMALL} --data curve.csv --json",
-    "pulse impact --set N=4 --json", "bands precompressed --json", "scenes --json", "cite sec2 --json", "figure 5 --out five.csv",
-    "warm nowhere neither", "check --quack --quock", "accuracy sec2 --set N=zwei --set f=lots",
-    "serve --port 0x10 --address 256.1.1.1 --most-visitors 0", "lyapunov sec2 --set N=0 --set D=-1",
-    f"attractors sec2 {_SMALL} --random-states 1 --json", "basins sec2 --set N=0 --set D=-1", "--help", "run --help", "nonsense", ""))
+    f"lyapunov sec2 {_SMALL} --periods 20 --json",
+    f"strobes sec2 {_SMALL} --over f=2990:3000:2 --keep 4 --json",
+    f"attractors sec2 {_SMALL} --random-states 1 --json",
+    f"basins sec2 {_SMALL} --x u1=0:2e-7:2 --y v1=0:1e-3:2 --json",
+    f"virtual sec2 {_SMALL} --periods 2 --noise 0.01 --out virtual.csv",
+    f"fit sec2 {_SMALL} --data curve.csv --free D=100:110 --error 0.03 --design 4 --no-intervals --json",
+    "accuracy sec2 --set N=1 --set f=3000 --picture refused.png", "check --quick --picture refused.png",
+    "warm nowhere neither", "serve --port 70000 --address 256.1.1.1",
+    "pulse impact --set N=4 --json", "bands precompressed --json", "scenes --json", "cite sec2 --json",
+    "figure 5 --out five.csv",
+    "check --quack --quock", "accuracy sec2 --set N=zwei --set f=lots", "lyapunov sec2 --set N=0 --set D=-1",
+    "basins sec2 --set N=0 --set D=-1", "serve --port 0x10 --address 256.1.1.1 --most-visitors 0",
+    "--help", "run --help", "nonsense", ""))
 _OPTIONS = sorted({word for base in BASES for word in base if word.startswith("--")} | {
     "--resume", "--budget", "--method", "--period", "--observer", "--scheduler", "--threads", "--amplitude", "--picture", "--column"})
-_FILES = {"force.csv": "time_s,input_force_N\n0,0\n1e-4,0.1\n2e-4,0\n", "curve.csv": "frequency_Hz,max_output_force_N\n2900,0.1\n3000,0.1\n"}
+_FILES = {
+    "force.csv": "time_s,input_force_N\n" + "".join(f"{20 * i}e-6,{min(i, 50 - i)}e-2\n" for i in range(51)),
+    "curve.csv": "frequency_Hz,max_output_force_N\n2900,0.1\n2950,0.1\n3000,0.1\n",
+}
 
 
 def drawn(rng: random.Random) -> list[str]:

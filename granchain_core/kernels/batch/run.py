@@ -120,7 +120,7 @@ class BatchState(NamedTuple):
 def take_steps(members, state, count):
     """Take `count` steps in all members.
 
-    Inlined, because a call would copy the 45 arrays of both arguments each time that a period of a member ends.
+    Inlined, because a call would copy all arrays of both arguments each time that a period of a member ends.
     """
     y, before = state.y, flush_subnormals()
     last = y.shape[0] // 2 - 2

@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import BadInput, check_range
-from ...integrate import State
 from ...integrate.methods import ADAPTIVE
 from ...scene import Amplitude, Scene
+from ...state import State
 from ...stop import Stop
 from ...tables import Labelled, Table, amplitude_attribute, provenance
 from ...tables.provenance import Attribute

@@ -7,12 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import NumbersFailed
-from ...integrate import Engine, State, adaptive_setting
+from ...integrate import Engine, adaptive_setting
 from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from ...kernels.forces.peaks import PEAKS, largest_forces
 from ...kernels.status import FULL
 from ...scaling import scale_chain
 from ...scene import Scene
+from ...state import State
 from ..orbit import liouville_error, sorted_multipliers
 from .equations import BranchEquations, Solved
 

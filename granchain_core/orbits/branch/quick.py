@@ -20,7 +20,7 @@ from ...stop import Stop
 _REFINE = 8.0
 #: Where a period takes more steps the flow is faster, since its steps are long while contacts are open.
 _MOST_QUICK_STEPS = 30_000
-#: Numbers of steps have so many binary digits, so that orbits nearby share the table of the driver's motion.
+#: Numbers of steps have this many binary digits, so that orbits nearby share the table of the driver's motion.
 _DIGITS = 4
 
 

@@ -35,7 +35,7 @@ _BESIDE = 0.02
 #: The offset from the root of the parabola, where a third value is known: of the width that is narrow enough, and of
 #: the distance between both roots, since the parabola's error is a small part of the line's.
 _OF_WIDTH, _OF_ERROR = 0.4, 0.1
-#: Every so many levels the middle is taken, whatever the test function says.
+#: Every this many levels the middle is taken, whatever the test function says.
 _MIDDLE = 5
 #: Most levels of bisection between two neighbours; the interval is then taken as it is.
 _DEEPEST = 60

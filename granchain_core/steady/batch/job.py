@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...integrate import Engine, State, fixed_step_setting
+from ...integrate import Engine, fixed_step_setting
 from ...integrate.batch import Batch
 from ...integrate.methods import AT_A_JUMP, typical_error
 from ...integrate.stated import relative_changes
@@ -15,7 +15,7 @@ from ...kernels.batch.period_end import CHECK_DISTANCE, CHECK_PERIOD
 from ...regime import Regime
 from ...scaling import ScaledChain
 from ...scene import Scene
-from ...state import rest
+from ...state import State, rest
 from ...stop import Stop
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
 from ..regime_criteria import SLOW_RECORD, converging
@@ -44,8 +44,9 @@ class Start:
 class Job:
     """A scene that is being settled, from the scaled state y at phase 0, `run` periods after its start.
 
-    `coarse` holds regime and forces of the coarse run while the finer one runs. A job in doubt carries its record, its
-    forces [N], a first measurement of its Lyapunov exponent, and the blocks (B,) of one that is not finished.
+    `coarse` holds regime and forces of the coarse run while the finer one runs. A job whose Lyapunov exponent is
+    measured (`measuring`) carries its record, its forces [N], a first measurement of the exponent, and the blocks (B,)
+    of one that is not finished.
     """
 
     scene: Scene
@@ -53,7 +54,7 @@ class Job:
     y: np.ndarray
     run: int = 0
     coarse: tuple[Regime, np.ndarray] | None = None
-    in_doubt: bool = False
+    measuring: bool = False
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     maxima: np.ndarray = field(default_factory=lambda: np.zeros(3))
     measured: Regime | None = None
@@ -137,7 +138,7 @@ def outcome_of_coarse_run(job: Job, batch: Batch, member: int) -> SteadyState | 
         return unsettled(job, batch, member, run)
     record = batch.strobes(member)
     if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
-        return _in_doubt(job, batch, member, run, record.copy())
+        return _to_measure(job, batch, member, run, record.copy())
     batch.state.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.run)
     return None
@@ -150,11 +151,11 @@ def _periodic(batch: Batch, member: int, run: int) -> Regime:
                   followed=bool(batch.state.slowest[member] > 0.0))
 
 
-def _in_doubt(job: Job, batch: Batch, member: int, run: int, record: np.ndarray) -> Job:
+def _to_measure(job: Job, batch: Batch, member: int, run: int, record: np.ndarray) -> Job:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
-    return Job(job.scene, job.scaled, y, run, in_doubt=True, record=record, maxima=maxima, number=job.number)
+    return Job(job.scene, job.scaled, y, run, measuring=True, record=record, maxima=maxima, number=job.number)
 
 
 def unsettled(job: Job, batch: Batch, member: int, run: int) -> SteadyState:
@@ -167,6 +168,7 @@ def unsettled(job: Job, batch: Batch, member: int, run: int) -> SteadyState:
 
 def failed(job: Job) -> SteadyState:
     """A member whose numbers stopped being finite."""
-    sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping or ask for higher accuracy."
+    sentence = (f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping, or compute this frequency "
+                f"alone: granchain run SCENE --set f={job.scene.f:g}.")
     return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(0), None, rest(job.scene), sentence,
                        "not-finite", job.number)

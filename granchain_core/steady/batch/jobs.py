@@ -6,7 +6,7 @@ Coarse run: `check_coarse` (kernels/batch/period_end.py) bounds the distance to 
 extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run, a third of the step:
 `check_fine`, until that bound is small or six extrapolations are spent; what is left goes into the stated error, with
 the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, measured twice
-beside a neighbouring trajectory in another lane. What is still undecided is marked `doubtful` and settled alone
+beside a neighbouring trajectory in another lane. What is then not decided is marked `undecided` and settled alone
 (settling/single_chain.py).
 """
 
@@ -43,7 +43,7 @@ _SURE = 0.995
 
 
 class _JobsInBatch:
-    """A batch with the jobs of its members, those that wait for a lane, and those in doubt, which wait for two."""
+    """A batch with the jobs of its members, those that wait for a lane, and those that wait for two to be measured."""
 
     def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
         self.batch = Batch(first.scene, stop)
@@ -57,12 +57,13 @@ class _JobsInBatch:
         self.free = list(reversed(range(BATCH_SIZE)))
         self.left = set[int]()  # lanes that are free since the batch last ran
         self.shadows: dict[int, int] = {}
-        self.doubtful: list[Job] = []
+        self.to_measure: list[Job] = []
 
     def fill(self) -> None:
-        """Put jobs into the free lanes. One in doubt takes two: a single free lane waits for another."""
-        while self.free and not (self.doubtful and len(self.free) < 2):
-            job = self.doubtful.pop(0) if self.doubtful else self.waiting.pop() if self.waiting else self._next_job()
+        """Put jobs into the free lanes. One to be measured takes two: a single free lane waits for another."""
+        while self.free and not (self.to_measure and len(self.free) < 2):
+            job = (self.to_measure.pop(0) if self.to_measure else
+                   self.waiting.pop() if self.waiting else self._next_job())
             if job is None:
                 break
             member = self.free.pop()
@@ -86,9 +87,9 @@ class _JobsInBatch:
     def _start(self, member: int, job: Job) -> None:
         """The coarse run is checked once it may have settled, the finer one once the difference has decayed.
 
-        A job in doubt gets a shadow.
+        A job whose exponent is measured gets a shadow.
         """
-        if job.in_doubt:
+        if job.measuring:
             shadow = self.shadows[member] = self.free.pop()
             put_with_shadow(self.batch, member, shadow, job.scaled, job.y, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
             return
@@ -105,10 +106,10 @@ class _JobsInBatch:
         """Run until a member is due for a check, and check it."""
         member, finite = self.batch.run()
         job = self.jobs[member]
-        if not finite or (job.in_doubt and np.isnan(self.batch.growth(member)).any()):
+        if not finite or (job.measuring and np.isnan(self.batch.growth(member)).any()):
             self._free(member)
             return failed(job)
-        if job.in_doubt:
+        if job.measuring:
             result = self._decide(job, member)
             self._free(member)
             return result
@@ -123,8 +124,8 @@ class _JobsInBatch:
         self._free(member)
         if isinstance(outcome, SteadyState):
             return confirmed(outcome, self.stop)
-        if outcome.in_doubt:
-            self._doubt(outcome)
+        if outcome.measuring:
+            self._measure(outcome)
         else:
             self.waiting.append(outcome)
         return None
@@ -137,11 +138,11 @@ class _JobsInBatch:
         self.left.update(lanes)
 
     def _decide(self, job: Job, member: int) -> SteadyState | None:
-        """Classify a job in doubt by its Lyapunov exponents; one whose neighbours come closer runs on."""
+        """Classify a job by its Lyapunov exponents; one whose neighbours come closer runs on."""
         seen = exponents_of(self.batch, member, PERIODS_IN_BLOCK)
         growth = np.concatenate([job.blocks, seen.exponents])
         job.run += len(seen.strobes)
-        job.y, job.in_doubt, job.blocks = seen.y, False, np.zeros(0)
+        job.y, job.measuring, job.blocks = seen.y, False, np.zeros(0)
         regime = replace(find_period(seen.strobes), periods_run=job.run)
         if regime.period is not None:
             job.coarse = (regime, seen.maxima[-regime.period :].max(axis=0))
@@ -151,24 +152,24 @@ class _JobsInBatch:
         goes_on = job.run < MOST_PERIODS and job.affordable
         if undecided(growth) and goes_on:
             job.blocks = growth
-            self._doubt(job)
+            self._measure(job)
             return None
         regime, before = regime_from_exponents(growth, job.record, job.run), job.measured
         if before is None and regime.name != "unsettled" and not clearly_chaotic(growth):
             job.measured = regime
-            self._doubt(job)
+            self._measure(job)
             return None
         if regime.name == "unsettled" and growth.mean() < 0.0 and goes_on:
             self.waiting.append(job)
             return None
         reported, clear = decided(regime, before, clearly_chaotic(growth))
         return SteadyState(job.scene, job.maxima, reported, None, job.scaled.to_si(seen.y), number=job.number,
-                           doubtful=not clear and job.affordable)
+                           undecided=not clear and job.affordable)
 
-    def _doubt(self, job: Job) -> None:
+    def _measure(self, job: Job) -> None:
         """Let a job wait for two lanes, behind those with as many steps a period or more: the longest begin first."""
-        job.in_doubt = True
-        insort(self.doubtful, job, key=lambda one: -one.steps)
+        job.measuring = True
+        insort(self.to_measure, job, key=lambda one: -one.steps)
 
 
 def decided(regime: Regime, before: Regime | None, sure: bool) -> tuple[Regime, bool]:
@@ -211,11 +212,11 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
 
 
 def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
-    """The result; an orbit that was extrapolated to and decays slowly is in doubt unless |μ| is clearly below 1."""
+    """The result; an orbit that was extrapolated to and decays slowly is undecided unless |μ| is clearly below 1."""
     regime, scene = result.regime, result.scene
     slow = regime.followed and (regime.decay or 0.0) > _SLOW_DECAY
     if regime.period is None or not slow or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
         return result
     y = scale_chain(scene).from_si(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
-    return result if largest < _SURE else replace(result, doubtful=True)
+    return result if largest < _SURE else replace(result, undecided=True)

@@ -8,12 +8,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...integrate import State
 from ...integrate.batch import can_share_batch
 from ...integrate.methods import ADAPTIVE, FIXED_STEP
 from ...regime import Regime
 from ...result import ForceErrors, said_forces
 from ...scene import Amplitude, Scene
+from ...state import State
 from ...tables import (
     MAXIMA,
     Column,

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 
 from ...checkpoints import Kept, digest_of
-from ...integrate import State
 from ...result import ForceErrors
 from ...scene import Amplitude, Scene
+from ...state import State
 from ..regime_criteria import Regime
 from .curve import CurvePoint
 

@@ -125,7 +125,7 @@ def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
     rest_of_them = itertools.chain([first], scenes)
     if can_share_batch(first):
         for found in batch_results(rest_of_them, ended):
-            yield CurvePoint.of(settled_alone(found, ended) if found.doubtful else found)
+            yield CurvePoint.of(settled_alone(found, ended) if found.undecided else found)
         return
     for one in rest_of_them:
         yield CurvePoint.of(safe_state(one, None, ended))

@@ -12,11 +12,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...integrate import Engine, State, fixed_step_setting
+from ...integrate import Engine, fixed_step_setting
 from ...regime import Regime
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
-from ...state import rest
+from ...state import State, rest
 from ...stop import Stop
 from ..regime_criteria import find_period
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...integrate import Engine, Setting, State, method_for
+from ...integrate import Engine, Setting, method_for
 from ...kernels.strobes.extrapolation import ORBITS
 from ...scene import Scene
+from ...state import State
 from ..regime_criteria import changes
 from .advance import Settling
 from .reduced_rank import reduced_rank, within_reach

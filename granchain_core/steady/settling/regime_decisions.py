@@ -32,9 +32,9 @@ REMEMBERED = 420
 _MEASUREMENTS = 3
 #: How often such a measurement is made longer, at most.
 _CONTINUED = 2
-#: Beads up to which multipliers confirm every claim of `settled`; for longer chains only claims in doubt.
+#: Beads up to which multipliers confirm every claim of `settled`; for longer chains only unconfirmed claims.
 _ALWAYS = 30
-#: A claim is in doubt if the decay per drive period is above this: a slowly unstable orbit may look like it.
+#: A claim is unconfirmed if the decay per drive period is above this: a slowly unstable orbit may look like it.
 CLEAR_DECAY = 0.9
 #: Factor on the largest number of periods for a motion near an unstable orbit, since departures are slow too.
 _PATIENCE = 4
@@ -84,22 +84,22 @@ class Decisions:
         and may be taken for one of twice the period: where a part of the period almost repeats it, Newton's method
         finds the orbit and its least period.
 
-        Where Newton's method finds no orbit, a doubtful claim is withdrawn and a clear decay from rest is accepted.
+        Where Newton's method finds no orbit, an unconfirmed claim is withdrawn and a clear decay from rest is accepted.
         """
         assert regime.period is not None
-        doubtful = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
-        if (MOST_BEADS_WITH_MULTIPLIERS if doubtful else _ALWAYS) < self.scene.N:
+        unconfirmed = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
+        if (MOST_BEADS_WITH_MULTIPLIERS if unconfirmed else _ALWAYS) < self.scene.N:
             return Decision(regime)
         seen = seen_modulus(self.scene, regime.period, scaled(engine), engine.stop, refine=4.0)
         if seen <= _CLEAR and not _may_repeat_sooner(strobes, regime.period):
             return Decision(replace(regime, multiplier=seen))
         orbit = orbit_of(self.scene, regime.period, scaled(engine), engine.stop)
         if orbit is None:
-            return Decision(replace(regime, name="unsettled", period=None, distance=None) if doubtful else regime)
+            return Decision(replace(regime, name="unsettled", period=None, distance=None) if unconfirmed else regime)
         if orbit.stable:
             decay = regime.decay if orbit.period == regime.period else None  # it is that of the longer period
             found = replace(regime, period=orbit.period, multiplier=orbit.modulus, decay=decay)
-            return Decision(found, orbit.point.x if doubtful else None)
+            return Decision(found, orbit.point.x if unconfirmed else None)
         return self._beside(orbit, regime) or Decision(
             replace(regime, name="unsettled", period=None, distance=None, decay=None, approaches=orbit.period,
                     multiplier=orbit.modulus))

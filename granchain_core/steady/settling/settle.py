@@ -5,9 +5,9 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from ...integrate import State
 from ...result import start_words
 from ...scene import Scene
+from ...state import State
 from ...stop import Stop
 from .advance import Settling, run_until_settled
 from .outcome import Settled

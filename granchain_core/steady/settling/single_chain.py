@@ -7,9 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import NumbersFailed
-from ...integrate import Engine, State
+from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
+from ...state import State
 from ...stop import Stop
 from ..orbit_errors import errors_between
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
@@ -53,8 +54,8 @@ def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
                            failed.status)
 
 
-def settled_alone(doubtful: SteadyState, stop: Stop) -> SteadyState:
-    """The steady state of a chain that a batch left in doubt, settled alone from its last state."""
-    found = safe_state(doubtful.scene, doubtful.state, stop)
-    run = doubtful.regime.periods_run + found.regime.periods_run
-    return replace(found, regime=replace(found.regime, periods_run=run), number=doubtful.number)
+def settled_alone(undecided: SteadyState, stop: Stop) -> SteadyState:
+    """The steady state of a chain that a batch left undecided, settled alone from its last state."""
+    found = safe_state(undecided.scene, undecided.state, stop)
+    run = undecided.regime.periods_run + found.regime.periods_run
+    return replace(found, regime=replace(found.regime, periods_run=run), number=undecided.number)

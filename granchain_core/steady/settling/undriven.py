@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import time
 
-from ...integrate import Counts, Engine, Setting, State, fixed_step_setting
+from ...integrate import Counts, Engine, Setting, fixed_step_setting
 from ...integrate.methods import typical_error
 from ...integrate.stated import relative_difference
 from ...kernels.samples import Samples
 from ...regime import Regime
 from ...result import Cost, run_from, start_words
 from ...scene import Scene
-from ...state import rest
+from ...state import State, rest
 from ...stop import Stop
 from ..orbit_errors import errors_between
 from .outcome import Settled

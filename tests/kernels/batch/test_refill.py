@@ -78,7 +78,7 @@ def test_more_scenes_than_places_give_what_each_gives_alone(structure: str) -> N
 
 def told(found: SteadyState) -> tuple[object, ...]:
     """All of a steady state, bit by bit."""
-    return (found.regime, found.doubtful, found.status, [float(top).hex() for top in found.maxima], found.force_errors,
+    return (found.regime, found.undecided, found.status, [float(top).hex() for top in found.maxima], found.force_errors,
             found.state.displacement.tolist(), found.state.velocity.tolist())
 
 

@@ -1,0 +1,64 @@
+"""What commands say of a chain in motion, in JSON and in words: the scene, the largest forces, the errors, the cost."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+if TYPE_CHECKING:
+    from granchain_core import Driven, Run, Scene
+    from granchain_core.result import Cost
+
+
+class Forces(Protocol):
+    """A result with largest forces [N]: a run, a driven motion, an observation, an attractor."""
+
+    @property
+    def max_output_force(self) -> float: ...
+    @property
+    def max_output_force_elastic(self) -> float: ...
+    @property
+    def max_input_force(self) -> float: ...
+
+
+def scene_json(scene: Scene) -> dict[str, Any]:
+    """The scene of a result: its name, knobs and effects."""
+    return {"scene": scene.name, "knobs": scene.knobs, "effects": scene.effects}
+
+
+def forces_json(found: Forces) -> dict[str, Any]:
+    """The largest forces [N]."""
+    return {"max_output_force": found.max_output_force, "max_output_force_elastic": found.max_output_force_elastic,
+            "max_input_force": found.max_input_force}
+
+
+def errors_json(found: Run | Driven) -> dict[str, Any]:
+    """The relative errors of displacements and of each largest force, and the residual of the energy account."""
+    errors = found.force_errors
+    return {"error_estimate": found.error_estimate, "error_estimate_output": errors.output,
+            "error_estimate_input": errors.input, "error_estimate_elastic": errors.elastic,
+            "energy_residual": found.energy_residual}
+
+
+def forces_in_words(found: Forces) -> str:
+    """The largest forces, in one line."""
+    return (f"largest output force {found.max_output_force:.6g} N (elastic {found.max_output_force_elastic:.6g} N), "
+            f"input force {found.max_input_force:.6g} N")
+
+
+def errors_in_words(found: Run | Driven) -> str:
+    """The errors, the energy account and the cost, in one line."""
+    errors = found.force_errors
+    inward, outward, elastic = ("none stated" if e is None else f"{e:.1e}"
+                                for e in (errors.input, errors.output, errors.elastic))
+    return (f"relative errors: displacement {found.error_estimate:.1e}, output force {outward} (elastic {elastic}), "
+            f"input force {inward}; {energy_in_words(found.energy_residual)}; {cost_in_words(found.cost)}")
+
+
+def energy_in_words(residual: float | None) -> str:
+    """How well the energy account closes; a method in (u, v) has none."""
+    return "no energy account" if residual is None else f"energy closes to {residual:.1e}"
+
+
+def cost_in_words(cost: Cost) -> str:
+    """Method, steps, events and time."""
+    return f"{cost.method}, {cost.steps} steps, {cost.events} contact events, {1e3 * cost.wall_s:.1f} ms"

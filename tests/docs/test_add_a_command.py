@@ -1,0 +1,54 @@
+"""docs/add-a-command.md is followed to the letter in a copy of the repository."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from documents import ROOT
+from edited_tree import edited_copy, files_of, follow
+
+PAGE = ROOT / "docs" / "add-a-command.md"
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the repository with the page's edits made."""
+    return edited_copy(PAGE, tmp_path_factory.mktemp("command") / "tree")
+
+
+def test_the_page_edits_five_files_and_writes_one() -> None:
+    edits, new = files_of(PAGE)
+    assert (len(edits), len(new)) == (5, 1)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a command: edit 5 files, write 1"
+
+
+def test_the_new_command_prints_its_result(tree: Path) -> None:
+    beads = json.loads(follow(tree, "-m", "app.cli", "beads", "sec2", "--set", "N=2", "--json"))["beads"]
+    assert len(beads) == 2 and set(beads[0]) == {"mass", "radius"}
+    assert len(follow(tree, "-m", "app.cli", "beads", "sec2", "--set", "N=2").splitlines()) == 3
+
+
+_LISTS = ("tests/cli/test_command_lists.py::test_the_readmes_table_has_every_command",
+          "tests/cli/test_command_lists.py::test_a_hostile_base_of_every_command_gets_past_the_parser[beads]",
+          "tests/cli/test_json_keys.py::test_every_command_has_a_table_or_no_json")
+
+
+def test_the_tests_that_know_every_command_know_the_new_one(tree: Path) -> None:
+    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", *_LISTS,
+                  "tests/cli/test_json_keys.py::test_the_keys_are_those_of_the_page[beads]")
+    assert told.startswith("....") and "F" not in told
+
+
+@pytest.mark.parametrize(("file", "words", "test"), [
+    ("README.md", "granchain beads SCENE", _LISTS[0]), ("tools/hostile/commands.py", "beads sec2", _LISTS[1]),
+    ("docs/command-line.md", "## beads", _LISTS[2])])
+def test_a_list_without_the_command_is_named(file: str, words: str, test: str, tree: Path) -> None:
+    right = (tree / file).read_text(encoding="utf-8")
+    (tree / file).write_text(right.replace(words, words.replace("beads", "bonds")), encoding="utf-8")
+    try:
+        told = follow(tree, "-c", f"import pytest; print(int(pytest.main(['-p', 'no:cacheprovider', {test!r}])))")
+    finally:
+        (tree / file).write_text(right, encoding="utf-8")
+    assert told.startswith("F") and told.endswith("1\n")
