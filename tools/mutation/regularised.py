@@ -39,6 +39,8 @@ REGULARISED = (
            "work.polynomial[7] = work.begin.clock[0, TIME] - 0.999 * instant", "samples are read too early", k.ROOT),
     Mutant("regularised-force-undamped", _FORCES, "return (at(rates.elastic, 0) + dashpot_force(dissipation, at(rates.overlap, 0), at(rates.rate, 0)),",
            "return (at(rates.elastic, 0),", "the largest input force inside a step leaves out the dashpot", k.ROOT_FORCES),
+    Mutant("regularised-end-force-undamped", _FORCES, "force = rates.elastic + dashpot_force(law, rates.overlap, rates.rate)",
+           "force = rates.elastic", "the forces at the ends of steps leave out the dashpots", k.ROOT_FORCES),
     Mutant("regularised-no-jump", _RUN, "note_closing(slots.dissipation, at(here.rates.rate, end.contact)",
            "note_closing(slots.dissipation, 0.0 * at(here.rates.rate, end.contact)", "no force jumps when a contact closes",
            k.ROOT_FORCES),
