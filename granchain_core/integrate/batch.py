@@ -13,7 +13,7 @@ from ..kernels.batch.period_end import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_CO
 from ..kernels.batch.unequal import Unequal
 from ..kernels.entry import entry
 from ..kernels.forces.peaks import PEAKS
-from ..kernels.jit import all_in_simd_kernels
+from ..kernels.jit import unknown_slots
 from ..kernels.simd.vector import aligned
 from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
@@ -33,7 +33,7 @@ _FEWEST = 2
 
 def can_share_batch(scene: Scene) -> bool:
     """Whether a batch can run this scene, with every effect it has (the tension cut needs velocities before forces)."""
-    return all_in_simd_kernels(scale_chain(scene).slots)
+    return not unknown_slots(scale_chain(scene).slots, "batch")
 
 
 def is_uniform(scaled: ScaledChain) -> bool:

@@ -20,7 +20,7 @@ from ..kernels.contact_cubic import ENDS
 from ..kernels.entry import Entries, types_of
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
-from ..kernels.jit import all_in_simd_kernels
+from ..kernels.jit import unknown_slots
 from ..kernels.naive import naive_motion
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import RunRecord, run_steps
@@ -82,7 +82,7 @@ class FixedStep:
     def new_simd_workspace(self) -> LongChain | ShortChain | None:
         """The workspace of SIMD steps: a driven chain with no effect that they do not know."""
         scaled, slots = self.scaled, self.scaled.slots
-        if not self._simd or not all_in_simd_kernels(slots) or slots.driver is None:
+        if not self._simd or unknown_slots(slots, "rk4") or slots.driver is None:
             return None
         width = next((lanes for lanes in WIDTHS if scaled.bodies <= lanes), 0)
         return short_chain_workspace(scaled, width) if width else _long_chain(scaled)

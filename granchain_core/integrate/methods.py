@@ -15,7 +15,7 @@ from ..kernels.rk4.step import Rk4, Rk4Split
 from ..scaling import ScaledChain
 from .adaptive import Adaptive
 from .fixed import FixedStep, FixedStepInVelocity
-from .rooted import Rooted
+from .regularised import Regularised
 from .stepper import Stepper
 
 #: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.
@@ -103,7 +103,7 @@ class Method:
         What it is called on the command line, and in tables.
     order_smooth, order, order_with_cut : float
         Orders where no contact opens or closes; across contact events, at the accuracies the method is used for; and
-        where tension is cut. Only the adaptive method ends its steps at the kink of a cut force, F = 0.
+        where tension is cut. Only dop853 ends its steps at the kink of a cut force, F = 0.
     adaptive : bool
         Whether an error control sets the steps.
     symplectic : bool
@@ -197,10 +197,10 @@ METHODS: dict[str, Method] = {
         Method(
             name="dop853-root", title="Dormand–Prince 8 in w, in the root of an overlap next to contact events",
             order_smooth=8.0, order=7.0, adaptive=True, symplectic=False,
-            restrictions="accuracy to about 1e-12; no energy account; driven chains of up to 30 beads without tension "
-                         "cut",
+            restrictions="accuracy to about 1e-12; no energy account; chains of up to 30 beads with a driver that is "
+                         "harmonic or at rest, without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/model.md",
-            stepper=_adaptive(Rooted), cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0,
+            stepper=_adaptive(Regularised), cost=StepCost(500e-9, 20e-9, rate=4.0, power=0.1), usual_error=1.0,
             keeps_account=False),
     )
 }

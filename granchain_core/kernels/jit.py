@@ -103,8 +103,8 @@ def inline_numba(function):
 
 #: The terms of effects: every function made by `by_slot`, with the code it has for each slot class.
 _TERMS: list[Any] = []
-#: Slot classes for which the SIMD kernels have code.
-_IN_SIMD_KERNELS: set[type] = set()
+#: The folders with kernels in vectors, which repeat the equations, and the slot classes for which each has code.
+_IN_SIMD_KERNELS: dict[str, set[type]] = {"rk4": set(), "batch": set(), "regularised": set()}
 
 
 def by_slot(absent, forceinline=False):
@@ -173,15 +173,28 @@ def by_type_inlined(declared):
     return by_type(declared, forceinline=True)
 
 
-def in_simd_kernels(slot_class):
-    """Class decorator for slots that the SIMD kernels know; a chain with another one is left to the scalar kernels."""
-    _IN_SIMD_KERNELS.add(slot_class)
-    return slot_class
+def in_simd_kernels(*folders):
+    """Class decorator for slots that these SIMD kernels know, named by their folders; the other ones refuse them.
+
+    A TypeError names what is no such folder.
+    """
+    for folder in folders:
+        if folder not in _IN_SIMD_KERNELS:
+            raise TypeError(f"in_simd_kernels: {folder!r} is no folder of SIMD kernels; name those with terms of the "
+                            f"slot, of {', '.join(_IN_SIMD_KERNELS)}.")
+
+    def mark(slot_class):
+        for folder in folders:
+            _IN_SIMD_KERNELS[folder].add(slot_class)
+        return slot_class
+
+    return mark
 
 
-def all_in_simd_kernels(slots):
-    """Whether the SIMD kernels know every effect that is present in these slots."""
-    return all(slot is None or type(slot) in _IN_SIMD_KERNELS for slot in slots)
+def unknown_slots(slots, folder):
+    """Names of the effects that are present in these slots and that the SIMD kernels in a folder do not know."""
+    known = _IN_SIMD_KERNELS[folder] | {type(None)}
+    return [name for name, slot in zip(slots._fields, slots, strict=True) if type(slot) not in known]
 
 
 def require_terms(slot_class, *terms):

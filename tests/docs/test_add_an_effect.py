@@ -89,6 +89,29 @@ print(np.abs(found - exact).max() / np.abs(exact).max())
     assert float(told) < 1e-6  # h² of the difference, and 1e-16/h
 
 
+def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
+    """Unmarked, and marked for the kernels that step 2 names but dop853-root's: a motion without the drag would be wrong."""
+    told = follow(tree, "-c", """
+from granchain_core import BadInput, run, scene
+from granchain_core.integrate.batch import can_share_batch
+from granchain_core.kernels.effects.drag import Drag
+from granchain_core.kernels.jit import in_simd_kernels
+for mark in ((), ("rk4", "batch")):
+    in_simd_kernels(*mark)(Drag)
+    try:
+        run(scene("drag"), periods=1, method="dop853-root")
+    except BadInput as problem:
+        print(can_share_batch(scene("drag")), problem)
+try:
+    in_simd_kernels(Drag)
+except TypeError as problem:
+    print(problem)
+""").splitlines()
+    assert [line.split()[0] for line in told] == ["False", "True", "in_simd_kernels:"]
+    assert all("use dop853 for this one. It does not know: drag." in line for line in told[:2])
+    assert "name those with terms of the slot, of rk4, batch, regularised" in told[2]
+
+
 def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> None:
     """The scene names it, the equation shows it, a scene without it has no slot."""
     told = follow(tree, "-c", """

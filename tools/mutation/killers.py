@@ -46,6 +46,15 @@ SIMD_LONG = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and hundr
 SIMD_LONG_FOUNDED = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and long-founded")
 SIMD_LONG_PRESSED = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and long-pressed")
 
+#: A short chain in a transformed time against the method that ends its steps at events; brief touches; marks of slots.
+ROOT = ("tests/numerics/test_methods_agree.py", "-k", "linear-dop853-root")
+ROOT_FOUNDED = ("tests/numerics/test_methods_agree.py", "-k", "foundation-dop853-root")
+ROOT_PRESSED = ("tests/numerics/test_methods_agree.py", "-k", "preload-dop853-root")
+ROOT_TSUJI = ("tests/numerics/test_methods_agree.py", "-k", "tsuji-dop853-root")
+ROOT_FORCES = ("tests/integrate/test_dop853_root.py", "-k", "motion_and_forces and events")
+ROOT_TOUCH = ("tests/integrate/test_dop853_root.py", "-k", "brief_touch")
+MARKS = ("tests/kernels/simd/test_marks.py",)
+
 #: Eight chains at once: their order, their forces, unlike beads, the drive's phase, what they believe.
 BATCH = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and sec2")
 BATCH_ONE = ("tests/kernels/batch/test_batch_steps.py", "-k", "order_three and one")

@@ -9,11 +9,12 @@ from .claims import CLAIMS
 from .force_free import FORCE_FREE
 from .laws import LAWS
 from .mutant import Mutant
+from .regularised import REGULARISED
 from .steps import STEPS
 from .tangents import TANGENT_FLOW
 from .vectors import VECTORS
 
-MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + FORCE_FREE + TANGENT_FLOW + VECTORS + CLAIMS
+MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + FORCE_FREE + TANGENT_FLOW + VECTORS + REGULARISED + CLAIMS
 
 #: The eight kinds of mistake that must always be noticed (docs/mutation.md), and the mutants of each.
 DEMANDED: dict[str, tuple[str, ...]] = {

@@ -60,11 +60,11 @@ def root_inside(quantity, step, bracket, near):
     return x
 
 
-@inline_numba
-def top_inside(quantity, step, sections):
-    """(fraction, value) where the quantity is largest in the step, if it has one maximum there."""
-    low, high = 0.0, 1.0
-    a, b = 1.0 - _RATIO, _RATIO
+@internal
+def top_inside(quantity, step, until, sections):
+    """(fraction, value) where the quantity is largest in the step up to fraction `until`, if it has one maximum."""
+    low, high = 0.0, until
+    a, b = (1.0 - _RATIO) * until, _RATIO * until
     fa, fb = value_at(quantity, step, a), value_at(quantity, step, b)
     for _ in range(sections):
         if fa > fb:

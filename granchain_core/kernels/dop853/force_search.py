@@ -26,12 +26,12 @@ from .tableau import DENSE_EVALUATIONS, STAGES
 
 #: Golden sections around a maximum of a force; each shrinks the bracket by 0.618 and, since a maximum is flat, its
 #: error by 0.382.
-_SECTIONS = 24
+FORCE_SECTIONS = 24
 #: A step whose ends are below this part of the largest force so far is not searched.
-_SEARCHED = 0.3
+SEARCHED = 0.3
 #: A maximum is not searched if the cubic through the values and slopes at both ends puts it below this part of the
 #: largest force so far.
-_WORTH = 0.98
+WORTH = 0.98
 
 
 class Force(NamedTuple):
@@ -112,7 +112,7 @@ def follow_step(step, ready, peaks, counts):
     large = False
     for q in range(3):
         peaks[row_of(q)] = max(peaks[row_of(q)], start[q], end[q])
-        large = large or max(start[q], end[q]) > _SEARCHED * peaks[row_of(q)]
+        large = large or max(start[q], end[q]) > SEARCHED * peaks[row_of(q)]
     if not large:
         return ready
     rises = slopes_of(slots, y, workspace.k[0], workspace)
@@ -130,7 +130,7 @@ def follow_step(step, ready, peaks, counts):
     for q in range(3):
         peaks[row_of(q)] = max(peaks[row_of(q)], middle[q])
         guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], step.h))
-        if rises[q] > 0.0 and falls[q] < 0.0 and guess > _WORTH * peaks[row_of(q)]:
-            _, top = top_inside(Force(q, counts), step, _SECTIONS)
+        if rises[q] > 0.0 and falls[q] < 0.0 and guess > WORTH * peaks[row_of(q)]:
+            _, top = top_inside(Force(q, counts), step, 1.0, FORCE_SECTIONS)
             peaks[row_of(q)] = max(peaks[row_of(q)], top)
     return True

@@ -35,6 +35,7 @@ from .force_kinks import enter_force_free, first_kink, leave_force_free
 from .force_search import follow_step
 from .step import (
     PERIOD_END,
+    RESOLUTION,
     Overlap,
     Step,
     attempt,
@@ -58,8 +59,6 @@ _PAST_CUT = 1e-14
 _NEAR_CUT = 100.0
 #: A step that is to end at an event may become longer by this factor.
 _LONGER = 1.01
-#: ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
-_RESOLUTION = 2.2e-16
 
 
 class Stretch(NamedTuple):
@@ -102,7 +101,7 @@ def first_crossing(step, counts):
             if value_at(signed_overlap, step, high) <= 0.0:
                 continue
         root = crossing(signed_overlap, step, 0.0, high)
-        if root < first and 0.1 * root * h > _RESOLUTION * (t + 1.0 / drive.beta):
+        if root < first and 0.1 * root * h > RESOLUTION * (t + 1.0 / drive.beta):
             contact, first = c, root
     return contact, first
 

@@ -15,7 +15,7 @@ from .bracket import Bracket, root_inside, top_inside, value_at
 from .tableau import ALL_STAGES, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 
 #: Golden sections around a turning point of an overlap.
-_SECTIONS = 40
+TURN_SECTIONS = 40
 #: An overlap's root is found when its fraction of the step changes by less than this.
 _FOUND = 1e-15
 #: Bounds on the factor between two steps, and the safety factor.
@@ -47,6 +47,8 @@ class Dop853Workspace(NamedTuple):
     forces: Any
 
 
+#: ε in the resolution of t, ε·(t + 1/β): the spacing of floating-point numbers at 1.
+RESOLUTION = 2.2e-16
 #: A step that ends closer to a goal (the period's end, a sample) than this, in periods, ends there: the difference is
 #: the rounding of a sum of steps.
 PERIOD_END = 1e-13
@@ -211,7 +213,7 @@ def _(quantity, step, x):
 @internal
 def turning_point(signed_overlap, step):
     """Fraction at which an overlap is largest inside the step."""
-    x, _ = top_inside(signed_overlap, step, _SECTIONS)
+    x, _ = top_inside(signed_overlap, step, 1.0, TURN_SECTIONS)
     return x
 
 

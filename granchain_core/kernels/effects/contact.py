@@ -17,7 +17,7 @@ from ..jit import by_slot, in_simd_kernels, inline_llvm, internal
 from ..simd.functions import clip, root
 
 
-@in_simd_kernels
+@in_simd_kernels("rk4", "batch", "regularised")
 class Chain(NamedTuple):
     """Slot of the chain itself."""
 

@@ -94,7 +94,7 @@ def checked(*laws):
                             f"(flow/event_time.py) takes 0, 1/4, 1/2, … 5/4.")
         if any(not math.isclose(power(law(1.0), d, math.sqrt(d)), d**a) for d in (0.3, 1.0, 2.0)):
             raise TypeError(f"damping law {law.__name__}: `power` is not δ^{a}, which its `exponent` says.")
-        in_simd_kernels(law)  # these kernels use the same two terms
+        in_simd_kernels("rk4", "batch", "regularised")(law)  # these kernels use the same two terms
     return laws
 
 

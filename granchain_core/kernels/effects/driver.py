@@ -22,7 +22,7 @@ from ..jit import by_slot, in_simd_kernels
 BODY_FAR_AWAY = 1e30
 
 
-@in_simd_kernels
+@in_simd_kernels("rk4", "batch", "regularised")
 class Harmonic(NamedTuple):
     """Slot of the harmonic driver."""
 

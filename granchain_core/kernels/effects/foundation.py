@@ -13,7 +13,7 @@ from ..jit import by_slot, in_simd_kernels
 from ..simd.vector import load_batch
 
 
-@in_simd_kernels
+@in_simd_kernels("rk4", "batch", "regularised")
 class Foundation(NamedTuple):
     """Slot of the foundation spring."""
 

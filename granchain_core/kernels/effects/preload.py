@@ -14,7 +14,7 @@ from ..jit import by_slot, in_simd_kernels
 from ..simd.vector import load_like
 
 
-@in_simd_kernels
+@in_simd_kernels("rk4", "batch", "regularised")
 class Preload(NamedTuple):
     """Slot of the static overlaps."""
 

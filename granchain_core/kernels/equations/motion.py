@@ -1,8 +1,9 @@
 """The equations of motion in w-variables, assembled from the effects that are present: the reference form.
 
-rk4/short_chain.py, rk4/long_chain.py and batch/step.py repeat them in vectors, naive.py states them in (u, v), and
-flow/tangent.py and flow/saltation.py linearise them. tests/kernels/equations/test_motion.py compares this file with the
-paper's equations; tests/kernels and tests/orbits/test_tangents.py compare the others with it.
+rk4/short_chain.py, rk4/long_chain.py, regularised/chain.py and batch/step.py repeat them in vectors, naive.py states
+them in (u, v), and flow/tangent.py and flow/saltation.py linearise them. tests/kernels/equations/test_motion.py
+compares this file with the paper's equations; tests/kernels, tests/numerics/test_methods_agree.py and
+tests/orbits/test_tangents.py compare the others with it.
 
     w_i = v_i − (G_{i-1} − G_i)/m_i          the dashpot is an exact derivative (docs/model.md)
     u̇_i = w_i + (G_{i-1} − G_i)/m_i

@@ -46,17 +46,17 @@ def _(dissipation):
 
 
 @internal
-def distance_root(distance, power):
-    """The p-th root of a distance in time, 0 where rounding made it negative."""
-    if distance <= 0.0:
+def nonnegative_root(value, power):
+    """The p-th root of a value, 0 where rounding made it negative."""
+    if value <= 0.0:
         return 0.0
-    return sqrt(distance) if power == 2 else sqrt(sqrt(distance))
+    return sqrt(value) if power == 2 else sqrt(sqrt(value))
 
 
 @internal
 def time_from(kind, event, start, power):
     """The time map of a step from `start`, next to `event`."""
-    return Time(kind, event, start, distance_root(kind * (start - event), power), power)
+    return Time(kind, event, start, nonnegative_root(kind * (start - event), power), power)
 
 
 @internal
@@ -86,7 +86,7 @@ def size_of(time, dt):
     if time.kind == PLAIN:
         return dt
     distance = time.kind * (time.start + dt - time.event)
-    return time.kind * (distance_root(distance, time.power) - time.s)
+    return time.kind * (nonnegative_root(distance, time.power) - time.s)
 
 
 @internal

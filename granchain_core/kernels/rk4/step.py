@@ -103,8 +103,9 @@ def may_change(slots, y, slope, end, end_slope):
     """Whether a contact may open or close within the step: its overlap has another sign at the end, or turns.
 
     An overlap that moves towards zero at the start and away from it at the end may have crossed it in between. The same
-    test stands in four other places, in the form that each needs: short_chain_steps.py `run_short_chain`, long_chain.py
-    `comes_nearer`, contact_cubic.py `contact_root` and dop853/bracket.py `may_turn`.
+    test stands in five other places, in the form that each needs: short_chain_steps.py `run_short_chain`, long_chain.py
+    `comes_nearer`, contact_cubic.py `contact_root`, dop853/bracket.py `may_turn` and regularised/changes.py
+    `changes_in` with `may_touch`.
     """
     changed = 0
     for c in range(slots.chain.stiffness.size):

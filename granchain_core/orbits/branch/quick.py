@@ -10,7 +10,7 @@ import numpy as np
 
 from ...integrate import Engine, fixed_step_setting
 from ...integrate.fixed import FixedStep
-from ...kernels.jit import all_in_simd_kernels
+from ...kernels.jit import unknown_slots
 from ...kernels.rk4.step import Rk4Split
 from ...scaling import ScaledChain, scale_like
 from ...scene import Scene
@@ -56,7 +56,7 @@ def quick_steps(scaled: ScaledChain) -> int:
     The map would jump if they changed with the knob, so those of one scene serve for all that are compared.
     """
     least = int(_REFINE * max(16.0, scaled.period / scaled.step)) + 1
-    if least > _MOST_QUICK_STEPS or not all_in_simd_kernels(scaled.slots):
+    if least > _MOST_QUICK_STEPS or unknown_slots(scaled.slots, "rk4"):
         return 0
     unit = 2 ** max(0, least.bit_length() - _DIGITS)
     return -(-least // unit) * unit

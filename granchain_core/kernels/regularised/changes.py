@@ -1,4 +1,4 @@
-"""The variable of the next step, and contacts that open or close in a step that was taken."""
+"""The time transform and size of the next step, and contacts that open or close in a step that was taken."""
 
 from __future__ import annotations
 
@@ -6,61 +6,70 @@ from math import inf
 from typing import Any, NamedTuple
 
 from ..contact_cubic import hermite_turn
-from ..flow.event_time import distance_root, smooth_power
+from ..flow.event_time import nonnegative_root, smooth_power
 from ..jit import inline_llvm, inline_numba, internal
 from ..simd.sums import largest_of, lowest_bit, magnitude
 from ..simd.vector import at, positive_mask
 from .chain import ROOT
 from .inside import change_before, take_distance, turn_of
 
-#: The root of an overlap is taken if the contact's nearest event, at its present speed, is at most so many steps away.
-_NEAR = 1.5
-#: A contact that moves less than this part of the largest displacement in a step is at rest: no root is taken.
-_STILL = 1e-9
-#: A step from an onset covers this part of a step elsewhere; in x the next ones are as long.
-_PART = 0.12
-#: A step that would reach this part of the way to a release goes beyond it, by the second factor.
-_ALMOST, _BEYOND = 0.8, 1.3
+#: Time is transformed if the contact's nearest event, at its present speed, is at most this many steps away.
+_NEAREST_EVENT = 1.5
+#: A contact that moves less than this part of the largest displacement in a step is at rest: it transforms no time.
+_AT_REST = 1e-9
+#: Length of the first step after an onset, and of the last before a release, as a part of the step in t.
+_FIRST_STEP = 0.12
+#: A step that would reach this part of the way to a release goes beyond it.
+_NEARLY_RELEASED = 0.8
+#: By this factor of the way.
+_BEYOND_RELEASE = 1.3
 #: A distance between two values of a step is searched if the cubic's rise above both, enlarged by this part, reaches 0.
-_ROOM = 0.25
+_RISE_MISSED = 0.25
 
 
-class Taken(NamedTuple):
-    """An accepted step: its variable, size, rates at both ends, end, and dt/dx at both ends."""
+class Accepted(NamedTuple):
+    """An accepted step in ξ: its time transform, size, start, end, the rates and dt/dξ at both, and its error's square.
 
-    variable: Any
+    The error is that of `attempt` (step.py), in units of the tolerance. `limited` says whether the step was repeated,
+    or made shorter next to an event, so that the next one should not be longer.
+    """
+
+    transform: Any
     h: float
+    start: Any
     rates: Any
+    pace: float
     end: Any
     end_rates: Any
-    pace: float
     end_pace: float
+    error: float
+    limited: bool
 
 
 @internal
-def size_in_x(power, q, speed, dt):
-    """(size, whether it is shorter) of a step in x that takes the time dt, or the shorter one allowed next to an event.
+def size_in_xi(power, q, speed, dt):
+    """Size of a step in ξ for a step dt in time, limited next to an event; and whether it was limited.
 
     The contact has the root q and the rate `speed`, which is not zero.
     """
     h, reach = inf, q**power + speed * dt
     if reach > 0.0:
-        end = distance_root(reach, power)
+        end = nonnegative_root(reach, power)
         h = 2.0 * dt / (q + end) if power == 2 else 4.0 * dt / ((q + end) * (q * q + end * end))
-    if speed < 0.0 and -speed * h > _ALMOST * power * q:
-        h = _BEYOND * power * q / -speed
-    most = power * distance_root(_PART * dt * abs(speed), power) / abs(speed)
+    if speed < 0.0 and -speed * h > _NEARLY_RELEASED * power * q:
+        h = _BEYOND_RELEASE * power * q / -speed
+    most = power * nonnegative_root(_FIRST_STEP * dt * abs(speed), power) / abs(speed)
     return min(h, most), h > most
 
 
 @inline_llvm
 def nearest_event(rates, closed, scale, dt):
-    """The closed contact whose onset or release is nearest in time, at most `_NEAR` steps of dt away; −1 if none is."""
-    speed, still = magnitude(rates.rate), _STILL * scale
+    """The closed contact whose onset or release is nearest in time, at most 1.5 steps of dt away; −1 if none is."""
+    speed, still = magnitude(rates.rate), _AT_REST * scale
     away = (magnitude(rates.overlap) + still) / (speed + 1e-300) + 1e30 * (1.0 - closed)
     least = 0.0 - largest_of(0.0 - away)
     contact = lowest_bit(~positive_mask(away - least))
-    return contact if least < _NEAR * dt and at(speed, contact) * dt > still else -1
+    return contact if least < _NEAREST_EVENT * dt and at(speed, contact) * dt > still else -1
 
 
 @internal
@@ -73,34 +82,34 @@ def may_touch(d0, s0, d1, s1):
         return False
     x = hermite_turn(d0, s0, d1, s1)
     top = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
-    return top + _ROOM * (top - max(d0, d1)) > 0.0
+    return top + _RISE_MISSED * (top - max(d0, d1)) > 0.0
 
 
 @inline_llvm
-def changes_in(step, status, contacts):
+def changes_in(step, bits, contacts):
     """Bits of the contacts that have opened or closed at the step's end, and of those that may have done so and back.
 
-    Bit c of `status` says whether contact c was closed at the start.
+    Bit c of `bits` says whether contact c was closed at the start.
     """
     rising, risen, overlap = positive_mask(step.rates.rate), positive_mask(step.end_rates.rate), step.end_rates.overlap
-    crossed = (positive_mask(overlap) & ~status) | (positive_mask(0.0 - overlap) & status)
-    turned = (rising & ~risen & ~status) | (~rising & risen & status)
-    if step.variable.rooted != 0.0:
-        own = 1 << step.variable.contact
+    crossed = (positive_mask(overlap) & ~bits) | (positive_mask(0.0 - overlap) & bits)
+    turned = (rising & ~risen & ~bits) | (~rising & risen & bits)
+    if step.transform.active != 0.0:
+        own = 1 << step.transform.contact
         crossed = crossed | own if at(step.end.clock, ROOT) < 0.0 else crossed & ~own
     every = (1 << contacts) - 1
     return crossed & every, turned & ~crossed & every
 
 
 @inline_numba
-def first_change(slots, work, step, status, crossed, turned):
+def first_change(slots, work, step, bits, crossed, turned):
     """(contact, fraction) of the first change in the step, whose dense output is prepared; (−1, 2) if there is none."""
     first, contact, power, h = 2.0, -1, smooth_power(slots.dissipation), step.h
     for c in range(slots.chain.stiffness.size):
         if ((crossed | turned) >> c) & 1 == 0:
             continue
-        sign, high, s0 = -1.0 if (status >> c) & 1 != 0 else 1.0, 1.0, at(step.rates.rate, c)
-        chosen = step.variable.rooted != 0.0 and c == step.variable.contact
+        sign, high, s0 = -1.0 if (bits >> c) & 1 != 0 else 1.0, 1.0, at(step.rates.rate, c)
+        chosen = step.transform.active != 0.0 and c == step.transform.contact
         take_distance(slots, work, c, chosen, sign)
         if (crossed >> c) & 1 == 0:
             end, s1, slope, end_slope = sign * at(step.end_rates.overlap, c), at(step.end_rates.rate, c), 0.0, 0.0

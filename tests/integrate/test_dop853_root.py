@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, run, scene
+from granchain_core import BadInput, State, run, scene
 from granchain_core.integrate import Engine, Setting
 
-#: Linear law from rest, every contact opens and closes; Tsuji's law, whose variable is the fourth root; never an event.
-SCENES = {"events": {"f": 340.0}, "fourth root": {"f": 900.0, "dissipation": "tsuji"}, "closed": {"F0": 5.0}}
+#: Linear law from rest, every contact opens and closes; Tsuji's law, whose q is a fourth root; never an event; a
+#: foundation; unequal beads before a soft wall.
+SCENES = {"events": {"f": 340.0}, "fourth root": {"f": 900.0, "dissipation": "tsuji"}, "closed": {"F0": 5.0},
+          "foundation": {"f": 900.0, "kappa": 0.05}, "unequal": {"f": 900.0, "dimer": 0.4, "taper": 0.7, "wall": 0.1}}
 
 
 def recorded(name: str, tolerance: float, **knobs):
-    """An engine of `sec2` after three periods, and its samples."""
-    engine = Engine(scene("sec2").evolve(**knobs), Setting(name, tolerance=tolerance), 16)
+    """An engine of `sec2` after three periods, and its samples; dop853 with the energy account, as in other tests."""
+    engine = Engine(scene("sec2").evolve(**knobs), Setting(name, tolerance=tolerance), 16, balance=True)
     return engine, engine.record(48)
 
 
@@ -50,9 +54,32 @@ def test_a_run_in_two_parts_goes_on():
     assert np.abs(parts - whole).max() < 1e-8 * np.abs(whole).max()
 
 
+@pytest.mark.parametrize("depth", [1e-5, 1e-3])
+def test_a_brief_touch_inside_a_step_throws_the_bead(depth):
+    """The driver's top is `depth` beyond a bead at rest for less than a step: two events, and a push.
+
+    It throws the bead with (3π√2/8)·depth²/β, as in tests/numerics/test_fixed_step_touches.py. The other beads are out of
+    reach, and the wall pushes with no force.
+    """
+    chain = scene("sec2").evolve(f=500.0)
+    engine = Engine(chain, Setting("dop853-root", tolerance=1e-8), 1)
+    slots, beta = engine.scaled.slots, engine.scaled.beta
+    stiffness = slots.chain.stiffness.copy()
+    stiffness[-1] = 0.0
+    engine.use(replace(engine.scaled, slots=slots._replace(
+        chain=slots.chain._replace(stiffness=stiffness), dissipation=type(slots.dissipation)(0.0))))
+    places = np.arange(1.0, 12.0)
+    places[0] -= depth
+    engine.start(State(places * chain.A0, np.zeros(11)))
+    kept = engine.record(1)
+    push = 3 * np.pi * np.sqrt(2) / 8 * depth**2 / beta
+    assert engine.counts.events == 2
+    assert kept.velocity[-1, 0] == pytest.approx(push, rel=0.01)
+
+
 @pytest.mark.parametrize("knobs", [{"tension": "cut"}, {"N": 40}], ids=str)
 def test_what_vectors_do_not_know_is_refused(knobs):
-    with pytest.raises(BadInput, match="up to 30 beads without tension cut and energy account; use dop853"):
+    with pytest.raises(BadInput, match=r"up to 30 beads .* without tension cut and energy account; use dop853"):
         recorded("dop853-root", 1e-6, **knobs)
 
 

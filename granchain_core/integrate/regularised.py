@@ -8,10 +8,10 @@ from ..errors import BadInput
 from ..kernels.dop853.run import Stretch
 from ..kernels.dop853.step import ALL_STAGES
 from ..kernels.forces.largest import new_log
-from ..kernels.jit import all_in_simd_kernels
+from ..kernels.jit import unknown_slots
+from ..kernels.regularised.chain import STATE_ROWS, RegularisedWorkspace, Stages
+from ..kernels.regularised.run import run_regularised
 from ..kernels.rk4.short_chain import WIDTHS
-from ..kernels.rooted.chain import STATE_ROWS, RootedWorkspace, Stages
-from ..kernels.rooted.run import run_rooted
 from ..kernels.samples import Output, Samples
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
@@ -21,8 +21,8 @@ from .fixed import short_chain_workspace
 from .stepper import Start, empty_samples
 
 
-class Rooted(Adaptive):
-    """Dormand–Prince 8 in (u, w) at a relative tolerance per step, in the root of an overlap next to contact events."""
+class Regularised(Adaptive):
+    """Dormand–Prince 8 in (u, w) at a relative tolerance per step, in a transformed time next to contact events."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
         super().__init__(tolerance, scaled, samples)
@@ -34,9 +34,9 @@ class Rooted(Adaptive):
         super().use(scaled)
 
     def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
-             out: Output) -> tuple[int, int]:
+                out: Output) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
-        status, rows = run_rooted(self.method, self._vectors, self.trajectory(y),
+        status, rows = run_regularised(self.method, self._vectors, self.trajectory(y),
                                   Stretch(first, points, self.grid, every), samples, out)
         return status, rows
 
@@ -52,15 +52,17 @@ class Rooted(Adaptive):
         return again.locate_failure(now, start, done)
 
 
-def _workspace(scaled: ScaledChain) -> RootedWorkspace:
-    """The workspace of a driven chain of up to 30 beads, all of whose effects the vectors know. Raises `BadInput`."""
+def _workspace(scaled: ScaledChain) -> RegularisedWorkspace:
+    """The workspace of a chain of up to 30 beads, all of whose effects these kernels know. Raises `BadInput`."""
     width = next((lanes for lanes in WIDTHS if scaled.bodies <= lanes), 0)
-    if not width or not all_in_simd_kernels(scaled.slots) or scaled.slots.driver is None:
-        raise BadInput(f"The method dop853-root knows driven chains of up to {max(WIDTHS) - 2} beads without tension "
-                       "cut and energy account; use dop853 for this one.")
+    unknown = unknown_slots(scaled.slots, "regularised")
+    if not width or unknown or scaled.slots.driver is None:
+        named = f" It does not know: {', '.join(unknown)}." if unknown else ""
+        raise BadInput(f"The method dop853-root takes chains of up to {max(WIDTHS) - 2} beads with a driver that is "
+                       f"harmonic or at rest, without tension cut and energy account; use dop853 for this one.{named}")
 
     def rows(count: int) -> Stages:
         return Stages(aligned(count, width), aligned(count, width), aligned(count, VECTOR_WIDTH))
 
-    return RootedWorkspace(short_chain_workspace(scaled, width), rows(ALL_STAGES), rows(7), rows(1),
+    return RegularisedWorkspace(short_chain_workspace(scaled, width), rows(ALL_STAGES), rows(7), rows(1),
                            aligned(STATE_ROWS, width), aligned(1, width), np.zeros(8))

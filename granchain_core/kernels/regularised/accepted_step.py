@@ -1,0 +1,168 @@
+"""An accepted step of a short chain: its error is tolerable, and no contact opens in it that it did not aim at."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import Any, NamedTuple
+
+from ..dop853.step import RESOLUTION
+from ..dop853.tableau import DENSE_EVALUATIONS, STAGES
+from ..flow.event_time import nonnegative_root
+from ..jit import inline_llvm, inline_numba
+from ..simd.sums import largest_of, magnitude, rough_sixteenth
+from ..simd.vector import at, splat, with_first
+from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
+from .chain import ROOT, TIME, Point, powers, transform_at
+from .changes import Accepted, changes_in, first_change, size_in_xi
+from .forces import end_forces, in_xi, may_exceed
+from .step import Units, attempt, prepare_dense_rows
+
+#: Least factor between two steps.
+_SHRINK = 0.1
+#: Safety factor of a step that is repeated.
+_SAFETY_AGAIN = 0.9
+#: Numbers that overflow in a shorter step than this will do so in any.
+_HOPELESS = 1e-9
+#: Most attempts to begin a step, and most steps in a row in which no time passes.
+ATTEMPTS = 60
+
+
+class Problem(NamedTuple):
+    """What stays the same throughout a run: chain, method, workspace and counters; p of the time transform.
+
+    `last` is the number of the last contact, and of beads. Points of the grid are `spacing` apart, and one that is
+    missed by at most `near` is passed; each `every`-th is recorded, none where it is 0.
+    """
+
+    slots: Any
+    values: Any
+    driver: Any
+    beta: float
+    method: Any
+    work: Any
+    out: Any
+    power: int
+    last: int
+    spacing: float
+    near: float
+    every: int
+
+
+class Here(NamedTuple):
+    """The chain where a step begins: time in the period, point, rates, forces; closed contacts as bits and as 0 or 1.
+
+    The forces are up to date only where they are recorded.
+    """
+
+    t: float
+    point: Any
+    rates: Any
+    forces: Any
+    bits: int
+    closed: Any
+
+
+class Found(NamedTuple):
+    """An accepted step, the forces at its end, and the first contact that changes in it (−1: none), with the fraction.
+
+    `prepared` says whether its dense output is in the workspace, `exceeds` whether the largest forces may lie inside.
+    """
+
+    step: Any
+    forces: Any
+    contact: int
+    x: float
+    prepared: bool
+    exceeds: bool
+
+
+@inline_llvm
+def is_too_small(dt, t, beta):
+    """Whether a step in time is lost in the rounding of the time."""
+    return not beta * dt > RESOLUTION * (1.0 + beta * t)
+
+
+@inline_numba
+def new_units(problem, point, scale):
+    """Raise the scale of the tolerance to the largest values at a point; returns the `Units` of the errors."""
+    for q in range(2):
+        largest = largest_of(magnitude(with_first(point.u if q == 0 else point.w, 0.0)))
+        scale[q] = max(scale[q], largest)
+    tolerance = problem.method.tolerance
+    return Units(1.0 / (tolerance * scale[0]), 1.0 / (tolerance * scale[1]), 2.0 * problem.last)
+
+
+@inline_numba
+def accepted_attempt(problem, here, chosen, dt, units):
+    """Shrink a step until its error is tolerable, in the time next to the event of contact `chosen`, or in t (−1).
+
+    Returns (status, step, its size in time as it was tried).
+    """
+    counts = problem.out.counts
+    transform, q, h, limited, pace = transform_at(problem.values, here.closed, chosen), 0.0, dt, False, 1.0
+    if chosen >= 0:
+        q = nonnegative_root(at(here.rates.overlap, chosen), problem.power)
+        pace, _, _ = powers(problem.power, q)
+        h, limited = size_in_xi(problem.power, q, at(here.rates.rate, chosen), dt)
+    start, status = Point(here.point.u, here.point.w, with_first(splat(here.t), q)), DONE
+    while True:
+        error, end, end_rates = attempt(problem.values, problem.driver, problem.work, transform, start, here.rates, h,
+                                        units)
+        counts[EVALUATIONS] += STAGES
+        if error <= 1.0:
+            break
+        counts[REJECTED] += 1
+        factor, limited = _SHRINK, True  # an overflow: ξ covers far more time than it should
+        if isfinite(error):
+            factor = max(_SHRINK, _SAFETY_AGAIN * rough_sixteenth(error))
+        elif dt < _HOPELESS:
+            status = NOT_FINITE
+            break
+        h, dt = h * factor, dt * factor
+        if is_too_small(dt, here.t, problem.beta):
+            status = STEP_TOO_SMALL
+            break
+    end_pace = 1.0
+    if chosen >= 0:
+        end_pace, _, _ = powers(problem.power, at(end.clock, ROOT))
+    return status, Accepted(transform, h, start, here.rates, pace, end, end_rates, end_pace, error, limited), dt
+
+
+@inline_numba
+def accepted_step(problem, here, chosen, dt, units, g):
+    """An accepted step past point g of the grid, in which no contact opens but the one its time transform is made for.
+
+    A release that the step did not aim at is aimed at in another attempt. Returns (status, `Found`, size in time as it
+    was tried).
+    """
+    slots, work, values, counts = problem.slots, problem.work, problem.values, problem.out.counts
+    attempts = 1
+    while True:
+        status, step, dt = accepted_attempt(problem, here, chosen, dt, units)
+        forces, contact, x, prepared, exceeds = here.forces, -1, 2.0, False, False
+        if status == DONE:
+            crossed, turned = changes_in(step, here.bits, problem.last + 1)
+            changes = crossed | turned != 0
+            prepared = changes or (g + 1) * problem.spacing <= at(step.end.clock, TIME) + problem.near
+            if problem.every > 0:
+                forces = end_forces(values, problem.driver, step.end, step.end_rates, problem.last)
+                if not prepared:
+                    exceeds = may_exceed(in_xi(here.forces, step.pace), in_xi(forces, step.end_pace), step.h,
+                                         problem.out.log.peaks)
+            if prepared or exceeds:
+                prepare_dense_rows(values, problem.driver, work, step.transform, step.start, step.end, step.h)
+                counts[EVALUATIONS] += DENSE_EVALUATIONS
+            if changes:
+                contact, x = first_change(slots, work, step, here.bits, crossed, turned)
+        done = status != DONE or contact < 0 or contact == chosen or (here.bits >> contact) & 1 == 0 or x == 0.0
+        if done:
+            break
+        chosen = contact
+        counts[REJECTED] += 1
+        if attempts > 2:
+            dt *= 0.5
+        attempts += 1
+        if attempts > ATTEMPTS or is_too_small(dt, here.t, problem.beta):
+            status = STEP_TOO_SMALL
+            break
+    return status, Found(step, forces, contact, min(x, 1.0), prepared, exceeds), dt

@@ -1,0 +1,123 @@
+"""Inside a step, on its dense output: the overlap of a contact or q, the time, and where they are zero or largest."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..dop853.bracket import top_inside, value_at
+from ..dop853.step import TURN_SECTIONS
+from ..effects.preload import overlap
+from ..jit import internal
+from .chain import ROOT, TIME
+
+#: A fraction of the step is found when it changes by less than this; the next change would be far smaller.
+_FOUND = 1e-9
+
+
+class Polynomial(NamedTuple):
+    """One quantity of the dense output, times a sign: its seven rows, then its value at the start (8,)."""
+
+    coefficients: np.ndarray
+    sign: float
+
+
+@internal
+def take_distance(slots, work, contact, chosen, sign):
+    """Make the overlap of a contact, or q if it is the one that is `chosen`, times a sign, the polynomial."""
+    p, begin, dense = work.polynomial, work.begin, work.dense
+    if chosen:
+        p[7] = sign * begin.clock[0, ROOT]
+        for k in range(7):
+            p[k] = sign * dense.clock[k, ROOT]
+    else:
+        p[7] = sign * overlap(slots.preload, begin.u[0], contact)
+        for k in range(7):
+            p[k] = sign * (dense.u[k, contact] - dense.u[k, contact + 1])
+
+
+@internal
+def take_time(work, instant):
+    """Make the time since an instant the polynomial."""
+    work.polynomial[7] = work.begin.clock[0, TIME] - instant
+    for k in range(7):
+        work.polynomial[k] = work.dense.clock[k, TIME]
+
+
+@internal
+def polynomial_at(p, x):
+    """The polynomial at fraction x of the step, as `dense_value` (dop853/step.py) adds up its rows."""
+    back = 1.0 - x
+    value = (p[6] * x + p[5]) * back
+    value = (value + p[4]) * x
+    value = (value + p[3]) * back
+    value = (value + p[2]) * x
+    value = (value + p[1]) * back
+    return p[7] + (value + p[0]) * x
+
+
+@value_at.of(Polynomial)
+def _(quantity, step, x):
+    return quantity.sign * polynomial_at(quantity.coefficients, x)
+
+
+@internal
+def zero_between(p, low, high):
+    """Where the polynomial passes from negative to positive: secants within a bracket, else its middle.
+
+    They need fewer evaluations than `root_inside` (dop853/bracket.py), which halves a value at each end that stays.
+    """
+    last, x, f_last, f = low, high, polynomial_at(p, low), polynomial_at(p, high)
+    for _ in range(60):
+        nearer = x - f * (x - last) / (f - f_last)
+        if not low <= nearer <= high:
+            nearer = 0.5 * (low + high)
+        last, f_last, x = x, f, nearer
+        f = polynomial_at(p, x)
+        if f > 0.0:
+            high = x
+        else:
+            low = x
+        if f == f_last or abs(x - last) < _FOUND:
+            break
+    return x
+
+
+@internal
+def turn_of(p, sign):
+    """(fraction, value) where the polynomial times `sign` is largest, if it has one maximum in the step."""
+    return top_inside(Polynomial(p, sign), None, 1.0, TURN_SECTIONS)
+
+
+@internal
+def time_inside(work, x):
+    """The time at fraction x of the step."""
+    take_time(work, 0.0)
+    return polynomial_at(work.polynomial, x)
+
+
+@internal
+def fraction_at(work, instant, high):
+    """Fraction of the step, up to `high`, at which it is `instant`."""
+    take_time(work, instant)
+    if polynomial_at(work.polynomial, 0.0) >= 0.0:
+        return 0.0
+    if polynomial_at(work.polynomial, high) <= 0.0:
+        return high
+    return zero_between(work.polynomial, 0.0, high)
+
+
+@internal
+def change_before(p, falls, high):
+    """Fraction up to `high` at which a distance becomes positive; 0 where it is so at the start, unless it `falls`.
+
+    A contact that has just changed falls, and may be positive at the start by rounding.
+    """
+    low, before = 0.0, p[7]
+    if before >= 0.0 and falls:
+        low, lowest = turn_of(p, -1.0)
+        before = -lowest
+    if before >= 0.0 or low >= high:
+        return 0.0
+    return zero_between(p, low, high)

@@ -1,0 +1,242 @@
+"""Runs along a short chain: steps with error control that go past contact events, which are roots inside them.
+
+A step is attempted from `Here` until it is accepted (accepted_step.py). It ends at the first change of a contact inside
+it, or at the last point of the grid (`ended`). The next step begins there.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from ..dop853.step import PERIOD_END, evaluate
+from ..effects.driver import driver_displacement, driver_velocity
+from ..flow.event_time import smooth_power
+from ..forces.largest import SAMPLE, note_closing
+from ..jit import inline_llvm, inline_numba, kernel
+from ..rk4.short_chain import chain_values, load_row
+from ..samples import first_not_finite, keep
+from ..simd.sums import rough_sixteenth
+from ..simd.vector import at, blank, positive_mask, splat, store, with_first
+from ..status import (
+    CANCELLED,
+    CHATTER,
+    DONE,
+    EVALUATIONS,
+    EVENTS,
+    EVENTS_PER_CONTACT,
+    NOT_FINITE,
+    STEP_TOO_SMALL,
+    STEPS,
+)
+from .accepted_step import ATTEMPTS, Here, Problem, accepted_step, is_too_small, new_units
+from .chain import (
+    DISPLACEMENT,
+    ELASTIC,
+    ROOT,
+    TIME,
+    VELOCITY,
+    Point,
+    W,
+    keep_state,
+    no_transform,
+    powers,
+    rates_at,
+)
+from .changes import nearest_event
+from .forces import end_forces, in_xi, may_exceed, search_forces
+from .inside import fraction_at, time_inside
+from .step import point_inside
+
+#: Largest factor between two steps.
+_GROW = 1.3
+#: The same where the error is below `_SMALL_ERROR` tolerances.
+_GROW_FAST = 2.0
+_SMALL_ERROR = 1e-3
+#: Safety factor of the step after an accepted one.
+_SAFETY = 0.8
+
+
+class Ended(NamedTuple):
+    """How far a step is gone: contact that changes there or −1, fraction, time, grid points passed, point, its rates.
+
+    `cut` says whether it ends inside the step that was taken.
+    """
+
+    contact: int
+    x: float
+    time: float
+    passed: int
+    cut: bool
+    point: Any
+    rates: Any
+
+
+@inline_llvm
+def toggled(problem, here, contact):
+    """`Here` once a contact has opened or closed."""
+    work = problem.work
+    work.closed[0, contact] = 1.0 - work.closed[0, contact]
+    closed = load_row(work.chain.width, work.closed, 0)
+    return Here(here.t, here.point, here.rates, here.forces, here.bits ^ (1 << contact), closed)
+
+
+@inline_numba
+def begun(problem, t, y, bodies):
+    """`Here` at the start of a run, from its state; contacts are closed where they overlap."""
+    work, values = problem.work, problem.values
+    for i in range(bodies):
+        work.state[DISPLACEMENT, i], work.state[W, i] = y[i], y[bodies + i]
+    width = work.chain.width
+    point = Point(load_row(width, work.state, DISPLACEMENT), load_row(width, work.state, W), splat(t))
+    rates = rates_at(values, problem.driver, no_transform(values, 1.0 + blank(point.u)), point)
+    bits = positive_mask(rates.overlap) & ((1 << (bodies - 1)) - 1)
+    for c in range(bodies - 1):
+        work.closed[0, c] = 1.0 if (bits >> c) & 1 != 0 else 0.0
+    forces = end_forces(values, problem.driver, point, rates, problem.last)
+    return Here(t, point, rates, forces, bits, load_row(width, work.closed, 0))
+
+
+@inline_numba
+def renewed(problem, here):
+    """`Here` with the driver where its phase has it, and the rates there."""
+    driver, values, theta = problem.driver, problem.values, problem.beta * here.t
+    point = Point(with_first(here.point.u, driver_displacement(driver, theta)),
+                  with_first(here.point.w, driver_velocity(driver, theta)), splat(here.t))
+    rates = rates_at(values, driver, no_transform(values, here.closed), point)
+    problem.out.counts[EVALUATIONS] += 1
+    forces = here.forces
+    if problem.every > 0:
+        forces = end_forces(values, driver, point, rates, problem.last)
+    return Here(here.t, point, rates, forces, here.bits, here.closed)
+
+
+@inline_numba
+def ended(problem, here, found, g, left):
+    """The end of a step past point g of the grid: where a contact changes, or at the last of the `left` points."""
+    step, contact, x, end, end_rates = found.step, found.contact, found.x, found.step.end, found.step.end_rates
+    time, passed = at(end.clock, TIME), 0
+    if contact >= 0:
+        time = time_inside(problem.work, x)
+    while passed < left and (g + passed + 1) * problem.spacing <= time + problem.near:
+        passed += 1
+    if passed == left:
+        time = (g + passed) * problem.spacing
+        fraction = fraction_at(problem.work, time, x)
+        if fraction < x:
+            contact, x = -1, fraction
+    cut = contact >= 0 or passed == left
+    if cut:
+        end = point_inside(problem.work, step.start, x)
+        end_rates = rates_at(problem.values, problem.driver, no_transform(problem.values, here.closed), end)
+        problem.out.counts[EVALUATIONS] += 1
+    return Ended(contact, x, time, passed, cut, end, end_rates)
+
+
+@inline_numba
+def recorded(problem, here, found, end, g, row, samples):
+    """Record the forces in a step, and of the grid points past number g in it each `every`-th.
+
+    Returns the forces at its end and the next free row of `samples`.
+    """
+    slots, work, values, driver, out = problem.slots, problem.work, problem.values, problem.driver, problem.out
+    step, forces, end_pace, exceeds, x = found.step, found.forces, found.step.end_pace, found.exceeds, end.x
+    if end.cut:
+        forces = end_forces(values, driver, end.point, end.rates, problem.last)
+        if step.transform.active != 0.0:
+            end_pace, _, _ = powers(problem.power, at(end.point.clock, ROOT))
+    first, last = in_xi(here.forces, step.pace), in_xi(forces, end_pace)
+    if found.prepared:
+        exceeds = may_exceed(first, last, x * step.h, out.log.peaks)
+    if exceeds:
+        search_forces(slots, work, first, last, x, x * step.h, out)
+    for number in range(g + 1, g + 1 + end.passed):
+        if number % problem.every == 0:
+            inside = point_inside(work, step.start, fraction_at(work, number * problem.spacing, x))
+            keep_state(work, inside, rates_at(values, driver, no_transform(values, here.closed), inside))
+            keep(slots, row, work.state[DISPLACEMENT], work.state[VELOCITY], work.state[ELASTIC], samples)
+            row += 1
+    out.log.counts[SAMPLE] = row - 1
+    return forces, row
+
+
+@inline_llvm
+def growth(step, end):
+    """Factor from a step in time, as it was tried, to the next one."""
+    if end.cut and end.x < 0.5:
+        return 1.0
+    most = _GROW if step.error > _SMALL_ERROR**2 else _GROW_FAST
+    return min(1.0 if step.limited else most, _SAFETY * rough_sixteenth(max(step.error, 1e-24)))
+
+
+@inline_numba
+def finished(problem, here, y, bodies):
+    """Write the state of the beads to y."""
+    state = problem.work.state
+    store(state, DISPLACEMENT, here.point.u)
+    store(state, W, here.point.w)
+    for i in range(1, bodies - 1):
+        y[i], y[bodies + i] = state[DISPLACEMENT, i], state[W, i]
+
+
+@kernel
+def run_regularised(method, work, trajectory, stretch, samples, out):
+    """Run over a stretch of the grid, as `run_dop853` (dop853/run.py) does, with the chain's own workspace `work`."""
+    slots, drive, y, workspace = trajectory
+    points, grid, every, counts = stretch.points, stretch.grid, stretch.every, out.counts
+    bodies, period = slots.chain.inverse_mass.size, drive.period
+    problem = Problem(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
+                      smooth_power(slots.dissipation), bodies - 2, period / grid, PERIOD_END * period, every)
+    g, done, row, dt, renew = stretch.first, 0, 1, workspace.next_step[0], True
+    events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
+    here = begun(problem, g * problem.spacing, y, bodies)
+    if every > 0:
+        evaluate(slots, drive.beta, here.t, y, workspace.k[0], workspace.forces)
+        keep(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
+    while done < points:
+        if out.stop[0] != 0:
+            return CANCELLED, row if every > 0 else done
+        if renew:
+            here = renewed(problem, here)
+        dt = min(dt, method.largest_step)
+        units = new_units(problem, here.point, workspace.scale)
+        chosen = nearest_event(here.rates, here.closed, workspace.scale[0], dt)
+        if chosen >= 0 and at(here.rates.overlap, chosen) <= 0.0 and at(here.rates.rate, chosen) < 0.0:
+            # opened by rounding, or by another event at the same time
+            here, renew, events = toggled(problem, here, chosen), True, events + 1
+            if events > most_events:
+                return CHATTER, row if every > 0 else done
+            continue
+        if is_too_small(dt, here.t, drive.beta):
+            return STEP_TOO_SMALL, row if every > 0 else done
+        status, found, dt = accepted_step(problem, here, chosen, dt, units, g)
+        if status != DONE:
+            return status, row if every > 0 else done
+        end = ended(problem, here, found, g, points - done)
+        idle = idle + 1 if end.contact < 0 and end.time <= here.t else 0
+        if idle > ATTEMPTS:
+            return STEP_TOO_SMALL, row if every > 0 else done
+        forces = here.forces
+        if every > 0:
+            forces, row = recorded(problem, here, found, end, g, row, samples)
+        dt *= growth(found.step, end)
+        g, done, renew = g + end.passed, done + end.passed, end.contact >= 0
+        counts[STEPS] += 1
+        here = Here(end.time, end.point, end.rates, forces, here.bits, here.closed)
+        if end.contact >= 0:
+            events += 1
+            counts[EVENTS] += 1
+            if events > most_events:
+                return CHATTER, row if every > 0 else done
+            here = toggled(problem, here, end.contact)
+            if (here.bits >> end.contact) & 1 != 0 and every > 0:
+                note_closing(slots.dissipation, at(here.rates.rate, end.contact), end.contact, problem.last,
+                             drive.beta * here.t, out.log)
+        if here.t >= period:
+            here = Here(here.t - period, here.point, here.rates, here.forces, here.bits, here.closed)
+            g, events, renew = g - grid, 0, True
+    finished(problem, here, y, bodies)
+    workspace.next_step[0] = dt
+    evaluate(slots, drive.beta, here.t, y, workspace.k[0], workspace.forces)
+    if first_not_finite(y, bodies) != 0:
+        return NOT_FINITE, row if every > 0 else done
+    return DONE, row if every > 0 else done

@@ -1,0 +1,38 @@
+"""The mark of a slot names the SIMD kernels that know it; the others are told that they do not."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import pytest
+
+from granchain_core import scene
+from granchain_core.kernels import jit
+from granchain_core.scaling import scale_chain
+
+
+class Slot(NamedTuple):
+    """An effect that only some kernels know."""
+
+    value: float
+
+
+def test_kernels_that_the_mark_leaves_out_do_not_know_the_slot(monkeypatch: pytest.MonkeyPatch) -> None:
+    for folder, known in jit._IN_SIMD_KERNELS.items():
+        monkeypatch.setitem(jit._IN_SIMD_KERNELS, folder, set(known))
+    slots = scale_chain(scene("sec2")).slots._replace(foundation=Slot(1.0))
+    assert jit.in_simd_kernels("rk4", "batch")(Slot) is Slot
+    assert [jit.unknown_slots(slots, folder) for folder in ("rk4", "batch", "regularised")] == [[], [], ["foundation"]]
+
+
+@pytest.mark.parametrize("slots", [{"kappa": 0.01, "F0": 1.0}, {"dissipation": "none"}], ids=str)
+def test_absent_effects_are_known(slots: dict[str, object]) -> None:
+    present = scale_chain(scene("sec2").evolve(**slots)).slots  # type: ignore[arg-type]
+    assert jit.unknown_slots(present, "regularised") == []
+
+
+@pytest.mark.parametrize("folders", [("rk5",), (Slot,)], ids=str)
+def test_a_mark_without_folders_of_kernels_is_refused(folders: tuple[object, ...]) -> None:
+    """The second is the mark without brackets, which would say that all of them know the slot."""
+    with pytest.raises(TypeError, match="is no folder of SIMD kernels; name those with terms of the slot, of rk4, batch"):
+        jit.in_simd_kernels(*folders)

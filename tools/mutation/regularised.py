@@ -1,0 +1,50 @@
+"""Mutants of the equations' copy in a transformed time: dop853-root along a short chain."""
+
+from __future__ import annotations
+
+from . import killers as k
+from .mutant import Mutant
+
+_FOLDER = "kernels/regularised/"
+_CHAIN, _STEP, _CHANGES = _FOLDER + "chain.py", _FOLDER + "step.py", _FOLDER + "changes.py"
+_RUN, _FORCES, _INSIDE = _FOLDER + "run.py", _FOLDER + "forces.py", _FOLDER + "inside.py"
+
+REGULARISED = (
+    Mutant("regularised-foundation-on-neighbour", _CHAIN, "from_left(blank(elastic), elastic) - elastic, u)",
+           "from_left(blank(elastic), elastic) - elastic, from_right(u, blank(u)))",
+           "the foundation pulls each bead by its neighbour's displacement", k.ROOT_FOUNDED),
+    Mutant("regularised-without-preload", _CHAIN, "row_overlap(values.preload, u, from_right(u, blank(u)))",
+           "u - from_right(u, blank(u))", "a pressed chain is a sonic vacuum", k.ROOT_PRESSED),
+    Mutant("regularised-straight-driver", _CHAIN, "driver_acceleration(driver, at(u, 0))", "driver_acceleration(driver, 0.0)",
+           "the driver goes on as it moves at the last event", k.ROOT),
+    Mutant("regularised-force-exponent", _CHAIN, "transform.chosen_stiffness * (d * r)", "transform.chosen_stiffness * (d * d)",
+           "the contact next to its event has the exponent 2", k.ROOT_FORCES),
+    Mutant("regularised-chosen-undamped", _CHAIN, "+ transform.chosen * signed_shape", "+ 0.0 * transform.chosen * signed_shape",
+           "the contact next to its event has no dashpot", k.ROOT_FORCES),
+    Mutant("regularised-fourth-root", _CHAIN, "return square * q, square, square * square", "return square, square, square * square",
+           "dt/dξ is q² where q is a fourth root", k.ROOT_TSUJI),
+    Mutant("regularised-root-rate", _STEP, "rise = transform.active / power *", "rise = transform.active *",
+           "dq/dξ is δ̇ instead of δ̇/p", k.ROOT),
+    Mutant("regularised-dense-row", _STEP, "2.0 * change - h * (last + first)", "2.0 * change - h * (last - first)",
+           "dense output with a wrong row", k.ROOT),
+    Mutant("regularised-release-unseen", _CHANGES, "crossed = crossed | own if at(step.end.clock, ROOT) < 0.0 else crossed & ~own",
+           "crossed = crossed & ~own", "a contact that a step aims at never opens", k.ROOT_FORCES),
+    Mutant("regularised-touch-unseen", _CHANGES, "turned = (rising & ~risen & ~bits) | (~rising & risen & bits)",
+           "turned = bits & 0", "a touch inside a step is not seen", k.ROOT_TOUCH),
+    Mutant("regularised-wall-stays-closed", _CHANGES, "every = (1 << contacts) - 1", "every = (1 << (contacts - 1)) - 1",
+           "the wall's contact neither opens nor closes", k.ROOT),
+    Mutant("regularised-stays-closed", _RUN, "work.closed[0, contact] = 1.0 - work.closed[0, contact]", "work.closed[0, contact] = 1.0",
+           "a contact that was closed once pulls", k.ROOT),
+    Mutant("regularised-sample-time", _INSIDE, "work.polynomial[7] = work.begin.clock[0, TIME] - instant",
+           "work.polynomial[7] = work.begin.clock[0, TIME] - 0.999 * instant", "samples are read too early", k.ROOT),
+    Mutant("regularised-force-undamped", _FORCES, "return (at(rates.elastic, 0) + dashpot_force(dissipation, at(rates.overlap, 0), at(rates.rate, 0)),",
+           "return (at(rates.elastic, 0),", "the largest input force inside a step leaves out the dashpot", k.ROOT_FORCES),
+    Mutant("regularised-end-force-undamped", _FORCES, "force = rates.elastic + dashpot_force(law, rates.overlap, rates.rate)",
+           "force = rates.elastic", "the forces at the ends of steps leave out the dashpots", k.ROOT_FORCES),
+    Mutant("regularised-no-jump", _RUN, "note_closing(slots.dissipation, at(here.rates.rate, end.contact)",
+           "note_closing(slots.dissipation, 0.0 * at(here.rates.rate, end.contact)", "no force jumps when a contact closes",
+           k.ROOT_FORCES),
+    Mutant("simd-mark-for-all", "kernels/jit.py", "known = _IN_SIMD_KERNELS[folder] | {type(None)}",
+           "known = set().union(*_IN_SIMD_KERNELS.values()) | {type(None)}",
+           "an effect that one SIMD kernel knows is silently left out by the others", k.MARKS),
+)
