@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from .errors import BadInput
+from .kernels.compiling.entry import Entries, types_of
 from .kernels.effects.balance import Balance
 from .kernels.effects.contact import Chain
 from .kernels.effects.dissipation import exponent
@@ -22,7 +23,6 @@ from .kernels.effects.driver import Harmonic
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import new_tension_cut
-from .kernels.entry import Entries, types_of
 from .kernels.equations.body_forces import add_force_slope
 from .kernels.equations.motion import Forces, Slots, place
 from .laws import LAWS, require_complete

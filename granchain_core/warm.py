@@ -22,7 +22,7 @@ from .accuracy.work_precision import compile_methods
 from .child_processes import pool, starting
 from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting
 from .integrate.batch import Batch, can_share_batch, is_uniform
-from .kernels.cache import CACHE_FOLDER, MARK
+from .kernels.compiling.cache import CACHE_FOLDER, MARK
 from .kernels.rk4.short_chain import WIDTHS
 from .observe.pair import Pair
 from .orbits.branch.axis import KnobAxis
@@ -129,7 +129,7 @@ def compile_piece(shown: Scene, piece: str) -> None:
     """Compile one piece for the scene's structure, or load it from the cache, and mark it as compiled."""
     PIECES[piece](shown.evolve(f=max(shown.f, 1000.0), drive="harmonic"))  # short periods, and all that has orbits
     if CACHE_FOLDER is not None:
-        with contextlib.suppress(OSError):  # the kernels were not kept either; kernels/cache.py has said so
+        with contextlib.suppress(OSError):  # the kernels were not kept either; kernels/compiling/cache.py has said so
             _marker(CACHE_FOLDER, structure(shown), piece).touch()
 
 

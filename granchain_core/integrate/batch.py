@@ -11,9 +11,9 @@ from ..errors import Cancelled
 from ..kernels.batch import run as kernels
 from ..kernels.batch.period_end import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, STROBES_KEPT
 from ..kernels.batch.unequal import Unequal
-from ..kernels.entry import entry
+from ..kernels.compiling.entry import entry
+from ..kernels.compiling.jit import unknown_slots
 from ..kernels.forces.peaks import PEAKS
-from ..kernels.jit import unknown_slots
 from ..kernels.simd.vector import aligned
 from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS

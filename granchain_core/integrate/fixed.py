@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
+from ..kernels.compiling.entry import Entries, types_of
+from ..kernels.compiling.jit import unknown_slots
 from ..kernels.contact_cubic import ENDS
-from ..kernels.entry import Entries, types_of
 from ..kernels.equations.motion import Trajectory, place
 from ..kernels.forces.largest import new_log
-from ..kernels.jit import unknown_slots
 from ..kernels.naive import naive_motion
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import RunRecord, run_steps

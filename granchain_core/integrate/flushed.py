@@ -6,7 +6,7 @@ import functools
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-from ..kernels.jit import kernel
+from ..kernels.compiling.jit import kernel
 from ..kernels.simd.subnormals import flush_subnormals, restore_subnormals
 
 P = ParamSpec("P")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import BadInput
+from ..kernels.compiling.jit import unknown_slots
 from ..kernels.dop853.run import Stretch
 from ..kernels.dop853.step import ALL_STAGES
 from ..kernels.forces.largest import new_log
-from ..kernels.jit import unknown_slots
 from ..kernels.regularised.chain import STATE_ROWS, RegularisedWorkspace, Stages
 from ..kernels.regularised.run import run_regularised
 from ..kernels.rk4.short_chain import WIDTHS

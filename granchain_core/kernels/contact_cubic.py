@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from .jit import inline_numba, internal
+from .compiling.jit import inline_numba, internal
 
 #: Rows of the arrays of a step to be split: overlaps and their rates at its two ends, then the quadrature errors of
 #: every contact's impulse and, with damping that grows with the overlap, of ∫G dt.

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from .compiling.jit import kernel
 from .effects.contact import elastic_force, positive_part
 from .effects.dissipation import dashpot_force
 from .effects.preload import overlap
@@ -17,7 +18,6 @@ from .effects.tension import cut_at_zero
 from .equations.body_forces import force_on_bead
 from .forces.crossings import end_overlaps, watch_crossings
 from .forces.largest import Instant
-from .jit import kernel
 from .rk4.step import span_of, step, tabulated_displacement, tabulated_velocity
 from .status import EVALUATIONS, STEPS
 

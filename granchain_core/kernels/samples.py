@@ -6,10 +6,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .compiling.jit import by_slot, internal, kernel
 from .effects.balance import Balance, account_ends
 from .equations.motion import contact_force, stored_energy
 from .forces.largest import ForceLog
-from .jit import by_slot, internal, kernel
 
 
 class Samples(NamedTuple):

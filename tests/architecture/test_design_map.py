@@ -15,7 +15,7 @@ ROWS = {row[1]: re.findall(r"`(\w+)`", row[2])
 #: Module beside the folders → what it uses: a module, a folder, or one module of a folder.
 MODULES = {row[1]: set(re.findall(r"`([\w.]+)`", row[2]))
            for row in re.finditer(r"^\| `(\w+)\.py` \| [^|]+ \| ([^|]+) \|$", PAGE, re.MULTILINE)}
-#: Module of the kernels, beside their folders.
+#: Modules of the kernels beside their folders, and those that compile them.
 KERNELS = set(re.findall(r"^\| `(\w+)\.py` \| [^|]+ \|$", PAGE, re.MULTILINE))
 #: Folder with folders of its own, which the map orders → each of these → the others that it uses.
 FAMILIES = {family: {folder.split("/")[2]: uses for folder, uses in ROWS.items()
@@ -67,7 +67,8 @@ def test_a_folder_of_a_family_imports_only_what_the_map_says(family: str, layer:
 
 
 def test_every_module_of_the_kernels_is_named() -> None:
-    files = {path.stem for path in (ROOT / "granchain_core" / "kernels").glob("*.py") if path.stem != "__init__"}
+    kernels = ROOT / "granchain_core" / "kernels"
+    files = {path.stem for folder in (kernels, kernels / "compiling") for path in folder.glob("*.py")} - {"__init__"}
     assert files == KERNELS
 
 

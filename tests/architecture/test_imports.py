@@ -15,7 +15,7 @@ import app.dashboard.layout  # noqa: F401  (makes every component known)
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
 from app.parts.result_figure import ResultFigure
-from granchain_core.kernels import cache, link_only
+from granchain_core.kernels.compiling import cache, link_only
 
 
 def module_name(path: Path) -> str:
@@ -179,7 +179,8 @@ def test_the_tables_name_modules_that_are_there() -> None:
 def test_the_documentation_names_what_is_used_of_numba() -> None:
     """With the names that classes of the core use of the ones of Numba they are derived from."""
     for module, needed in (("cache", cache._NEEDED), ("link_only", link_only._NEEDED)):
-        assert {name for name in needed if name.startswith("_")} <= PRIVATE_OF_NUMBA[f"granchain_core.kernels.{module}"]
+        private = {name for name in needed if name.startswith("_")}
+        assert private <= PRIVATE_OF_NUMBA[f"granchain_core.kernels.compiling.{module}"]
 
 
 def test_parts_override_of_panel_only_what_is_documented() -> None:

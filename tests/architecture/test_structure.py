@@ -43,7 +43,7 @@ def lines_of_docstrings(tree: ast.Module) -> int:
 
 
 def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:
-    from granchain_core.kernels.cache import CACHE_FOLDER, sources_hash
+    from granchain_core.kernels.compiling.cache import CACHE_FOLDER, sources_hash
 
     assert CACHE_FOLDER is not None and sources_hash() in CACHE_FOLDER.name
 

@@ -95,7 +95,7 @@ def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
 from granchain_core import BadInput, run, scene
 from granchain_core.integrate.batch import can_share_batch
 from granchain_core.kernels.effects.drag import Drag
-from granchain_core.kernels.jit import in_simd_kernels
+from granchain_core.kernels.compiling.jit import in_simd_kernels
 for mark in ((), ("rk4", "batch")):
     in_simd_kernels(*mark)(Drag)
     try:

@@ -25,6 +25,7 @@ from granchain_core.hard.touches import (
     run,
     workspace,
 )
+from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.dop853.run import located_step
 from granchain_core.kernels.dop853.step import STAGES, Cycle, Dop853, evaluate
 from granchain_core.kernels.effects.contact import Chain
@@ -32,7 +33,6 @@ from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.foundation import Foundation
 from granchain_core.kernels.effects.preload import Preload
 from granchain_core.kernels.equations.motion import Slots, Trajectory, copy
-from granchain_core.kernels.jit import kernel
 
 __all__ = ["DEPTH", "ONSETS", "ONSET_ERROR", "RELEASE_ERROR", "TOLERANCE", "draw", "missed", "moved", "run", "run_pairs"]
 

@@ -91,11 +91,11 @@ OBSERVED = (
 )
 
 COMPILED = (
-    Mutant("fastmath", "kernels/jit.py", '{"fastmath": set(FAST_MATH)', '{"fastmath": True',
+    Mutant("fastmath", "kernels/compiling/jit.py", '{"fastmath": set(FAST_MATH)', '{"fastmath": True',
            "the compiler may take it that there is no NaN and no infinity", k.FASTMATH, optimised=True),
-    Mutant("fastmath-nnan", "kernels/jit.py", '("nsz", "arcp", "contract", "reassoc")', '("nsz", "arcp", "contract", "reassoc", "nnan")',
+    Mutant("fastmath-nnan", "kernels/compiling/jit.py", '("nsz", "arcp", "contract", "reassoc")', '("nsz", "arcp", "contract", "reassoc", "nnan")',
            "the compiler may take it that there is no NaN", k.FASTMATH, optimised=True),
-    Mutant("fastmath-ninf", "kernels/jit.py", '("nsz", "arcp", "contract", "reassoc")', '("nsz", "arcp", "contract", "reassoc", "ninf")',
+    Mutant("fastmath-ninf", "kernels/compiling/jit.py", '("nsz", "arcp", "contract", "reassoc")', '("nsz", "arcp", "contract", "reassoc", "ninf")',
            "the compiler may take it that there is no infinity", k.FASTMATH, optimised=True),
 )
 

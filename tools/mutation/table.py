@@ -33,5 +33,5 @@ DEMANDED: dict[str, tuple[str, ...]] = {
 BROAD: tuple[str, ...] = ("tests/kernels", "tests/scene", "tests/physics", "tests/integrate", "tests/run", "tests/numerics",
                           "tests/steady", "tests/orbits", "tests/observe", "tests/diagram", "tests/hard/test_outcomes.py", "tests/hard/test_broken.py",
                           "tests/hard/test_cases.py", "tests/hard/test_fuzz.py",
-                          "--deselect", "tests/kernels/test_machine_code.py", "--deselect", "tests/kernels/test_cache.py",
+                          "--deselect", "tests/kernels/test_machine_code.py", "--deselect", "tests/kernels/compiling/test_cache.py",
                           "-k", "not stop_flag")

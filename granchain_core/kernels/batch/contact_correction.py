@@ -12,10 +12,10 @@ and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/
 
 from __future__ import annotations
 
+from ..compiling.jit import by_slot, inline_llvm
 from ..effects.contact import three_halves
 from ..effects.dissipation import LAWS, exponent, primitive_factor, primitive_power
 from ..effects.preload import batch_overlap
-from ..jit import by_slot, inline_llvm
 from ..simd.functions import clip, gate, larger
 from ..simd.vector import blank, load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness

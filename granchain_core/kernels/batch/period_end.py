@@ -14,9 +14,9 @@ from math import log
 
 import numpy as np
 
+from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..equations.motion import copy
 from ..forces.peaks import row_of, row_of_jump
-from ..jit import inline_llvm, inline_numba, internal
 from ..strobes.extrapolation import ORBITS, reduced_rank
 from ..strobes.periodicity import (
     LONGEST_PERIOD,

@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import inline_llvm, inline_numba, kernel
 from ..effects.dissipation import batch_values
 from ..effects.foundation import batch_foundation
 from ..effects.preload import batch_overlap
-from ..jit import inline_llvm, inline_numba, kernel
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import load_batch, store
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS

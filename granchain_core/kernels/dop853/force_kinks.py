@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot
 from ..effects.balance import add_to_account, ends_of
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, power
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut, hold_force_free
 from ..equations.motion import write_w
-from ..jit import by_slot
 from ..simd.functions import gate, root
 from ..status import EVALUATIONS
 from .bracket import Bracket, root_inside, value_at

@@ -12,13 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import internal
 from ..effects.contact import elastic_force, elastic_slope, positive_part
 from ..effects.dissipation import dashpot_force
 from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import row_of
-from ..jit import internal
 from ..status import EVALUATIONS
 from .bracket import top_inside, value_at
 from .step import evaluate, interpolate, prepare_dense

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import inline_numba, kernel
 from ..equations.motion import copy
-from ..jit import inline_numba, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, DONE, FULL, NOT_FINITE
 from .bracket import value_at

@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot, inline_numba, kernel
 from ..effects.balance import add_to_account, force_free_loss
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut
 from ..equations.motion import copy
 from ..forces.largest import SAMPLE, Instant, Span, note_closings
-from ..jit import by_slot, inline_numba, kernel
 from ..samples import first_not_finite, keep
 from ..status import (
     CANCELLED,

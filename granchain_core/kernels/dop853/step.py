@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_type, inline_numba, internal, kernel
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import motion
-from ..jit import by_type, inline_numba, internal, kernel
 from .bracket import Bracket, root_inside, top_inside, value_at
 from .tableau import ALL_STAGES, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import by_slot, internal
+from ..compiling.jit import by_slot, internal
 from .contact import elastic_force, positive_part
 from .dissipation import times_primitive
 from .driver import driver_acceleration

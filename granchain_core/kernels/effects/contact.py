@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import by_slot, in_simd_kernels, inline_llvm, internal
+from ..compiling.jit import by_slot, in_simd_kernels, inline_llvm, internal
 from ..simd.functions import clip, root
 
 

@@ -16,8 +16,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from ..compiling.jit import by_slot, by_slot_inlined, in_simd_kernels, inline_llvm, require_terms
 from ..contact_cubic import TINY
-from ..jit import by_slot, by_slot_inlined, in_simd_kernels, inline_llvm, require_terms
 from ..simd.functions import clip, gate, root
 from ..simd.vector import load_batch
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from ..jit import by_slot, in_simd_kernels
+from ..compiling.jit import by_slot, in_simd_kernels
 from ..simd.vector import load_batch
 
 

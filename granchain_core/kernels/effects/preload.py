@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import by_slot, in_simd_kernels
+from ..compiling.jit import by_slot, in_simd_kernels
 from ..simd.vector import load_like
 
 

@@ -8,9 +8,9 @@ The SIMD kernels repeat the terms that they support.
 
 from __future__ import annotations
 
+from ..compiling.jit import by_slot, inline_llvm, internal
 from ..effects.balance import Balance
 from ..effects.foundation import add_foundation_force, add_foundation_slope, foundation_energy
-from ..jit import by_slot, inline_llvm, internal
 
 
 @internal

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import check_effects, internal, kernel
 from ..effects.balance import account
 from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
 from ..effects.dissipation import dashpot_force, keep_primitive, shifted, velocity
@@ -27,7 +28,6 @@ from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
 from ..effects.tension import cut_tension, keep_force_free_primitive, unless_force_free
-from ..jit import check_effects, internal, kernel
 from .body_forces import account_for_bodies, force_on_bead, stored_on_bead
 
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot, inline_numba, internal
 from ..dop853.bracket import may_turn, value_at
 from ..dop853.step import (
     Overlap,
@@ -27,7 +28,6 @@ from ..dop853.step import (
 from ..dop853.tableau import ALL_STAGES, DENSE_EVALUATIONS, STAGES, C
 from ..effects.preload import overlap
 from ..equations.motion import Trajectory
-from ..jit import by_slot, inline_numba, internal
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .event_time import Time, rate_at, slope_in_x, time_at
 

@@ -15,9 +15,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from ..compiling.jit import by_slot, internal
 from ..dop853.step import evaluate
 from ..effects.dissipation import LAWS, exponent
-from ..jit import by_slot, internal
 
 #: Kinds of time: after an onset, plain, before a release.
 AFTER, PLAIN, BEFORE = 1, 0, -1

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compiling.jit import inline_numba
 from ..dop853.step import growth, shrunk
 from ..dop853.tableau import STAGES
 from ..effects.preload import overlap
-from ..jit import inline_numba
 from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .attempt import accepted_in_time, attempt_in_time, first_change
 from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compiling.jit import by_slot, internal, kernel
 from ..dop853.step import evaluate, new_scale
 from ..effects.preload import overlap
 from ..equations.motion import copy
-from ..jit import by_slot, internal, kernel
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
 from .event_time import time_at

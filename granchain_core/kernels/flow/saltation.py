@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import inline_numba
 from ..contact_cubic import TINY
 from ..dop853.tableau import STAGES, A, C
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope
-from ..jit import inline_numba
 from .attempt import keep_stage
 from .event_time import rate_at
 from .run import apply_saltation

@@ -16,13 +16,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot, by_slot_inlined, inline_llvm, inline_numba, internal
 from ..contact_cubic import TINY
 from ..dop853.tableau import STAGES, A, C
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import LAWS, damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope, add_force_trace
-from ..jit import by_slot, by_slot_inlined, inline_llvm, inline_numba, internal
 from ..simd.vector import VECTOR_WIDTH, aligned, blank, load, store
 from .attempt import keep_stage
 from .event_time import rate_at

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ..compiling.jit import by_slot, inline_llvm, internal
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS
 from ..effects.preload import overlap
-from ..jit import by_slot, inline_llvm, internal
 from ..simd.functions import clip, root
 from .largest import UNRESOLVED, note_closing
 

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot, inline_numba, internal
 from ..contact_cubic import OVERLAP, RATE, TINY, hermite_turn
 from ..effects.contact import elastic_force, elastic_slope, positive_part
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, dashpot_force, dashpot_slope, onset_force
@@ -22,7 +23,6 @@ from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..equations.body_forces import force_on_bead
 from ..equations.motion import contact_force
-from ..jit import by_slot, inline_numba, internal
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS, row_of
 
 #: Only a force above this part of the largest so far is followed with its slope: a maximum inside a step exceeds the

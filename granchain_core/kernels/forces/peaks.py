@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..jit import inline_llvm, internal, kernel
+from ..compiling.jit import inline_llvm, internal, kernel
 from ..simd.functions import choose_peak, larger
 from ..simd.vector import load_batch, positive_mask, store
 

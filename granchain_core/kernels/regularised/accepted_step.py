@@ -5,10 +5,10 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any, NamedTuple
 
+from ..compiling.jit import inline_llvm, inline_numba
 from ..dop853.step import RESOLUTION
 from ..dop853.tableau import DENSE_EVALUATIONS, STAGES
 from ..flow.event_time import nonnegative_root
-from ..jit import inline_llvm, inline_numba
 from ..simd.sums import largest_of, magnitude, rough_sixteenth
 from ..simd.vector import at, splat, with_first
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL

@@ -21,13 +21,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import inline_llvm
 from ..effects.contact import positive_part
 from ..effects.dissipation import shape
 from ..effects.driver import driver_acceleration
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import row_overlap
 from ..flow.event_time import smooth_power
-from ..jit import inline_llvm
 from ..rk4.short_chain import chain_velocity
 from ..simd.functions import root
 from ..simd.sums import only_lane

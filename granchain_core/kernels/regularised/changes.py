@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import inf
 from typing import Any, NamedTuple
 
+from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..contact_cubic import hermite_turn
 from ..flow.event_time import nonnegative_root, smooth_power
-from ..jit import inline_llvm, inline_numba, internal
 from ..simd.sums import largest_of, lowest_bit, magnitude
 from ..simd.vector import at, positive_mask
 from .chain import ROOT

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import inline_llvm, internal
 from ..dop853.bracket import top_inside, value_at
 from ..dop853.force_search import FORCE_SECTIONS, SEARCHED, WORTH, is_monotone
 from ..effects.contact import elastic_slope, positive_part
@@ -14,7 +15,6 @@ from ..effects.driver import driver_acceleration
 from ..effects.foundation import add_foundation_force
 from ..forces.largest import cubic_top, reach
 from ..forces.peaks import row_of
-from ..jit import inline_llvm, internal
 from ..rk4.short_chain import chain_values, load_row
 from ..simd.vector import at, blank, from_left, from_right, load, with_first
 from ..status import EVALUATIONS

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import internal
 from ..dop853.bracket import top_inside, value_at
 from ..dop853.step import TURN_SECTIONS
 from ..effects.preload import overlap
-from ..jit import internal
 from .chain import ROOT, TIME
 
 #: A fraction of the step is found when it changes by less than this; the next change would be far smaller.

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ..compiling.jit import inline_llvm, inline_numba, kernel
 from ..dop853.step import PERIOD_END, evaluate
 from ..effects.driver import driver_displacement, driver_velocity
 from ..flow.event_time import smooth_power
 from ..forces.largest import SAMPLE, note_closing
-from ..jit import inline_llvm, inline_numba, kernel
 from ..rk4.short_chain import chain_values, load_row
 from ..samples import first_not_finite, keep
 from ..simd.sums import rough_sixteenth

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from ..compiling.jit import inline_llvm
 from ..dop853.tableau import DENSE_WEIGHTS, E3, E5, STAGES, A
 from ..flow.event_time import smooth_power
-from ..jit import inline_llvm
 from ..simd.sums import sum_of, weighted_rows
 from ..simd.vector import at, load_like, splat, store, with_first
 from .chain import ROOT, TIME, Point, powers, rates_at

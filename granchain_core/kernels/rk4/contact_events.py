@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from math import copysign, sqrt
 
+from ..compiling.jit import by_slot, inline_llvm, inline_numba, internal
 from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END, TINY, contact_root
 from ..effects.contact import three_halves
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, exponent, primitive_factor, primitive_power
-from ..jit import by_slot, inline_llvm, inline_numba, internal
 
 #: Most events located in one step; the rest of the step is taken whole.
 MOST_SPLITS = 64

@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot, inline_numba, internal
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import LAWS, dashpot_force, primitive
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..jit import by_slot, inline_numba, internal
 from ..simd.vector import VECTOR_WIDTH, from_left, from_right, load, positive_mask, splat, store, with_first
 from .step import tabulated_displacement, tabulated_velocity
 

@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot, kernel
 from ..effects.driver import Moved, driver_displacement, driver_velocity
 from ..effects.given_force import Sampled
 from ..equations.motion import Trajectory, motion
 from ..forces.largest import watch_state
-from ..jit import by_slot, kernel
 from ..samples import first_not_finite, keep
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .step import DriveTable, step

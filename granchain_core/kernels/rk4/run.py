@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot_inlined, internal, kernel
 from ..effects.contact import elastic_force, positive_part
 from ..effects.preload import overlap
 from ..equations.motion import contact_force, motion
 from ..forces.largest import SAMPLE, watch_state
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, keep_largest_forces, next_period, watch
-from ..jit import by_slot_inlined, internal, kernel
 from ..samples import Samples, first_not_finite, keep, keep_strobe
 from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS, STEPS_BETWEEN_STOP_CHECKS
 from .long_chain import LongChain, steps_without_events

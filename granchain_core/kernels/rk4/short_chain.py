@@ -11,12 +11,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot, by_type, inline_llvm
 from ..contact_cubic import OVERLAP, RATE
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, shape
 from ..effects.foundation import add_foundation_force
 from ..effects.preload import row_overlap, row_values
-from ..jit import by_slot, by_type, inline_llvm
 from ..simd.functions import root
 from ..simd.vector import blank, from_left, from_right, load, load16, load32, store, with_first
 

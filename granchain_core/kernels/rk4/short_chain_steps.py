@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR
 from ..effects.dissipation import dashpot_force
 from ..effects.driver import driver_displacement, driver_velocity
 from ..forces.largest import watch_ends_at_event
 from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..jit import inline_llvm, inline_numba, internal
 from ..simd.functions import larger
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import at, blank, positive_mask

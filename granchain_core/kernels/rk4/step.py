@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..compiling.jit import by_slot, by_type_inlined, inline_numba, internal
 from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END
 from ..effects.balance import Balance
 from ..effects.driver import driver_displacement, driver_velocity
@@ -18,7 +19,6 @@ from ..effects.preload import overlap
 from ..equations.motion import copy, motion
 from ..forces.crossings import end_overlaps, watch_crossings
 from ..forces.largest import Instant, Span, watch_event
-from ..jit import by_slot, by_type_inlined, inline_numba, internal
 from ..status import EVALUATIONS, EVENTS, STEPS
 from .contact_events import (
     MOST_SPLITS,

@@ -14,7 +14,7 @@ from llvmlite import ir
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
-from ..jit import FAST_MATH
+from ..compiling.jit import FAST_MATH
 from ..width import has_avx512
 from .vector import VECTOR_WIDTH, VectorType, as_vector, vector
 

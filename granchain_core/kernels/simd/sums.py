@@ -7,7 +7,7 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from ..jit import FAST_MATH
+from ..compiling.jit import FAST_MATH
 
 
 def weighted_rows(weights, latest=-1):

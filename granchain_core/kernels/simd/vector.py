@@ -21,7 +21,7 @@ from numba.extending import (
     register_model,
 )
 
-from ..jit import FAST_MATH
+from ..compiling.jit import FAST_MATH
 from ..width import BATCH_SIZE
 
 #: Doubles in a vector along a chain or of tangents.

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..jit import internal, kernel
+from ..compiling.jit import internal, kernel
 
 #: Differences used; k differences remove k − 1 slow modes.
 ORBITS = 8

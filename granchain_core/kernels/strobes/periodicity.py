@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..jit import internal, kernel
+from ..compiling.jit import internal, kernel
 
 #: Longest period that is tested, in drive periods.
 LONGEST_PERIOD = 16

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...integrate import Engine, fixed_step_setting
 from ...integrate.fixed import FixedStep
-from ...kernels.jit import unknown_slots
+from ...kernels.compiling.jit import unknown_slots
 from ...kernels.rk4.step import Rk4Split
 from ...scaling import ScaledChain, scale_like
 from ...scene import Scene

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numba
 import pytest
 
+from granchain_core.kernels.compiling.jit import by_slot, by_type, check_effects
 from granchain_core.kernels.effects import dissipation as loss
-from granchain_core.kernels.jit import by_slot, by_type, check_effects
 from granchain_core.laws import LAWS, Law
 from granchain_core.scene.effects import Effect
 

@@ -10,8 +10,8 @@ import uv_equations as equations
 from chains import LAWS
 
 from granchain_core import scene
+from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.equations.motion import contact_force, motion, place
-from granchain_core.kernels.jit import kernel
 from granchain_core.scaling import scale_chain
 
 #: law, tension, kappa, preload, wall: all structures, each wall often enough

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import pytest
 
 from granchain_core import scene
-from granchain_core.kernels import jit
+from granchain_core.kernels.compiling import jit
 from granchain_core.scaling import scale_chain
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from granchain_core.kernels.jit import kernel
+from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.simd.functions import root_by_series
 from granchain_core.kernels.simd.vector import VECTOR_WIDTH, aligned, load, store
 

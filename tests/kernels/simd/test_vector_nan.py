@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.effects.contact import positive_part
-from granchain_core.kernels.jit import kernel
 from granchain_core.kernels.simd.functions import above_zero, gate
 from granchain_core.kernels.simd.vector import aligned, load, store
 

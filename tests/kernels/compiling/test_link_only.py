@@ -10,9 +10,9 @@ from typing import Any
 import numba
 import pytest
 
-from granchain_core.kernels import link_only
-from granchain_core.kernels.jit import Internal
-from granchain_core.kernels.link_only import compiler_options
+from granchain_core.kernels.compiling import link_only
+from granchain_core.kernels.compiling.jit import Internal
+from granchain_core.kernels.compiling.link_only import compiler_options
 
 #: What Numba keeps of a compiled function.
 code_of = attrgetter("library")
@@ -23,8 +23,8 @@ class AnotherLibrary:
 
 
 #: The private names in the row of docs/design.md.
-NAMES = re.findall(r"`(_\w+)`", re.findall(r"^\| ([^|]+) \| `kernels/link_only.py` \|", (
-    Path(__file__).parents[2] / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)[0])
+NAMES = re.findall(r"`(_\w+)`", re.findall(r"^\| ([^|]+) \| `kernels/compiling/link_only.py` \|", (
+    Path(__file__).parents[3] / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)[0])
 
 
 def sum_of_squares(options: dict[str, Any]) -> tuple[Any, Any]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from granchain_core.kernels import sources
+from granchain_core.kernels.compiling import sources
 
 SOURCE = '''"""Module."""
 

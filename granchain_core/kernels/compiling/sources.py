@@ -16,12 +16,12 @@ from types import CodeType, FunctionType
 import llvmlite
 import numba
 
-from .width import BATCH_SIZE, processor
+from ..width import BATCH_SIZE, processor
 
 #: Sources that decide where compiled code is stored but do not change it.
-_KEEPERS = ("cache.py", "compile_lock.py", "entry.py", "sources.py")
+_KEEPERS = ("compiling/cache.py", "compiling/compile_lock.py", "compiling/entry.py", "compiling/sources.py")
 #: The folder that all kernels of this package are in.
-FOLDER = Path(__file__).parent
+FOLDER = Path(__file__).parents[1]
 
 
 def sources_hash(folder: Path = FOLDER) -> str:

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numba
 import numpy as np
 
-from granchain_core.kernels.jit import Internal, by_slot, inline_numba, internal
+from granchain_core.kernels.compiling.jit import Internal, by_slot, inline_numba, internal
 
 
 class Spring(NamedTuple):

@@ -10,7 +10,7 @@ import pytest
 from granchain_core import continue_branch, resonance_curve, scene
 from granchain_core.integrate import Engine
 from granchain_core.integrate.methods import FIXED_STEP, METHODS, Setting
-from granchain_core.kernels import entry
+from granchain_core.kernels.compiling import entry
 from granchain_core.kernels.samples import first_not_finite
 from granchain_core.state import State
 

@@ -19,14 +19,14 @@ from missing_attribute import hide
 from numba.core import caching
 from numba.core.dispatcher import Dispatcher
 
-from granchain_core.kernels import cache
+from granchain_core.kernels.compiling import cache
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 #: Runs one small kernel, and prints where it is kept, whether its result is right, and how often Numba loaded it.
 PROGRAM = """
 import json
 import numpy as np
-from granchain_core.kernels.cache import CACHE_FOLDER
+from granchain_core.kernels.compiling.cache import CACHE_FOLDER
 from granchain_core.kernels.forces.peaks import PEAKS, reset_peaks
 peaks = np.ones(PEAKS)
 reset_peaks(peaks)
@@ -34,7 +34,7 @@ right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
 print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(reset_peaks.stats.cache_hits.values())}))
 """
 #: Says which folder is chosen, and compiles nothing.
-FOLDER = "import json\nfrom granchain_core.kernels.cache import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
+FOLDER = "import json\nfrom granchain_core.kernels.compiling.cache import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
 #: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as well.
 _FULL = "import resource, signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
 
@@ -117,7 +117,7 @@ def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypa
 
 def test_the_table_names_them_all() -> None:
     row, = (line for line in (ROOT / "docs" / "design.md").read_text(encoding="utf-8").splitlines()
-            if "| `kernels/cache.py` |" in line)
+            if "| `kernels/compiling/cache.py` |" in line)
     assert set(re.findall(r"`(_[a-z]\w*)`", row)) == set(OWNERS)
 
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from granchain_core.kernels import compile_lock
-from granchain_core.kernels.compile_lock import CompileLock
+from granchain_core.kernels.compiling import compile_lock
+from granchain_core.kernels.compiling.compile_lock import CompileLock
 
 #: Compiles one small kernel and prints from where it came: numbers loaded, and compiled.
 _COMPILE = """
@@ -48,7 +48,7 @@ def test_who_waits_is_told_that_another_was_there(tmp_path: Path) -> None:
 def test_a_process_that_is_killed_locks_nobody_out(tmp_path: Path) -> None:
     held = subprocess.Popen(
         [sys.executable, "-c", "import sys, time; from pathlib import Path\n"
-         "from granchain_core.kernels.compile_lock import CompileLock\n"
+         "from granchain_core.kernels.compiling.compile_lock import CompileLock\n"
          "lock = CompileLock(Path(sys.argv[1])); lock.acquire(); print('held', flush=True); time.sleep(600)", str(tmp_path / "f.nbc")],
         stdout=subprocess.PIPE, text=True)
     assert held.stdout is not None and held.stdout.readline() == "held\n"
