@@ -61,8 +61,11 @@ _LONG_IS = 5
 
 @pytest.fixture(autouse=True)
 def current_document(request: pytest.FixtureRequest) -> None:
-    """Begin without a current document of Bokeh's. A server or an error leaves that of a page behind, and then Panel puts
-    off whatever a test asks of its dashboard, until that page is loaded."""
+    """Begin without a current document of Bokeh's.
+
+    A server or an error leaves that of a page behind, and then Panel puts off whatever a test asks of its dashboard,
+    until that page is loaded.
+    """
     if "bokeh.io.doc" in sys.modules and request.path.parent.name not in SERVERS and _names_the_app(request.path):
         from bokeh.document import Document
         from bokeh.io import doc
@@ -75,20 +78,25 @@ def current_document(request: pytest.FixtureRequest) -> None:
 
 @cache
 def _names_the_app(file: Path) -> bool:
-    """Whether a file of tests can have a page; a document takes a millisecond, and the others are five thousand tests."""
+    """Whether a file of tests can have a page; a document takes a millisecond, and the others are five thousand tests.
+    """
     return re.search(r"\b(app|host|panel)\b", file.read_text(encoding="utf-8")) is not None
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """`-n auto`: two workers more than processors, because two test the dashboard and mostly wait for browser and server."""
+    """`-n auto`: two workers more than processors, because two test the dashboard and mostly wait for browser and
+    server.
+    """
     return (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection() -> Iterator[None]:
-    """What is imported and collected stays until the end, half a million objects: the garbage collector, which would look
-    through them again and again, waits meanwhile and leaves them out afterwards. That saves a twentieth of the time."""
+    """What is imported and collected stays until the end, half a million objects: the garbage collector, which would
+    look through them again and again, waits meanwhile and leaves them out afterwards. That saves a twentieth of the
+    time.
+    """
     gc.disable()
     try:
         return (yield)

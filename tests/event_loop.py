@@ -13,7 +13,9 @@ Words = ParamSpec("Words")
 
 
 def run_async(work: Coroutine[object, object, Result]) -> Result:
-    """As `asyncio.run`, in a thread of its own: Playwright's event loop runs in the main thread as long as a browser is open."""
+    """As `asyncio.run`, in a thread of its own: Playwright's event loop runs in the main thread as long as a browser is
+    open.
+    """
     with ThreadPoolExecutor(1) as pool:
         return pool.submit(asyncio.run, work).result()
 

@@ -1,9 +1,9 @@
 """The largest forces, energy and motion of every scene over its range of f: what the dashboard draws its pictures to.
 
-Every scene of `assets/scenes` is settled from rest at POINTS equally spaced frequencies of its slider, with the knobs of
-its preset, and at some more around each where a value is largest: a peak lies between them. The largest values over all
-become its table in `assets/scales.toml`. Run it when a scene is new
-or changed; without names all scenes are computed again:
+Every scene of `assets/scenes` is settled from rest at POINTS equally spaced frequencies of its slider, with the knobs
+of its preset, and at some more around each where a value is largest: a peak lies between them. The largest values over
+all become its table in `assets/scales.toml`. Run it when a scene is new or changed; without names all scenes are
+computed again:
 
     python -m tools.scales NAME …
 """

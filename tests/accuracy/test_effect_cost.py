@@ -15,7 +15,8 @@ CHAIN = scene("sec2")
 
 
 class Clocked:
-    """A chain whose steps take the nanoseconds written here: 90 with the dashpot and 60 without, more on a busy machine.
+    """A chain whose steps take the nanoseconds written here: 90 with the dashpot and 60 without, more on a busy
+    machine.
 
     Every third run a neighbour takes half of the processor, and every second chain lies badly in memory.
     """

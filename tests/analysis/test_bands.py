@@ -74,7 +74,8 @@ def test_the_diode_is_reciprocal_while_it_is_linear() -> None:
 def test_the_diode_lets_the_drive_through_one_way_once_its_orbit_is_unstable() -> None:
     """Its orbit loses a pair of multipliers; the strongest line at the wall has the frequency of the pair's angle.
 
-    The multipliers are those of the fixed-step method's map, whose kernels are there; `granchain branch` has the point itself.
+    The multipliers are those of the fixed-step method's map, whose kernels are there; `granchain branch` has the point
+    itself.
     """
     chain = scene("diode")
     below, above = (settle(chain.evolve(A0=amplitude)) for amplitude in (7.3e-7, 7.7e-7))

@@ -1,4 +1,6 @@
-"""The Lyapunov spectrum against multipliers, Liouville's formula, the pairs of a Hamiltonian system, and Benettin's way."""
+"""The Lyapunov spectrum against multipliers, Liouville's formula, the pairs of a Hamiltonian system, and Benettin's
+way.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +37,8 @@ def test_on_an_orbit_the_exponents_are_those_of_its_multipliers() -> None:
 
 
 def test_their_sum_is_the_mean_trace(undamped: LyapunovSpectrum) -> None:
-    """Without damping volumes are kept: the trace is 0, and the sum is what rounding and the tolerance of 1e-13 leave."""
+    """Without damping volumes are kept: the trace is 0, and the sum is what rounding and the tolerance of 1e-13 leave.
+    """
     assert undamped.resolved == 6 and undamped.mean_trace == 0.0
     assert undamped.liouville is not None and undamped.liouville < 1e-9
 
@@ -59,7 +62,9 @@ def test_a_hamiltonian_system_has_pairs(undamped: LyapunovSpectrum) -> None:
 
 
 def test_the_largest_is_that_of_two_trajectories(undamped: LyapunovSpectrum) -> None:
-    """Two computations that share the equations and the start: without damping the energy grows, and with it the exponent."""
+    """Two computations that share the equations and the start: without damping the energy grows, and with it the
+    exponent.
+    """
     engine = Engine(UNDAMPED, fixed_step_setting(), 1)
     engine.start(run_until_settled(UNDAMPED, None, None).engine.state)
     engine.periods(50)

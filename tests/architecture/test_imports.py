@@ -1,4 +1,5 @@
-"""Who imports whom: no circle anywhere, the layers of `app`, and private attributes of libraries where the table says."""
+"""Who imports whom: no circle anywhere, the layers of `app`, and private attributes of libraries where the table says.
+"""
 
 from __future__ import annotations
 
@@ -94,7 +95,8 @@ def allowed(folder: str) -> set[str]:
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app.")])
 def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None:
-    """Pages know their host and not the controller, parts know no page, the command line only pictures and the server."""
+    """Pages know their host and not the controller, parts know no page, the command line only pictures and the server.
+    """
     mine = layer(module)
     for name in sorted(one for one in imports(module) if one.startswith("app.")):
         theirs = layer(name)
@@ -155,8 +157,8 @@ def documented(page: str, folder: str) -> dict[str, set[str]]:
     return rows
 
 
-#: Private attributes of Tornado, Bokeh and Panel, by the only modules that use them. Each module goes on without them in
-#: the libraries' public way, and says how; without `_tornado` the server does not start.
+#: Private attributes of Tornado, Bokeh and Panel, by the only modules that use them. Each module goes on without them
+#: in the libraries' public way, and says how; without `_tornado` the server does not start.
 PRIVATE = documented("dashboard.md", "app")
 #: Those of Numba, by the modules of the core; among them names that a class uses of the one it is derived from, which
 #: `private_uses` does not find.

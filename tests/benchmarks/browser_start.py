@@ -1,10 +1,11 @@
-"""How soon the page is there: from `granchain serve` with compiled kernels to the page, its skeleton and the moving chain.
+"""How soon the page is there: from `granchain serve` with compiled kernels to the page, its skeleton and the moving
+chain.
 
     python tests/benchmarks/browser_start.py [--runs 3] [--pictures FOLDER]
 
 The browser asks for the page from the start of the server's process on, again and again, as somebody does who cannot
-wait. Seconds since then: the first answer (`answer`), which may be what is shown while the server starts; the page's own
-document (`page`) and its first words (`skeleton`); the first picture is painted (`picture`), the chain has moved
+wait. Seconds since then: the first answer (`answer`), which may be what is shown while the server starts; the page's
+own document (`page`) and its first words (`skeleton`); the first picture is painted (`picture`), the chain has moved
 (`moving`), the whole curve is named (`curve`). With `--pictures`, one more run leaves what was on the screen at every
 fifth of a second.
 """

@@ -1,4 +1,5 @@
-"""The right-hand sides of `problem`, compiled by Numba: for SciPy, and as callbacks for solvers written in C and C++."""
+"""The right-hand sides of `problem`, compiled by Numba: for SciPy, and as callbacks for solvers written in C and C++.
+"""
 
 from __future__ import annotations
 

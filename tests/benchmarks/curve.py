@@ -1,4 +1,5 @@
-"""The curve: 300 frequencies, 100 + 20 periods each from rest, the peak of the elastic output force over the last 20."""
+"""The curve: 300 frequencies, 100 + 20 periods each from rest, the peak of the elastic output force over the last 20.
+"""
 
 from __future__ import annotations
 

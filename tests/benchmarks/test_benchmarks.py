@@ -31,7 +31,9 @@ def test_the_compiled_equations_are_those_in_numpy(form: str) -> None:
 
 
 def test_both_forms_are_one_motion() -> None:
-    """The velocity is the slope of u in the w form, and its slope the force of the (u, v) form while no contact changes."""
+    """The velocity is the slope of u in the w form, and its slope the force of the (u, v) form while no contact
+    changes.
+    """
     beta, t, step, n = 0.3, 5.0, 1e-5, problem.BEADS
     w = np.random.default_rng(1).standard_normal(2 * n)
     before, now, after = (w + s * problem.slope_w_numpy(t, w, beta) for s in (-step, 0.0, step))

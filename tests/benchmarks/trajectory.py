@@ -40,7 +40,8 @@ def error_of(states: np.ndarray, reference: np.ndarray) -> float:
 
 
 def climb(case: Case, reference: np.ndarray, quick: bool = False) -> list[Rung]:
-    """All rungs of a case's ladder, every third when in a hurry, until the smallest error or the patience is reached."""
+    """All rungs of a case's ladder, every third when in a hurry, until the smallest error or the patience is reached.
+    """
     found: list[Rung] = []
     assert case.prepare is not None
     for setting in case.ladder[:: 3 if quick else 1]:

@@ -11,7 +11,8 @@ _VIEW = """const view = Object.values(Bokeh.index.roots ?? Bokeh.index)
 
 
 def source(page: Page, figure: str, name: str, large: bool = True) -> dict[str, Any]:
-    """The data of a source of a figure, empty until that is there; `large` is the one with tools, not that of its tab."""
+    """The data of a source of a figure, empty until that is there; `large` is the one with tools, not that of its tab.
+    """
     return dict(page.evaluate(f"""([name, source, large]) => {{ {_VIEW}
       return view?.model.document?.get_model_by_name(source)?.data ?? {{}}; }}""", [figure, name, large]))
 

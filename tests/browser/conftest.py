@@ -1,4 +1,5 @@
-"""One dashboard and one Chromium for all browser tests of a worker; a test opens pages of its own, or moves one of its file.
+"""One dashboard and one Chromium for all browser tests of a worker; a test opens pages of its own, or moves one of its
+file.
 
 A test that fails leaves what its pages showed and said in a folder that its report names (evidence.py).
 """
@@ -37,8 +38,9 @@ expect.set_options(timeout=60_000)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """A test of the browser that waited in vain is run once more, and the summary says so.
 
-    On two busy processors Chromium loses a click now and then, which says nothing of the page, and what the click should
-    have brought does not come. A test that saw something wrong is not run again, and `.ci/run` allows few repetitions.
+    On two busy processors Chromium loses a click now and then, which says nothing of the page, and what the click
+    should have brought does not come. A test that saw something wrong is not run again, and `.ci/run` allows few
+    repetitions.
     """
     for item in items:
         if item.path.is_relative_to(HERE):
@@ -180,9 +182,9 @@ def kept(profile: BrowserContext, prepared: str) -> Iterator[tuple[Pages, list[P
 def at(kept: tuple[Pages, list[Page]], log: Path, request: pytest.FixtureRequest) -> Iterator[Callable[..., Page]]:
     """A page at an address, for tests that do not care how they came there. Nothing may complain there either.
 
-    All tests of a file have the same page, moved as by a step of the browser's history: to open one takes two seconds of
-    processor time. The address has scene, knobs, curves, scale, pins, look, tab, page and story; what else a test has
-    changed, it changes back. After a test that has failed there is a new page.
+    All tests of a file have the same page, moved as by a step of the browser's history: to open one takes two seconds
+    of processor time. The address has scene, knobs, curves, scale, pins, look, tab, page and story; what else a test
+    has changed, it changes back. After a test that has failed there is a new page.
     """
     pages, pair = kept
 

@@ -14,7 +14,10 @@ COMPILED = 240_000
 
 
 def look_seldom(page: Page) -> None:
-    """Look every 50 ms for what is waited for. Playwright looks at every frame, and asks the browser for sixty a second."""
+    """Look every 50 ms for what is waited for.
+
+    Playwright looks at every frame, and asks the browser for sixty a second.
+    """
     setattr(page, "wait_for_function", partial(page.wait_for_function, polling=50))  # noqa: B010
 
 

@@ -1,4 +1,6 @@
-"""The page "Analysis" as a visitor meets it: a question is asked, computed, drawn, refused, and given up when a knob moves."""
+"""The page "Analysis" as a visitor meets it: a question is asked, computed, drawn, refused, and given up when a knob
+moves.
+"""
 
 from __future__ import annotations
 

@@ -10,9 +10,10 @@ POPOVERS = ("Help and keys (?)", "Export: pictures, tables, a program", "Link to
 
 
 # What axe-core finds within an element in the light theme, and which words have too little contrast in the others. Only
-# colours and sizes depend on the theme, and axe takes as long for one rule in another theme as for all rules in the first.
-# So it is asked about another theme only where its colours are not simply those of a word and of the nearest background
-# behind it; for all other words these are read in every theme, and in light they must be what axe has measured.
+# colours and sizes depend on the theme, and axe takes as long for one rule in another theme as for all rules in the
+# first. So it is asked about another theme only where its colours are not simply those of a word and of the nearest
+# background behind it; for all other words these are read in every theme, and in light they must be what axe has
+# measured.
 RUN = """async ([within, themes]) => {
   const root = document.documentElement.dataset, chosen = root.theme, place = within ?? document;
   const report = await axe.run(place, { resultTypes: ["violations", "passes"], selectors: false, elementRef: true,
@@ -54,8 +55,9 @@ RUN = """async ([within, themes]) => {
 
 
 def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
-    """Rule and element of everything that axe-core finds in light, and of words without contrast in the other themes, on
-    the whole page or within one element. A theme's colours are all in the style sheet (app/pictures/theme.py)."""
+    """Rule and element of everything that axe-core finds in light, and of words without contrast in the other themes,
+    on the whole page or within one element. A theme's colours are all in the style sheet (app/pictures/theme.py).
+    """
     if not page.evaluate("'axe' in window"):
         page.evaluate(Axe().axe_script)  # once: it is half a megabyte, and many places are looked at
     found = page.evaluate(RUN, [within, ["dark", "projector"]])

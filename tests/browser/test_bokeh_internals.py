@@ -1,4 +1,6 @@
-"""What the page needs of BokehJS beyond its documentation: one module has it (app/parts/bokeh.js), and the release has it."""
+"""What the page needs of BokehJS beyond its documentation: one module has it (app/parts/bokeh.js), and the release has
+it.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The Branches page as a visitor meets it: a branch grows, tells its orbits, is stopped, gone on with, and loads one."""
+"""The Branches page as a visitor meets it: a branch grows, tells its orbits, is stopped, gone on with, and loads one.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""What somebody who sees the page for the first time reads off it: scales, the largest forces, which bead is which column."""
+"""What somebody who sees the page for the first time reads off it: scales, the largest forces, which bead is which
+column.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The Map tab as a visitor meets it: it fills coarse first, tells values, a click sets f and A0, attractors are shown."""
+"""The Map tab as a visitor meets it: it fills coarse first, tells values, a click sets f and A0, attractors are shown.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""The Observer page as a visitor meets it: without foundation it breaks, with it it finds its chain, new starts are seen."""
+"""The Observer page as a visitor meets it: without foundation it breaks, with it it finds its chain, new starts are
+seen.
+"""
 
 from __future__ import annotations
 

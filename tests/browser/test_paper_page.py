@@ -1,4 +1,6 @@
-"""The page "The paper" as a visitor meets it: a figure is drawn with caption and rows, in both themes, and given up when left."""
+"""The page "The paper" as a visitor meets it: a figure is drawn with caption and rows, in both themes, and given up
+when left.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Nothing on the main page is cut: titles of axes, numbers of beads, the equation; on a laptop, a large screen, a phone."""
+"""Nothing on the main page is cut: titles of axes, numbers of beads, the equation; on a laptop, a large screen, a
+phone.
+"""
 
 from __future__ import annotations
 
@@ -124,8 +126,9 @@ CUT = "(line) => [line, ...line.children].filter((one) => one.scrollWidth > one.
 
 @pytest.mark.parametrize("look", ["light", "projector"])
 def test_a_moved_knob_moves_no_picture(at: Visit, look: str) -> None:
-    """However long the words for the motion are, and whichever marks the curve has: a figure of another size is laid out
-    anew, which took most of the time of every picture."""
+    """However long the words for the motion are, and whichever marks the curve has: a figure of another size is laid
+    out anew, which took most of the time of every picture.
+    """
     page = at(f"?v=1&scene=sec2&look={look}")
     settled(page)
     expect(page.locator("#foot b")).not_to_contain_text("being computed")

@@ -64,8 +64,9 @@ BY_TURNS = [(name, list(SENTENCE)[i % 2]) for i, name in enumerate(LONG) if name
 @pytest.mark.parametrize(("name", "number"), BY_TURNS)
 def test_a_command_ends_while_it_computes_or_compiles(name: str, number: signal.Signals,
                                                       started: Callable[..., Command]) -> None:
-    """It has loaded everything after less than a second of processor time; then it computes, or compiles where the machine
-    has no kernels yet. `serve` says that it is ready."""
+    """It has loaded everything after less than a second of processor time; then it computes, or compiles where the
+    machine has no kernels yet. `serve` says that it is ready.
+    """
     command = started(*LONG[name])
     if name == "serve":
         assert command.process.stdout is not None and "granchain is at" in command.process.stdout.readline()

@@ -1,4 +1,5 @@
-"""Numbers from text: one reading of them at the command line, in links and in files, and a sentence for what is none."""
+"""Numbers from text: one reading of them at the command line, in links and in files, and a sentence for what is none.
+"""
 
 from __future__ import annotations
 

@@ -59,8 +59,9 @@ print(json.dumps(told))
 
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[str, str]]:
-    """What a command printed, and its page; all of them in a process of their own: Panel, which other tests import, puts
-    its own scripts into every page of Bokeh's."""
+    """What a command printed, and its page; all of them in a process of their own: Panel, which other tests import,
+    puts its own scripts into every page of Bokeh's.
+    """
     folder = tmp_path_factory.mktemp("pictures")
     words = {name: [name.split()[0], *COMMANDS[name], "--json", "--picture", "a.html"] for name in COMMANDS}
     done = subprocess.run([sys.executable, "-c", _PROGRAM, json.dumps(words)], cwd=folder, capture_output=True, text=True,

@@ -1,4 +1,6 @@
-"""run, curve, branch and map that are interrupted or killed go on with what they had finished, and compute none of it again."""
+"""run, curve, branch and map that are interrupted or killed go on with what they had finished, and compute none of it
+again.
+"""
 
 from __future__ import annotations
 

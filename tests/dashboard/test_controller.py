@@ -95,7 +95,8 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
 
 
 def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -> None:
-    """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about."""
+    """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about.
+    """
     refused = dashboard.session.scene.evolve(N=10_000)
     dashboard.failed(RefusedPicture(refused, "It would take long."))
     assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")

@@ -42,7 +42,8 @@ def test_a_sentence_ends_at_a_full_stop_and_not_within_a_number() -> None:
 
 @pytest.mark.parametrize("name", ["fig3a", "diode"])
 def test_a_picture_is_that_of_its_scene(name: str) -> None:
-    """Computed afresh: the same chain, and the same force at the wall to a hundredth of the width of its line's place."""
+    """Computed afresh: the same chain, and the same force at the wall to a hundredth of the width of its line's place.
+    """
     kept, now = (FOLDER / f"{name}.svg").read_text(encoding="utf-8"), drawn(scene(name))
     assert re.findall("<circle[^>]*>", kept) == re.findall("<circle[^>]*>", now)
     points = [np.array([[float(one) for one in point.split(",")] for point in re.findall('points="([^"]+)"', text)[0].split()])

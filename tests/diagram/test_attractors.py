@@ -94,7 +94,8 @@ def test_what_only_seems_to_rest_is_not_an_attractor() -> None:
 @pytest.mark.parametrize(("mean", "error", "name"), [(0.0, 1e-4, "quasi-periodic"), (3e-3, 1e-4, "unsettled"),
                                                      (3e-3, 2e-3, "quasi-periodic"), (2e-2, 1e-3, "chaotic")])
 def test_a_group_is_judged_by_the_rule_for_one(mean: float, error: float, name: str) -> None:
-    """Nine alike: their mean's standard error is a third of one's, but what a finite record leaves is the same in all."""
+    """Nine alike: their mean's standard error is a third of one's, but what a finite record leaves is the same in all.
+    """
     one = Regime("quasi-periodic", None, None, None, 800, (mean, error))
     assert irregular_regime([one] * 9).name == name
 
@@ -133,7 +134,8 @@ def test_peaks_are_resonances_and_dips_anti_resonances(frequency: float, ratio: 
 
 def test_at_the_first_peak_the_push_meets_the_reflected_pulse() -> None:
     peak, dip = response(periodic_orbit(at(340.0))), response(periodic_orbit(at(470.0)))
-    # the driver moves forward through its middle when the pulse comes back: contact begins before, and peaks near phase 0
+    # the driver moves forward through its middle when the pulse comes back: contact begins before, and peaks near phase
+    # 0
     assert peak.contact_phase is not None and 330.0 < peak.contact_phase < 360.0
     assert min(peak.peak_phase, 360.0 - peak.peak_phase) < 15.0
     assert peak.returning > 1.0 > 1.0 / 3.0 > dip.returning

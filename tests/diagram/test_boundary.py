@@ -1,4 +1,5 @@
-"""Boundaries of stability in the plane of two knobs: where multipliers say they are, and where the scaling puts them."""
+"""Boundaries of stability in the plane of two knobs: where multipliers say they are, and where the scaling puts them.
+"""
 
 from __future__ import annotations
 

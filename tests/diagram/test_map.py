@@ -52,7 +52,8 @@ def test_every_cell_is_the_curves_point_at_its_amplitude(found: Diagram) -> None
 
 
 def test_scaled_cells_are_the_same(found: Diagram) -> None:
-    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D): forces × s^{3/2} (docs/model.md, Equations), along a tilted line of the diagram
+    # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D): forces × s^{3/2} (docs/model.md, Equations), along a tilted line of the
+    # diagram
     s = AMPLITUDES[1] / AMPLITUDES[0]
     other = diagram(scene("sec2").evolve(D=100.0 * s**0.25), ("f", s**0.25 * FREQUENCIES), ("A0", s * AMPLITUDES))
     assert (other.cells["regime"] == found.cells["regime"]).mean() > 0.9  # chaos from rest amplifies rounding

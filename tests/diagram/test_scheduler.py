@@ -1,4 +1,6 @@
-"""Maps, curves, batches and fits by the workers of a Dask scheduler: two processes on this machine, one of which is killed."""
+"""Maps, curves, batches and fits by the workers of a Dask scheduler: two processes on this machine, one of which is
+killed.
+"""
 
 from __future__ import annotations
 

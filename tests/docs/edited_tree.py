@@ -42,7 +42,8 @@ def copied(part: str, tree: Path) -> None:
 
 
 def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
-    """A copy of the repository with the page's edits before the heading `until` made; each fits at exactly one place."""
+    """A copy of the repository with the page's edits before the heading `until` made; each fits at exactly one place.
+    """
     for part in _PARTS:
         copied(part, copy)
     for block in blocks(page, until):
@@ -61,8 +62,8 @@ def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
 def follow(tree: Path, *arguments: str) -> str:
     """What a command prints in the edited tree.
 
-    What it compiles is kept: the folder of kernels is named by their sources, so an edited tree finds its own there until
-    a kernel or the page changes. Without optimisation (NUMBA_OPT=0) Numba could keep nothing.
+    What it compiles is kept: the folder of kernels is named by their sources, so an edited tree finds its own there
+    until a kernel or the page changes. Without optimisation (NUMBA_OPT=0) Numba could keep nothing.
     """
     cache = tree / "cache" if CACHE_FOLDER is None else CACHE_FOLDER.parent / "edited-trees"
     done = subprocess.run([sys.executable, *arguments], cwd=tree, capture_output=True, text=True, timeout=900,

@@ -28,7 +28,8 @@ def test_the_page_edits_two_files_and_writes_none() -> None:
 
 
 def test_the_new_law_is_right_in_every_kernel(tree: Path) -> None:
-    """Energy, order of the split steps, tangents, the kink of a cut, and one state from every way to the steady state."""
+    """Energy, order of the split steps, tangents, the kink of a cut, and one state from every way to the steady state.
+    """
     assert "6 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "test_added_law.py")))
 
 

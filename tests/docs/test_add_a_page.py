@@ -86,8 +86,9 @@ print(shown["status"])
 
 
 def test_the_new_page_fits_into_the_dashboard(tree: Path) -> None:
-    """Layers, private attributes, docstrings, the map of docs/design.md, the table of messages of docs/dashboard.md, and
-    the pages that a story may open."""
+    """Layers, private attributes, docstrings, the map of docs/design.md, the table of messages of docs/dashboard.md,
+    and the pages that a story may open.
+    """
     told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
                   str(Path("tests", "dashboard")), "-k", "transmission or table or map or circle or message")
     assert " passed" in told and "deselected" in told

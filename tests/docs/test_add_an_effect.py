@@ -9,7 +9,8 @@ from documents import ROOT
 from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
-#: The headings under which the effect is mentioned, and under which the force becomes one that is not linear in the velocity.
+#: The headings under which the effect is mentioned, and under which the force becomes one that is not linear in the
+#: velocity.
 MENTIONED = "## 5. Mention it: edit 6, and one that a tool writes"
 NONLINEAR = "## 6. A force that is not linear in the velocity: edit 10 of these files, write 1, delete 1"
 
@@ -90,7 +91,9 @@ print(np.abs(found - exact).max() / np.abs(exact).max())
 
 
 def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
-    """Unmarked, and marked for the kernels that step 2 names but dop853-root's: a motion without the drag would be wrong."""
+    """Unmarked, and marked for the kernels that step 2 names but dop853-root's: a motion without the drag would be
+    wrong.
+    """
     told = follow(tree, "-c", """
 from granchain_core import BadInput, run, scene
 from granchain_core.integrate.batch import can_share_batch

@@ -50,7 +50,8 @@ def test_links_to_headings_lead_to_one(page: Path):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_named_in_short_exist(page: Path):
-    """Where a page names a file without the top folder, it is one of the core or of the app; a bare name is one there."""
+    """Where a page names a file without the top folder, it is one of the core or of the app; a bare name is one there.
+    """
     for name in re.findall(r"`([\w./-]+\.(?:py|js|css))`", page.read_text(encoding="utf-8")):
         if not re.match(f"{_FOLDERS}/", name):
             tops = [ROOT / "granchain_core", ROOT / "app"]

@@ -1,4 +1,5 @@
-"""Other drives than the harmonic one: the kernel against the harmonic run and closed forms, signals against formulas."""
+"""Other drives than the harmonic one: the kernel against the harmonic run and closed forms, signals against formulas.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Measurements in HDF5 and netCDF-4: names and units of rows, what granchain itself wrote, what is asked and refused."""
+"""Measurements in HDF5 and netCDF-4: names and units of rows, what granchain itself wrote, what is asked and refused.
+"""
 
 from __future__ import annotations
 

@@ -199,7 +199,8 @@ def test_the_command_line_refuses_what_does_not_fit(capsys: pytest.CaptureFixtur
 
 def test_the_command_line_says_what_failed_where_and_what_it_had_cost(capsys: pytest.CaptureFixture[str],
                                                                       monkeypatch: pytest.MonkeyPatch) -> None:
-    """One object with the outcome, and no other, where the numbers fail: an infinite contact times no overlap, at once."""
+    """One object with the outcome, and no other, where the numbers fail: an infinite contact times no overlap, at once.
+    """
     begin = Engine.start
 
     def spoiled(engine: Engine, state: State) -> None:

@@ -1,4 +1,5 @@
-"""The small pictures: every case has one, ours and a naive solver's over one x, and nobody can overlook the difference."""
+"""The small pictures: every case has one, ours and a naive solver's over one x, and nobody can overlook the difference.
+"""
 
 from __future__ import annotations
 

@@ -80,7 +80,8 @@ def test_run_from_a_state_in_the_middle_of_a_period_keeps_the_drive_in_step(peri
 
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
 def test_drive_phase_is_exact_after_many_periods(method):
-    """Ten thousand periods later the driver is where sin(2π·whole + …) has it, to the last bit: no phase is summed up."""
+    """Ten thousand periods later the driver is where sin(2π·whole + …) has it, to the last bit: no phase is summed up.
+    """
     chain = scene("sec2").evolve(N=1, f=3000.0, D=300.0)
     runner = Engine(chain, Setting(method, tolerance=1e-4), 4)
     runner.periods(10_000, watch=False)

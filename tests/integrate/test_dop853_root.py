@@ -58,8 +58,8 @@ def test_a_run_in_two_parts_goes_on():
 def test_a_brief_touch_inside_a_step_throws_the_bead(depth):
     """The driver's top is `depth` beyond a bead at rest for less than a step: two events, and a push.
 
-    It throws the bead with (3π√2/8)·depth²/β, as in tests/numerics/test_fixed_step_touches.py. The other beads are out of
-    reach, and the wall pushes with no force.
+    It throws the bead with (3π√2/8)·depth²/β, as in tests/numerics/test_fixed_step_touches.py. The other beads are out
+    of reach, and the wall pushes with no force.
     """
     chain = scene("sec2").evolve(f=500.0)
     engine = Engine(chain, Setting("dop853-root", tolerance=1e-8), 1)

@@ -27,7 +27,8 @@ def motion(chain: Scene, samples: int) -> dict[str, np.ndarray]:
 @pytest.mark.parametrize("chain", [SHORT, LONG], ids=["11 beads", "200 beads"])
 @pytest.mark.parametrize("steps", [7, 40, 500])
 def test_parts_are_the_whole(chain: Scene, steps: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Vectors restart where a part begins: equal to rounding; the largest forces between steps to their interpolation."""
+    """Vectors restart where a part begins: equal to rounding; the largest forces between steps to their interpolation.
+    """
     whole = motion(chain, 4)
     monkeypatch.setattr(fixed, "steps_in_part", lambda _: steps)
     parts = motion(chain, 4)
@@ -62,7 +63,8 @@ def test_there_is_a_pause_within_a_period(chain: Scene) -> None:
 
 
 def test_a_long_chain_ends_soon_after_the_flag_is_set() -> None:
-    """4096 steps of 10,000 beads take seconds; no bound on the clock is tested, but on the number of parts that follow."""
+    """4096 steps of 10,000 beads take seconds; no bound on the clock is tested, but on the number of parts that follow.
+    """
     stop = Counting()
     engine = Engine(scene("sec2").evolve(N=10_000, A0=1e-4), fixed_step_setting(), 1, stop=stop)
 

@@ -2,14 +2,14 @@
 
     NUMBA_CPU_NAME=… NUMBA_CPU_FEATURES=… GRANCHAIN_CACHE=<empty folder> python machine_code.py < types.pickle
 
-{kernel: {case: counts}}. Of `chain` (one chain in a register, its split step included) and `batch` (eight chains) vector
-instructions are counted in the machine code, with nothing but contacts and driver and with one effect more. Of `flow`
-(Dormand and Prince's method with tangents) multiplications are counted in LLVM's optimised code, with nothing and
-with all effects; `by_zero` are those by a constant 0. Only code that is fresh can be read: what comes
-from the cache has none.
+{kernel: {case: counts}}. Of `chain` (one chain in a register, its split step included) and `batch` (eight chains)
+vector instructions are counted in the machine code, with nothing but contacts and driver and with one effect more. Of
+`flow` (Dormand and Prince's method with tangents) multiplications are counted in LLVM's optimised code, with nothing
+and with all effects; `by_zero` are those by a constant 0. Only code that is fresh can be read: what comes from the
+cache has none.
 
-Whoever calls it pickles `types_by_case()`, for which engines are made; the program only compiles, for whatever processor
-it is told, and that need not be the one it runs on.
+Whoever calls it pickles `types_by_case()`, for which engines are made; the program only compiles, for whatever
+processor it is told, and that need not be the one it runs on.
 """
 
 from __future__ import annotations

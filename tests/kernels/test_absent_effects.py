@@ -1,4 +1,5 @@
-"""An absent effect leaves nothing behind: no slot and no array. test_machine_code.py shows that no instruction is left."""
+"""An absent effect leaves nothing behind: no slot and no array. test_machine_code.py shows that no instruction is left.
+"""
 
 from __future__ import annotations
 

@@ -66,8 +66,10 @@ def measured(types: Types) -> bytes:
 
 
 def all_that_decides(types: Types) -> str:
-    """Hash of the types that the kernels are compiled for, of the program that counts, and of the processor. The folder of
-    kernels, in which it is a name, stands for their sources and the compiler."""
+    """Hash of the types that the kernels are compiled for, of the program that counts, and of the processor.
+
+    The folder of kernels, in which it is a name, stands for their sources and the compiler.
+    """
     digest = hashlib.sha256(f"{types} {TARGET} {sys.version_info[:2]} {hash_of_code(PROGRAM)}".encode())
     return digest.hexdigest()[:16]
 
@@ -102,7 +104,8 @@ def test_switching_an_effect_on_adds_its_whole_formula_at_every_slope_of_a_chain
 @x86
 def test_switching_an_effect_on_adds_nothing_else_to_a_batch():
     """As above, for each root in the code: of how many beads' slopes the compiler writes a copy is its own choice, and
-    differs by one from case to case. A dashpot's jumps, which a batch looks for, take roots and divisions of their own."""
+    differs by one from case to case. A dashpot's jumps, which a batch looks for, take roots and divisions of their own.
+    """
     bare, founded, pressed, damped = (code()["batch"][case]["packed"] for case in ("nothing", *EFFECTS_BY_COST))
     for more in (founded, pressed):
         assert {kind for kind in more if more[kind] > bare.get(kind, 0)} <= {"multiply", "add"}

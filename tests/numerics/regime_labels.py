@@ -4,8 +4,9 @@
 
 Every point is run once more from the state in which the sweep began it, through 5,000 periods of a quarter of the live
 method's step, and longer where that does not decide. It is periodic with the shortest n over which its strobes repeat
-to 1e-9 while changes over shorter n stay what they are; of other motions the Lyapunov exponent is measured twice over 2,000 periods: chaotic if both are well above zero,
-quasi-periodic if both are zero. What that rule cannot decide is not judged.
+to 1e-9 while changes over shorter n stay what they are; of other motions the Lyapunov exponent is measured twice over
+2,000 periods: chaotic if both are well above zero, quasi-periodic if both are zero. What that rule cannot decide is not
+judged.
 """
 
 from __future__ import annotations

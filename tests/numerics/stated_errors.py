@@ -2,9 +2,9 @@
 
     python -m tests.numerics.stated_errors --count 1000 [--seed 1] [--few]
 
-Drive, amplitude, damping, foundation, 1 to 20 beads, wall, law, tension, preload, a bead that is thrown and the accuracy
-asked for are drawn at random. True is the adaptive method at 3e-15 per step; what it changes against 3e-14 is how
-well the truth is known, and an error is judged to within three times that.
+Drive, amplitude, damping, foundation, 1 to 20 beads, wall, law, tension, preload, a bead that is thrown and the
+accuracy asked for are drawn at random. True is the adaptive method at 3e-15 per step; what it changes against 3e-14 is
+how well the truth is known, and an error is judged to within three times that.
 """
 
 from __future__ import annotations

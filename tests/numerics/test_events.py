@@ -87,5 +87,6 @@ def test_adaptive_steps_end_on_the_events():
         if t >= engine.scaled.period * (1 - 1e-12):
             break
     assert len(landed) > 5
-    # the search for the end just past an event aims at 1e-15 and stops at four times that (dop853/run.py); some events are too slow for Newton
+    # the search for the end just past an event aims at 1e-15 and stops at four times that (dop853/run.py); some events
+    # are too slow for Newton
     assert np.median(landed) < 1e-11

@@ -19,14 +19,15 @@ from tools.fuzzing import oracle
 CONTACTS = [("linear", "allowed"), ("linear", "cut"), ("tsuji", "cut"), ("kuwabara-kono", "allowed")]
 #: Seed of the slice of random scenes, not one by which factors were chosen.
 SEED = 2026
-#: Runs of several periods take no longer than so many times 1/φ, a third of the program's: the truth of a slow drive's second
-#: and third period costs most.
+#: Runs of several periods take no longer than so many times 1/φ, a third of the program's: the truth of a slow drive's
+#: second and third period costs most.
 LONGEST = 3e3
 
 
 def test_the_force_jumps_where_the_driver_starts_against_a_bead():
-    """The bead rests against a driver that starts with 2πf A0: the right limit at t = 0 is D·2πf A0, and it is the largest
-    force where damping outweighs all else, λ = 45, and the wall is far."""
+    """The bead rests against a driver that starts with 2πf A0: the right limit at t = 0 is D·2πf A0, and it is the
+    largest force where damping outweighs all else, λ = 45, and the wall is far.
+    """
     one = scene("sec2").evolve(N=1, D=2e4, f=500.0)
     jump = one.D * 2.0 * np.pi * one.f * one.A0
     found = located(one, 0, 1, gaps=np.array([0.0, 1e-3]))
@@ -35,7 +36,9 @@ def test_the_force_jumps_where_the_driver_starts_against_a_bead():
 
 
 def test_a_touch_shorter_than_a_step_is_seen_where_and_as_hard_as_it_is():
-    """The driver's crest comes a millionth of A0 farther than to the resting bead, whose wall is far: it is there at sin θ = 1 − 1e-6, at 2πf A0 cos θ."""
+    """The driver's crest comes a millionth of A0 farther than to the resting bead, whose wall is far: it is there at
+    sin θ = 1 − 1e-6, at 2πf A0 cos θ.
+    """
     one = scene("sec2").evolve(N=1, f=100.0, D=10.0)
     low = 1.0 - 1e-6
     found = located(one, 0, 1, gaps=one.A0 * np.array([low, 9.0]))
@@ -56,7 +59,9 @@ def test_a_collision_with_the_wall_has_the_peak_of_hertz():
 
 
 def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing():
-    """Section 2 with D = 300 at 100 Hz, settled: 0.14733 N, the right limit at the wall's closing, not the top behind it."""
+    """Section 2 with D = 300 at 100 Hz, settled: 0.14733 N, the right limit at the wall's closing, not the top behind
+    it.
+    """
     found = located(scene("sec2").evolve(D=300.0, f=100.0), 100, 1)
     at_wall = found.closings[found.closings[:, 1] == 11][:, 2]
     assert found.maxima[1] == pytest.approx(0.14733, abs=5e-6)
@@ -67,7 +72,8 @@ def test_the_largest_output_force_of_an_overdamped_chain_stands_at_its_closing()
 def test_the_computation_scales_and_agrees_with_itself_and_with_scipy(law, tension):
     """(A0, f, D) → (sA0, s^{1/4}f, s^{1/4}D) with forces s^{3/2}; D of an overlap-dependent law is D/s^{q − 1/4} more.
 
-    Measured: forces at 1e-10 and 1e-12 differ by less than 1e-9, displacements from SciPy's by 7e-9, which is SciPy's."""
+    Measured: forces at 1e-10 and 1e-12 differ by less than 1e-9, displacements from SciPy's by 7e-9, which is SciPy's.
+    """
     s, q = 3.0, LAWS[law].exponent
     one = scene("sec2").evolve(dissipation=law, tension=tension, kappa=0.01)
     other = one.evolve(A0=s * one.A0, f=s**0.25 * one.f, D=s ** (0.25 - q) * one.D, kappa=0.01)

@@ -1,8 +1,8 @@
 """Every method converges at least with the order that theory gives it, regime by regime, and reaches what it says.
 
-A measured order is the slope of a straight line through log error over log step, over at least three decades of error where
-the method is of order 2 or more; errors of several scenes are averaged (geometric mean), since beside contact events
-a single one depends on where in a step the events fall.
+A measured order is the slope of a straight line through log error over log step, over at least three decades of error
+where the method is of order 2 or more; errors of several scenes are averaged (geometric mean), since beside contact
+events a single one depends on where in a step the events fall.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ REGIMES = {
     "closed": {"F0": 5.0}, "none": {"dissipation": "none"}, **{law: {"dissipation": law} for law in LAWS},
     "cut": {"tension": "cut"},
 }
-#: Orders that theory gives, method by method; each is a lower bound, since over the coarser steps a smoother part of the
-#: error may still be the larger one. Where all is smooth a method has the order of its tableau: 4 for RK4, 8 for
+#: Orders that theory gives, method by method; each is a lower bound, since over the coarser steps a smoother part of
+#: the error may still be the larger one. Where all is smooth a method has the order of its tableau: 4 for RK4, 8 for
 #: dop853; Verlet in (u, v) has 2 only where no force depends on velocities. A fixed step across a contact event is left
-#: with the smoothness of what begins there, [δ]_+^b, integrated over one step: order 1 + b of its integral. With
-#: G = λδ^{1+a}/(1+a) of a damping law this is 2 + a, hence 2 for the linear dashpot, 2.25 for Tsuji's law, 2.5 for
-#: Kuwabara and Kono's; the elastic force alone has 2.5, and (u, v) has 1, where the dashpot jumps. rk4-split subtracts
-#: the errors of order 2 and 2.5, which leaves those of the closing speed's own change, 3.5. dop853 ends its steps at
+#: with the smoothness of what begins there, [δ]_+^b, integrated over one step: order 1 + b of its integral. With G =
+#: λδ^{1+a}/(1+a) of a damping law this is 2 + a, hence 2 for the linear dashpot, 2.25 for Tsuji's law, 2.5 for Kuwabara
+#: and Kono's; the elastic force alone has 2.5, and (u, v) has 1, where the dashpot jumps. rk4-split subtracts the
+#: errors of order 2 and 2.5, which leaves those of the closing speed's own change, 3.5. dop853 ends its steps at
 #: events, found on its dense output of order 7, and at the kink of a cut; dop853-root goes on from that dense output.
 THEORY = {
     ("rk4-split", "closed"): 4.0, ("rk4-split", "none"): 3.5, **{("rk4-split", law): 3.5 for law in LAWS},
@@ -45,7 +45,8 @@ THEORY = {
     ("dop853-root", "closed"): 8.0, ("dop853-root", "none"): 7.0, **{("dop853-root", law): 7.0 for law in LAWS},
     ("dop853", "closed"): 8.0, ("dop853", "none"): 7.0, **{("dop853", law): 7.0 for law in LAWS}, ("dop853", "cut"): 7.0,
 }
-#: What a dashpot's contact events leave at most of a fixed step's order 4: the reason for w-variables and for split steps.
+#: What a dashpot's contact events leave at most of a fixed step's order 4: the reason for w-variables and for split
+#: steps.
 LOST = {"rk4": 3.0, "rk4-naive": 2.0}
 
 

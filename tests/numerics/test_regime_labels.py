@@ -1,4 +1,5 @@
-"""What a motion is called is what becomes of it: a slice of regime_labels.py, and the orbit beside a motion by itself."""
+"""What a motion is called is what becomes of it: a slice of regime_labels.py, and the orbit beside a motion by itself.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +19,9 @@ from tests.numerics.regime_labels import judged
 
 @pytest.mark.parametrize(("place", "width"), [(256.0, 0.75), (832.5, 0.25)])
 def test_labels_beside_a_period_doubling_are_what_becomes_of_the_motion(place: float, width: float) -> None:
-    """Down, in steps of 0.25 Hz: on the unstable orbit the chain lingers for hundreds of periods, and that is not chaos."""
+    """Down, in steps of 0.25 Hz: on the unstable orbit the chain lingers for hundreds of periods, and that is not
+    chaos.
+    """
     found = list(judged(place, width, 0.25, "down"))
     assert len(found) >= 3
     assert [(one.point.frequency, one.called) for one in found if one.false or one.missing] == []
@@ -38,7 +41,8 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (1130.0, 3), (1980.0, 1), (1330.0, 1)])
 def test_differences_give_the_multipliers_of_the_tangent_flow(f: float, period: int) -> None:
-    """Two routes to |μ|. At four times the default steps the map is right to some 1e-7, its differences to some 1e-5."""
+    """Two routes to |μ|. At four times the default steps the map is right to some 1e-7, its differences to some 1e-5.
+    """
     exact = float(np.abs(periodic_orbit(scene("sec2").evolve(f=f), period).multipliers[0]))
     assert beside(f, period, 1e-4).modulus == pytest.approx(exact, abs=2e-5)
 
@@ -54,7 +58,8 @@ def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
 
 
 def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
-    """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period."""
+    """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period.
+    """
     chain = scene("sec2").evolve(f=340.0)
     x = FiniteDifferenceMap(chain, 4).inner(scale_chain(chain).from_si(settled(chain).state))
     found = orbit_of(chain, 4, x, Stop())
@@ -96,7 +101,10 @@ def test_one_motion_has_one_name_from_curve_and_page(f: float) -> None:
 
 
 def test_slow_is_not_quasi_periodic() -> None:
-    """A0 = 0.3 µm at 1500 Hz: |μ| = 0.9995. 300 periods look like a closed curve; `run` claims nothing that it is not yet."""
+    """A0 = 0.3 µm at 1500 Hz: |μ| = 0.9995.
+
+    300 periods look like a closed curve; `run` claims nothing that it is not yet.
+    """
     chain = scene("sec2").evolve(A0=3e-7, f=1500.0)
     assert run(chain, periods=300).regime.name == "unsettled"
     settling = run_until_settled(chain, None, None)

@@ -1,4 +1,5 @@
-"""The errors that `run` and the curve state bound the true ones, on random scenes (stated_errors.py, curve_errors.py)."""
+"""The errors that `run` and the curve state bound the true ones, on random scenes (stated_errors.py, curve_errors.py).
+"""
 
 from __future__ import annotations
 
@@ -31,8 +32,9 @@ def excess(found: list) -> np.ndarray:
 
 
 def test_the_stated_error_bounds_the_true_one():
-    """At any accuracy from 1e-3 to 1e-9: in 99 % of a thousand scenes (`python -m tests.numerics.stated_errors`), which is one
-    of these forty at most; two computations that agree by chance are then wrong by a small factor only."""
+    """At any accuracy from 1e-3 to 1e-9: in 99 % of a thousand scenes (`python -m tests.numerics.stated_errors`), which
+    is one of these forty at most; two computations that agree by chance are then wrong by a small factor only.
+    """
     ratio = excess(uncut())
     print(f"{len(ratio)} scenes: {np.mean(ratio <= 1.0):.1%} bounded, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
     assert (ratio > 1.0).sum() <= 1
@@ -70,7 +72,8 @@ def test_two_computations_by_the_same_steps_are_no_evidence():
 
 
 def test_computations_with_the_same_steps_are_not_compared():
-    """A fast drive sampled 16 times: half the step, asked for from so coarse an accuracy, is still one step a sample."""
+    """A fast drive sampled 16 times: half the step, asked for from so coarse an accuracy, is still one step a sample.
+    """
     chain = scene("sec2").evolve(f=5600.0, A0=1.7e-7, D=64.0, N=5, accuracy=7e-4)
     setting, scaled = method_for(chain.accuracy), scale_chain(chain)
     halved, finer = (one.steps_per_period(scaled, stated_errors.SAMPLES)

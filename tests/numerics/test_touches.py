@@ -32,8 +32,9 @@ def test_no_touch_is_missed_and_none_is_invented(driven):
 
 
 def test_the_moment_of_a_touch_is_exact():
-    """The driver reaches a resting bead at asin(gap)/β to 1e-12 of a period at every tolerance, as slowly as it may come:
-    at a depth of 1e-7 a rounding of its displacement is 1e-13 of a period."""
+    """The driver reaches a resting bead at asin(gap)/β to 1e-12 of a period at every tolerance, as slowly as it may
+    come: at a depth of 1e-7 a rounding of its displacement is 1e-13 of a period.
+    """
     cases, seen = found(True)
     assert (seen[cases[:, touches.DEPTH] > 0.0, touches.ONSET_ERROR] < 1.2e-12).all()
 

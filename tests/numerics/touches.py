@@ -63,7 +63,9 @@ def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
 
 
 def run_pairs(count: int, seed: int, tolerance: float) -> np.ndarray:
-    """(count, 3): the time between two touches as a part of the period, log-uniform from 1e-13, and both touches' errors."""
+    """(count, 3): the time between two touches as a part of the period, log-uniform from 1e-13, and both touches'
+    errors.
+    """
     rng = np.random.default_rng(seed)
     work, found = workspace(4), np.zeros((count, 3))
     chain = Chain(np.array([0.0, 1.0, 1.0, 0.0]), np.ones(3))

@@ -1,4 +1,5 @@
-"""The scene `breather` is the left half of a chain that is shaken at both ends: against that whole chain, computed apart.
+"""The scene `breather` is the left half of a chain that is shaken at both ends: against that whole chain, computed
+apart.
 
 The whole chain's equations, its Jacobian and Newton's method are written here with NumPy and SciPy alone.
 """

@@ -13,7 +13,9 @@ from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4])
 def test_a_brief_touch_is_in_the_map_and_in_its_derivative(depth: float) -> None:
-    """A driver that just touches a resting bead throws it with C·depth²/β, C = 3π√2/8; by u it changes with −2C·depth/β."""
+    """A driver that just touches a resting bead throws it with C·depth²/β, C = 3π√2/8; by u it changes with
+    −2C·depth/β.
+    """
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, f=500.0), 1)
     scaled, slots = stroboscopic_map.engine.scaled, stroboscopic_map.engine.scaled.slots
     # the wall pushes with no force, and no contact is damped

@@ -1,4 +1,6 @@
-"""The errors stated of multipliers: maps of larger tolerances against the finest, and a derivative that is known exactly."""
+"""The errors stated of multipliers: maps of larger tolerances against the finest, and a derivative that is known
+exactly.
+"""
 
 from __future__ import annotations
 

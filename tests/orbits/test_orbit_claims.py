@@ -1,4 +1,6 @@
-"""What an orbit claims of itself, number by number: that it comes back, and that its multipliers have Liouville's product."""
+"""What an orbit claims of itself, number by number: that it comes back, and that its multipliers have Liouville's
+product.
+"""
 
 from __future__ import annotations
 

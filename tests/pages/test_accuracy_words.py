@@ -23,7 +23,9 @@ from granchain_core.stop import Stop
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])
 def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rule in app/session/active_setting.py is the one of steady/settling/refine_orbit.py: the finest engine of a final picture."""
+    """The rule in app/session/active_setting.py is the one of steady/settling/refine_orbit.py: the finest engine of a
+    final picture.
+    """
     used: list[Setting] = []
     engine = recording.Engine
 

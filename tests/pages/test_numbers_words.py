@@ -18,7 +18,9 @@ def test_where_the_energy_goes_is_said_of_a_driven_damped_chain_alone() -> None:
 
 
 def test_nothing_is_said_of_a_scene_with_an_effect_that_may_lose_energy_too(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Such as the drag of docs/add-an-effect.md; foundation and preload store energy, and a cut force is the damped one."""
+    """Such as the drag of docs/add-an-effect.md; foundation and preload store energy, and a cut force is the damped
+    one.
+    """
     run = settle(scene("sec2")).run
     drag = Effect("drag", "drag", "ground drag", "A viscous ground slows every bead.", lambda scene: True)
     storing = [effect for effect in EFFECTS if effect.name in ("tension", "foundation", "preload")]

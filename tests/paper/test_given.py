@@ -100,7 +100,9 @@ def test_a_series_is_put_in_phase(late: float, only: str) -> None:
 
 
 def test_model_3_is_fed_with_the_measured_force() -> None:
-    """Fed with model (5)'s own force from rest, it finds that motion: at 90 Hz by a factor 0.57 a period, here 21 before."""
+    """Fed with model (5)'s own force from rest, it finds that motion: at 90 Hz by a factor 0.57 a period, here 21
+    before.
+    """
     found = column(90.0, recorded(30, 0.0), True, None)
     assert found.observer is not None and found.observer_time is not None and "measured" in found.observer_words
     model = np.interp(found.observer_time, found.time, found.output_force)

@@ -1,4 +1,5 @@
-"""What parts leave out of Panel's work changes nothing, and Panel's own way is taken where its methods are other ones."""
+"""What parts leave out of Panel's work changes nothing, and Panel's own way is taken where its methods are other ones.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Force trains: a jump is drawn as a vertical rise to its top, in every copy of an orbit and as the live picture goes on."""
+"""Force trains: a jump is drawn as a vertical rise to its top, in every copy of an orbit and as the live picture goes
+on.
+"""
 
 from __future__ import annotations
 

@@ -64,5 +64,6 @@ def test_bead_between_two_contacts_swings_as_the_pure_three_halves_oscillator(sp
     chain.throw([speed])
     kept = chain.record()
     expected = amplitude * np.array([0.0, 1.0, 0.0, -1.0, 0.0])
-    # ω is given to seven digits: in one period the bead is 2π·1e-7 of the amplitude off at most, and the solver adds none
+    # ω is given to seven digits: in one period the bead is 2π·1e-7 of the amplitude off at most, and the solver adds
+    # none
     np.testing.assert_allclose(kept.displacement[:, 0], expected, atol=1e-6 * amplitude)

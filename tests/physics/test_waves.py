@@ -40,7 +40,8 @@ def test_solitary_wave_of_the_uncompressed_chain_has_its_speed():
 
 def test_momentum_changes_by_the_forces_on_the_ends_and_nothing_else():
     """Σ m v changes by ∫ (F_0 − F_N) dt, to the accuracy of the quadrature."""
-    # tension cut and damping only redistribute momentum; with a preload all forces are smooth and Simpson's rule converges
+    # tension cut and damping only redistribute momentum; with a preload all forces are smooth and Simpson's rule
+    # converges
     result = run(scene("sec2").evolve(F0=5.0, accuracy=1e-9), periods=0, record=2, samples=400)
     momentum = (result.scene.masses() * result.velocity).sum(axis=1)
     push = result.input_force - result.output_force

@@ -1,4 +1,6 @@
-"""The wheel installs only names that are ours, can be built from what the Docker image gets, and works without the tree."""
+"""The wheel installs only names that are ours, can be built from what the Docker image gets, and works without the
+tree.
+"""
 
 from __future__ import annotations
 

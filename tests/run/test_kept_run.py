@@ -39,7 +39,8 @@ def assert_same(one: Run, other: Run) -> None:
 @pytest.mark.parametrize("cut", [1, 30, 50, 77, 100])
 def test_a_run_cut_anywhere_is_the_same_run(method: str | None, cut: int, tmp_path: Path,
                                             monkeypatch: pytest.MonkeyPatch) -> None:
-    """Checkpoints come 50 times in each computation; after the one with the number `cut` the process might be killed."""
+    """Checkpoints come 50 times in each computation; after the one with the number `cut` the process might be killed.
+    """
     whole, stop, added = computed(None, method), Stop(), [0]
     add = RunCheckpoints.add
 

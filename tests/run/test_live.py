@@ -14,7 +14,9 @@ from granchain_core.stop import Stop
 
 @pytest.mark.parametrize("beads", [3, 40])
 def test_largest_forces_are_those_of_the_stretch(beads: int) -> None:
-    """The last bead is thrown at the wall: the first period has a blow of newtons, later ones only what the driver sends."""
+    """The last bead is thrown at the wall: the first period has a blow of newtons, later ones only what the driver
+    sends.
+    """
     hit = State(np.zeros(beads), np.append(np.zeros(beads - 1), 1.0))
     live = LiveChain(scene("sec2").evolve(N=beads), samples=256, start=hit)
     first = live.advance(256)

@@ -49,8 +49,9 @@ def test_no_less_is_stated_than_is_typical_of_the_steps() -> None:
 
 
 def test_rounding_grows_as_errors_grow() -> None:
-    """A motion that magnifies the errors of its steps a millionfold does so with their roundings, some 1e-16 each: 1e-10 at
-    least is stated however well two computations agree, and finer ones are of no use."""
+    """A motion that magnifies the errors of its steps a millionfold does so with their roundings, some 1e-16 each:
+    1e-10 at least is stated however well two computations agree, and finer ones are of no use.
+    """
     growth = 1e6
     found = shown([growth * typical_error(Setting("rk4-split", r)) for r in REFINES[:-1]])
     assert not found.rounded
@@ -70,8 +71,8 @@ def test_an_error_of_a_tenth_is_none_worth_the_name_unless_it_was_asked_for() ->
     assert found.final(done=True)[0] == pytest.approx(0.15)
 
 
-#: Scenes of `python -m tests.numerics.stated_errors --seed 101` whose stated error was below the true one: two computations in
-#: which the same contact event happened to lie alike in its step.
+#: Scenes of `python -m tests.numerics.stated_errors --seed 101` whose stated error was below the true one: two
+#: computations in which the same contact event happened to lie alike in its step.
 CHANCE = [
     ({"f": 145.0107398227187, "A0": 5.420547110388205e-06, "D": 187.64768194099608, "N": 1, "F0": 0.0718184022107687,
       "accuracy": 9.005855842342343e-08}, ()),
@@ -122,8 +123,9 @@ def test_numba_tells_when_it_compiles() -> None:
 
 
 def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Section 2's run needs three computations (tests/hard/test_outcomes.py); each takes a hundredth of the budget, after
-    compiling for longer than all of it."""
+    """Section 2's run needs three computations (tests/hard/test_outcomes.py); each takes a hundredth of the budget,
+    after compiling for longer than all of it.
+    """
     module, budget, clock = sys.modules["granchain_core.run.run"], 1.0, Clock()
     computes, compiler, computed = module._attempt, CompilerClock(clock), []
     began = event.Event("numba:compiler_lock", event.EventStatus.START)

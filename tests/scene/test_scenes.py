@@ -87,7 +87,9 @@ def test_any_value_of_a_knob_is_taken_or_refused_with_a_sentence(name, value):
 
 
 def test_kappa_uses_the_resulting_scenes_own_amplitude():
-    """k = κ·K·√A0 with the A0 set in the same breath; a later A0 leaves k alone and moves κ (docs/model.md, Foundation)."""
+    """k = κ·K·√A0 with the A0 set in the same breath; a later A0 leaves k alone and moves κ (docs/model.md,
+    Foundation).
+    """
     rig = scene("rig")
     both = rig.evolve(A0=1.2e-5, kappa=0.002)
     assert both.k == pytest.approx(0.002 * both.K * np.sqrt(1.2e-5), rel=1e-15)

@@ -38,7 +38,8 @@ class Listening:
         """End it."""
         self.loop.add_callback(self.loop.stop)
         self._thread.join(20)
-        # Bokeh leaves a page's document behind as the current one of the process, where every test to come would find it.
+        # Bokeh leaves a page's document behind as the current one of the process, where every test to come would find
+        # it.
         _PATCHED_CURDOCS.clear()
         set_curdoc(Document())
 

@@ -1,4 +1,5 @@
-"""What is gathered of a page leaves as the message that Bokeh would send, and comes in the order in which it was said."""
+"""What is gathered of a page leaves as the message that Bokeh would send, and comes in the order in which it was said.
+"""
 
 from __future__ import annotations
 

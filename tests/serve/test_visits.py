@@ -43,7 +43,8 @@ async def visit(address: str, query: str = "", moves: int = 2) -> Viewer:
 def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) -> None:
     """A handler that Panel keeps for each document once kept every page: 1.5 MB a visit.
 
-    The document that Bokeh calls the current one may be the last page's: its event loop ended before the page was closed.
+    The document that Bokeh calls the current one may be the last page's: its event loop ended before the page was
+    closed.
     """
     one = Listening(Access())
     try:

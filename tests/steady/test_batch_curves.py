@@ -55,7 +55,8 @@ def test_up_and_down_really_differ_there() -> None:
 
 
 def test_an_unstable_orbit_is_not_drawn_as_periodic() -> None:
-    """The rig between 134 and 160 Hz: what batches call periodic is stable, what the fixed-step method shows to be so."""
+    """The rig between 134 and 160 Hz: what batches call periodic is stable, what the fixed-step method shows to be so.
+    """
     found = [point for point in resonance_curve(scene("rig"), np.linspace(134.0, 160.0, 14)).points
              if point.regime.name == "periodic"]
     for point in found:

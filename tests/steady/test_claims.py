@@ -124,7 +124,9 @@ def test_the_times_of_samples_are_counted_and_not_summed() -> None:
 
 
 def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where a tenth of a distance is left after an orbit the settled error is e/(1 − 1/10), where nine tenths are, 10 e."""
+    """Where a tenth of a distance is left after an orbit the settled error is e/(1 − 1/10), where nine tenths are, 10
+    e.
+    """
     settling = run_until_settled(scene("sec2"), None, None)
     engine = Engine(settling.scene, Setting("rk4-split"), 16)
     engine.start(settling.engine.state)

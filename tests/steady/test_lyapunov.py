@@ -1,4 +1,5 @@
-"""Lyapunov exponents by the shadow against an independent way: products of the stroboscopic map's derivatives with QR."""
+"""Lyapunov exponents by the shadow against an independent way: products of the stroboscopic map's derivatives with QR.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ QUASI = scene("sec2").evolve(f=1640.0)
 
 
 def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, blocks: int = 10) -> list[MeasuredExponents | None]:
-    """The exponents of scenes, each in two lanes of a batch, over blocks of 20 periods; None where they are not finite."""
+    """The exponents of scenes, each in two lanes of a batch, over blocks of 20 periods; None where they are not finite.
+    """
     found: list[MeasuredExponents | None] = [None] * len(scenes)
     for lane in range(BATCH_SIZE):
         batch.empty(lane)

@@ -19,7 +19,10 @@ from granchain_core.stop import Stop
 
 @pytest.mark.parametrize("start", ["up", "down"])
 def test_a_stop_ends_a_carried_point_that_would_run_for_ever(start: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Ten seconds of drive a period and no budget of steps: one point is hours of work. It is given up, without a result."""
+    """Ten seconds of drive a period and no budget of steps: one point is hours of work.
+
+    It is given up, without a result.
+    """
     monkeypatch.setattr(advance, "MOST_SETTLING_STEPS", 10**15)
     stop, begun, points = Stop(), threading.Event(), list[CurvePoint]()
     real = Engine.periods

@@ -1,4 +1,6 @@
-"""The border of files: the seal, what is followed and what is not, limits of the child, and one sentence for every error."""
+"""The border of files: the seal, what is followed and what is not, limits of the child, and one sentence for every
+error.
+"""
 
 from __future__ import annotations
 
@@ -123,7 +125,8 @@ def test_other_programs_open_a_sealed_file_without_being_told_its_format(files: 
 @pytest.mark.parametrize("kind", NEEDED)
 def test_numbers_come_from_the_file_itself_alone(kind: str, name: str, files: dict[str, tuple[Path, Path]],
                                                  changed: Callable[..., Path], tmp_path: Path) -> None:
-    """Links on any part of the path, external and virtual data, shapes that were never written; sealed, and in a child."""
+    """Links on any part of the path, external and virtual data, shapes that were never written; sealed, and in a child.
+    """
     for seed in range(3):
         path = changed(kind, lambda file, seed=seed: FORGERIES[name](file, NEEDED[kind], tmp_path, np.random.default_rng(seed)))
         assert any(words in refused(KINDS[kind].read, path) for words in SAID[name])

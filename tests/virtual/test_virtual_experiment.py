@@ -1,5 +1,6 @@
-"""The virtual experiment: perfect sensors give the model's forces, each imperfection does what its formula says, and the
-mark stays with the data wherever they go."""
+"""The virtual experiment: perfect sensors give the model's forces, each imperfection does what its formula says, and
+the mark stays with the data wherever they go.
+"""
 
 from __future__ import annotations
 

@@ -3,8 +3,8 @@
     python -m tools.cancellations --count 1000 --seed 1
 
 Chains of 1 to 10,000 beads, amplitudes and frequencies over their ranges, drawn evenly in their logarithms; the scenes
-are those that a visitor insists on. The time is that from the stop flag to the end of the computation's thread; its processor time
-in it does not depend on what else the machine does.
+are those that a visitor insists on. The time is that from the stop flag to the end of the computation's thread; its
+processor time in it does not depend on what else the machine does.
 """
 
 from __future__ import annotations

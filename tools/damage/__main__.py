@@ -2,7 +2,8 @@
 
     python -m tools.damage --count 1000 --seed 1 [--kind run] [--old]
 
-Without --old the files have their seal, and forgeries are sealed again; with it they are as earlier versions wrote them.
+Without --old the files have their seal, and forgeries are sealed again; with it they are as earlier versions wrote
+them.
 """
 
 from __future__ import annotations

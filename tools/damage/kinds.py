@@ -1,4 +1,5 @@
-"""The kinds of files that granchain reads: how one is made, how it is read, and everything that was read as one value."""
+"""The kinds of files that granchain reads: how one is made, how it is read, and everything that was read as one value.
+"""
 
 from __future__ import annotations
 

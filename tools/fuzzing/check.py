@@ -67,10 +67,10 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
           budget: float = BUDGET, patience: float = 1.0) -> Verdict:
     """The verdict on one draw; `compute` takes the place of `run`.
 
-    The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds; where tension is cut, `run`
-    uses the adaptive method itself, and that solver is the only independent one. Naive RK4 and LSODA are judged too, for
-    at most `others` seconds each. What takes longer than its time is ended after `patience` times as long, so that a
-    busy machine decides nothing: what is begun at all depends on estimates and counted steps.
+    The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds; where tension is cut,
+    `run` uses the adaptive method itself, and that solver is the only independent one. Naive RK4 and LSODA are judged
+    too, for at most `others` seconds each. What takes longer than its time is ended after `patience` times as long, so
+    that a busy machine decides nothing: what is begun at all depends on estimates and counted steps.
     """
     try:
         chosen = draw.scene()

@@ -1,8 +1,8 @@
 """Hostile command lines: valid ones of all commands, in which some words are replaced, dropped, doubled or added.
 
-Every command line must end with the contract's status: 0, 2 with one printable sentence on stderr and nothing on stdout,
-or 3. They run one after the other in a child, which saves the second that Python and its libraries take to start; a
-child that does not answer in time is killed and its command line is listed.
+Every command line must end with the contract's status: 0, 2 with one printable sentence on stderr and nothing on
+stdout, or 3. They run one after the other in a child, which saves the second that Python and its libraries take to
+start; a child that does not answer in time is killed and its command line is listed.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 
     python -m tools.lock
 
-requirements.lock has what granchain needs, requirements-build.lock what building it needs.
-The versions are those of the first platform; on the others the same are asked for. `pip install --require-hashes
--r requirements.lock` installs nothing that is not in it. Linux only: the container's system, and that of continuous integration.
+requirements.lock has what granchain needs, requirements-build.lock what building it needs. The versions are those of
+the first platform; on the others the same are asked for. `pip install --require-hashes -r requirements.lock` installs
+nothing that is not in it. Linux only: the container's system, and that of continuous integration.
 """
 
 from __future__ import annotations

@@ -25,7 +25,8 @@ def problems() -> list[str]:
 
 
 def _text_problems(one: Mutant) -> Iterator[str]:
-    """Whether the mutant's text is in its file, as often as it says, and what it leaves is Python whose imports exist."""
+    """Whether the mutant's text is in its file, as often as it says, and what it leaves is Python whose imports exist.
+    """
     path = ROOT / one.path
     if not path.exists():
         yield f"{one.name}: there is no file {one.path}"

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-#: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where beads
-#: are not alike; NaN in every member; what is not finite.
+#: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where
+#: beads are not alike; NaN in every member; what is not finite.
 MOTION = ("tests/kernels/equations/test_motion.py",)
 UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py",)
 VECTORS = ("tests/kernels/simd/test_vector_nan.py",)

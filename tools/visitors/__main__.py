@@ -2,7 +2,7 @@
 
     python -m tools.visitors --count 24 --minutes 1
     python -m tools.visitors --count 24 --minutes 1 --bomb       with nine pages of 10,000 beads at 0.1 Hz beside them
-    python -m tools.visitors soak --minutes 120                  visits that open, move and leave: memory, descriptors, threads
+    python -m tools.visitors soak --minutes 120                  visits that open, move and leave: memory, threads, …
 
 It starts a server of its own; `--address` names one that runs already.
 """

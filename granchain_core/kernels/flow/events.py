@@ -16,7 +16,7 @@ from .attempt import accepted_in_time, attempt_in_time, first_change
 from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.
-_LANDED = 1e-14
+_LOCATED = 1e-14
 #: A step aims at the next release if that is at most this many step sizes away.
 _AIM = 1.5
 #: Attempts to locate one event, and to take one step.
@@ -49,7 +49,7 @@ def locate_change(method, course, time, h, c, counts):
     for _ in range(_TRIALS):
         d = overlap(slots.preload, workspace.end, c)
         speed = (workspace.slope[c] - workspace.slope[c + 1]) * rate_at(time, h)
-        if abs(d) <= _LANDED * max(1.0, workspace.scale[0]) or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
+        if abs(d) <= _LOCATED * max(1.0, workspace.scale[0]) or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
             break
         if h - d / speed == h:
             break
@@ -68,7 +68,7 @@ def step_to_release(method, course, t, goal, c, counts):
     slots, drive, _, workspace = course.trajectory
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
     time = time_from(BEFORE, goal, t, power)
-    error, landed = np.inf, False
+    error, located = np.inf, False
     for _ in range(_TRIALS):
         error = attempt_in_time(method, course, time, time.s)
         counts[EVALUATIONS] += STAGES
@@ -77,29 +77,29 @@ def step_to_release(method, course, t, goal, c, counts):
         d, speed = overlap(slots.preload, workspace.end, c), workspace.slope[c] - workspace.slope[c + 1]
         if not speed < 0.0:
             return LOST, time, 0.0, -1, goal
-        landed = abs(d) <= _LANDED * max(1.0, workspace.scale[0]) or goal - d / speed == goal
-        if landed:
+        located = abs(d) <= _LOCATED * max(1.0, workspace.scale[0]) or goal - d / speed == goal
+        if located:
             break
         goal -= d / speed
         if not t < goal < farthest:
             return LOST, time, 0.0, -1, goal
         time = time_from(BEFORE, goal, t, power)
-    if not landed:
+    if not located:
         return LOST, time, 0.0, -1, goal
     h = size_of(time, min(goal, drive.period) - t)
     if goal > drive.period:
-        landed = False
+        located = False
         error = attempt_in_time(method, course, time, h)
         counts[EVALUATIONS] += STAGES
     while error > 1.0:
-        landed = False
+        located = False
         counts[REJECTED] += 1
         h = shrunk(h, error)
         if not t + 0.1 * (time_at(time, h) - t) > t:
             return STEP_TOO_SMALL, time, h, -1, goal
         error = attempt_in_time(method, course, time, h)
         counts[EVALUATIONS] += STAGES
-    return DONE, time, h, c if landed else -1, goal
+    return DONE, time, h, c if located else -1, goal
 
 
 @inline_numba
@@ -119,9 +119,9 @@ def flow_step(method, course, t, onset, counts):
     usual = time_from(AFTER if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
     time, h = usual, size_of(usual, dt)
     for _ in range(_ATTEMPTS):
-        landed, error = -1, 0.0
+        located, error = -1, 0.0
         if aiming:
-            status, time, h, landed, goal = step_to_release(method, course, t, goal, target, counts)
+            status, time, h, located, goal = step_to_release(method, course, t, goal, target, counts)
             if status == LOST:
                 aiming, lost = False, True
                 time, h = usual, size_of(usual, dt)
@@ -131,11 +131,11 @@ def flow_step(method, course, t, onset, counts):
             dt = min(dt, time_at(time, h) - t)
         if status != DONE:
             return status, time, h, -1
-        contact, x = first_change(course, time, h, landed, counts)
+        contact, x = first_change(course, time, h, located, counts)
         if contact < 0:
             if not aiming:
                 next_step[0] = next_dt(time, h, error, next_step[0], limit)
-            return DONE, time, h, landed
+            return DONE, time, h, located
         if x * h == 0.0:
             return DONE, time, 0.0, contact
         if contacts.closed[contact] != 0 and not lost:

@@ -79,8 +79,8 @@ def errors(case: str) -> np.ndarray:
 def test_batches_converge_with_order_three_over_a_decade_of_steps(case):
     """The kink of opening and closing contacts is corrected to order 3; where no contact opens RK4 keeps its 4.
 
-    Fit through the geometric mean of the eight members. The kink's next term falls with the power 5/2 for one contact and
-    is seen with the smallest steps: within 0.3 of 3 from below. Where contacts seldom change the 4 is still seen.
+    Fit through the geometric mean of the eight members. The kink's next term falls with the power 5/2 for one contact
+    and is seen with the smallest steps: within 0.3 of 3 from below. Where contacts seldom change the 4 is still seen.
     """
     order = -np.polyfit(np.log(REFINED), np.log(errors(case)).mean(axis=1), 1)[0]
     print(f"{case}: order {order:.2f}, errors {errors(case)[0].max():.1e} to {errors(case)[-1].max():.1e}")

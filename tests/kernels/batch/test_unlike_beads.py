@@ -24,7 +24,8 @@ def dimer(f: float) -> Scene:
 
 
 def test_unlike_beads_in_a_batch() -> None:
-    """Strobes of three periods from rest, to the 2e-7 that a batch of order 3 reaches at a twelfth of the default step."""
+    """Strobes of three periods from rest, to the 2e-7 that a batch of order 3 reaches at a twelfth of the default step.
+    """
     scenes = [dimer(f) for f in (400.0, 900.0, 1500.0)]
     batch = Batch(scenes[0], Stop())
     assert batch.members.unequal is not None

@@ -54,7 +54,8 @@ print(warm.is_warm(scene("sec2"), [warm.FIXED_STEP_KERNELS]))
 
 
 def copied_core(tree: Path) -> Path:
-    """A copy of the core with its scenes, files with the same times, so that what Python has compiled holds for them."""
+    """A copy of the core with its scenes, files with the same times, so that what Python has compiled holds for them.
+    """
     root = Path(granchain_core.__path__[0]).parent
     for name in ("granchain_core", "assets"):
         shutil.copytree(root / name, tree / name, ignore=shutil.ignore_patterns("*.pyc.*"))  # another process's, unfinished
@@ -133,7 +134,8 @@ def test_other_words_compile_nothing_and_another_number_does(compiled: tuple[Pat
 
 
 def test_the_kernels_of_whole_runs_are_loaded_from_disk_too(tmp_path: Path) -> None:
-    """Where they have been compiled, by this process or before it; what Numba cannot keep would be compiled here again."""
+    """Where they have been compiled, by this process or before it; what Numba cannot keep would be compiled here again.
+    """
     for method in ("rk4", "dop853"):
         engine = Engine(scene("sec2").evolve(f=2000.0), Setting(method, tolerance=1e-3), 2)
         engine.periods(1)

@@ -35,7 +35,8 @@ print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(res
 """
 #: Says which folder is chosen, and compiles nothing.
 FOLDER = "import json\nfrom granchain_core.kernels.compiling.cache import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
-#: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as well.
+#: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as
+#: well.
 _FULL = "import resource, signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
 
 

@@ -1,4 +1,5 @@
-"""A function that kernels call is compiled once for the types of its arguments, whoever calls it and with what numbers."""
+"""A function that kernels call is compiled once for the types of its arguments, whoever calls it and with what numbers.
+"""
 
 from __future__ import annotations
 

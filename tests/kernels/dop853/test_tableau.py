@@ -1,4 +1,5 @@
-"""The coefficients of DOP853 satisfy the sums that make it what it is: order 8, errors of order 5 and 3, dense order 7."""
+"""The coefficients of DOP853 satisfy the sums that make it what it is: order 8, errors of order 5 and 3, dense order 7.
+"""
 
 from __future__ import annotations
 

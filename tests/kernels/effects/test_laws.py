@@ -1,4 +1,5 @@
-"""A damping law is its exponent and its power: what is made of them, and that a law or effect that lacks one says so."""
+"""A damping law is its exponent and its power: what is made of them, and that a law or effect that lacks one says so.
+"""
 
 from __future__ import annotations
 

@@ -37,7 +37,8 @@ def stiffness(a: Bead, b: Bead) -> float:
 @pytest.mark.parametrize("seed", range(5))
 @pytest.mark.parametrize("law", ["none", "linear"])
 def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
-    """Forces, du/dt = v, m ẇ = F_left − F_right − k u and the stored energy, from SI by hand; Python runs the kernels."""
+    """Forces, du/dt = v, m ẇ = F_left − F_right − k u and the stored energy, from SI by hand; Python runs the kernels.
+    """
     chosen = dimer(law)
     beads = [chosen.bead(i) for i in range(1, 7)]
     K = np.array([stiffness(a, b) for a, b in zip([beads[0], *beads[:-1]], beads, strict=True)]

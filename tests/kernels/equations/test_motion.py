@@ -1,4 +1,5 @@
-"""The right-hand side in w is the (u, v) equation of the paper, for every law, tension, foundation, preload and wall."""
+"""The right-hand side in w is the (u, v) equation of the paper, for every law, tension, foundation, preload and wall.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +63,8 @@ def random_state(chosen, seed: int):
 
 @pytest.mark.parametrize(("law", "tension", "kappa", "preload", "wall"), CASES)
 def test_forces_velocities_and_accelerations_are_those_of_the_paper(law, tension, kappa, preload, wall):
-    """Same contact forces, du/dt = v, and d²u/dt² as the (u, v) equations give; the w-slope sums elastic forces only."""
+    """Same contact forces, du/dt = v, and d²u/dt² as the (u, v) equations give; the w-slope sums elastic forces only.
+    """
     chosen = scene("sec2").evolve(N=5, dissipation=law, tension=tension, kappa=kappa, F0=preload, wall=wall, f=400.0)
     for seed in range(6):
         u, v = random_state(chosen, seed)

@@ -88,7 +88,8 @@ def test_laws_without_a_jump_have_none(law: str) -> None:
     assert len(run(STRIKE.evolve(dissipation=law), periods=0, record=1).jumps.time) == 0
 
 
-#: Section 2's chain with D = 300 at 100 Hz: tests/numerics/forces/located.py, in (u, v) with located events, gives this.
+#: Section 2's chain with D = 300 at 100 Hz: tests/numerics/forces/located.py, in (u, v) with located events, gives
+#: this.
 TRUTH = 0.1473283
 
 
@@ -128,8 +129,9 @@ NEAR = 2e-3
 def test_touches_shorter_than_a_step_are_found_or_said_not_to_be_resolved(method: str, resolves: bool) -> None:
     """A drive so fast that its period has 17 steps: the touch lasts a third of one, between two of them.
 
-    The bead stands at A (1 − NEAR) against a soft wall; A sin θ crosses that at the rate A β √(1 − (1 − NEAR)²). The wall moves it
-    by a hundredth of NEAR until then. Where the touch is not resolved its overlap is that of two parabolas: 10 %.
+    The bead stands at A (1 − NEAR) against a soft wall; A sin θ crosses that at the rate A β √(1 − (1 − NEAR)²). The
+    wall moves it by a hundredth of NEAR until then. Where the touch is not resolved its overlap is that of two
+    parabolas: 10 %.
     """
     chain = scene("sec2").evolve(N=1, f=20_000.0, wall=1e-3)
     engine = Engine(chain, Setting(method, tolerance=1e-9), 17)

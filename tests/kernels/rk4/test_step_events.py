@@ -96,7 +96,8 @@ def test_a_contact_that_turned_may_have_changed_in_between(before, after, rising
     """Overlap and rate at both ends of a step: towards zero first and away last is looked into.
 
     The copies of this test for one contact agree, where the rates are large enough for the cubic to cross zero. The two
-    in vectors are compared with this one in tests/kernels/simd/test_simd.py and tests/numerics/test_fixed_step_touches.py.
+    in vectors are compared with this one in tests/kernels/simd/test_simd.py and
+    tests/numerics/test_fixed_step_touches.py.
     """
     slots = SimpleNamespace(preload=None, chain=SimpleNamespace(stiffness=np.ones(1)))
     state, slope = (lambda d: np.array([d, 0.0])), (lambda v: np.array([v, 0.0]))
@@ -107,7 +108,9 @@ def test_a_contact_that_turned_may_have_changed_in_between(before, after, rising
 
 
 def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None:
-    """Contact c pushed its beads apart too much by ends[MOMENTUM_ERROR, c]; the driver did that of contact 0 at its speed."""
+    """Contact c pushed its beads apart too much by ends[MOMENTUM_ERROR, c]; the driver did that of contact 0 at its
+    speed.
+    """
     inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((contact_cubic.ENDS, 3))
     ends[MOMENTUM_ERROR], ends[DISPLACEMENT_ERROR] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)
     slots = SimpleNamespace(chain=SimpleNamespace(inverse_mass=inverse), balance=Balance(1))
@@ -119,7 +122,8 @@ def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_where_the_cubic_through_a_steps_ends_crosses_a_touch_is_looked_for(sign: float) -> None:
-    """A contact of the same sign at both ends of an adaptive step: open ones that may close, closed ones that may open."""
+    """A contact of the same sign at both ends of an adaptive step: open ones that may close, closed ones that may open.
+    """
     rng, crossed = np.random.default_rng(1), 0
     x = np.linspace(0.0, 1.0, 401)
     for _ in range(400):

@@ -22,7 +22,8 @@ from granchain_core.stop import Stop
 _BOTH = {"kappa": 0.001, "F0": 0.5}
 #: Laws, lengths (up to 6 beads fit into 8 doubles, 14 into 16, 30 into 32; longer chains are in blocks of eight),
 #: foundation, preload, unequal beads: every two values stand together in one of them. Each set of effects is compiled
-#: for each width, which takes 3 to 9 s; most of these sets are compiled for other tests too. Unequal beads cost nothing.
+#: for each width, which takes 3 to 9 s; most of these sets are compiled for other tests too. Unequal beads cost
+#: nothing.
 CHAINS: dict[str, dict[str, object]] = {
     "plain": {}, "one": {"N": 1}, "two": {"N": 2}, "six": {"N": 6}, "seven": {"N": 7}, "fourteen": {"N": 14},
     "fifteen": {"N": 15, "dimer": 0.4}, "thirty": {"N": 30}, "thirty-one": {"N": 31},
@@ -66,8 +67,8 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
     a, b = fast.record(samples), slow.record(samples)
     assert np.abs(a.displacement - b.displacement).max() < ROUNDING
     assert np.abs(a.force - b.force).max() < ROUNDING
-    # the fast steps follow forces by a quartic through values 0.2 apart, across the kinks of neighbours' events too: off by
-    # some 0.07 h of a slope's change λ² v there, with λ = 0.22, h = 0.2 and λ v as large as the force: 7e-4
+    # the fast steps follow forces by a quartic through values 0.2 apart, across the kinks of neighbours' events too:
+    # off by some 0.07 h of a slope's change λ² v there, with λ = 0.22, h = 0.2 and λ v as large as the force: 7e-4
     assert fast.maxima == pytest.approx(slow.maxima, rel=1e-3, abs=ROUNDING)
     np.testing.assert_allclose(fast.closings, slow.closings, atol=1e-9)
     assert (fast.counts.array == slow.counts.array).all()

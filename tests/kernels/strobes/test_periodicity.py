@@ -63,7 +63,8 @@ def test_a_closed_curve_is_not_periodic() -> None:
 
 @pytest.mark.parametrize("modes", [1, 3, ORBITS - 2])
 def test_the_limit_of_a_linear_map_with_few_modes_is_found_at_once(modes: int) -> None:
-    """k differences remove k − 1 modes; what is left are roundings of the states over the smallest 1 − μ, some 1e-14."""
+    """k differences remove k − 1 modes; what is left are roundings of the states over the smallest 1 − μ, some 1e-14.
+    """
     states = strobes([0.98 - 0.1 * i for i in range(modes)], [1.0] * modes, ORBITS)
     limit = np.zeros((2, 3))
     reduced_rank(states, np.zeros((ORBITS, 6)), np.zeros((ORBITS, ORBITS)), limit)

@@ -1,4 +1,5 @@
-"""Random scenes for the largest forces: all laws, from hardly damped to overdamped, from quiet to loud, slow to fast."""
+"""Random scenes for the largest forces: all laws, from hardly damped to overdamped, from quiet to loud, slow to fast.
+"""
 
 from __future__ import annotations
 

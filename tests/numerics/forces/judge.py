@@ -35,7 +35,9 @@ _POINTS, _ACROSS, _DOWN = 8, 4, 2
 
 @dataclass(frozen=True)
 class Verdict:
-    """One scene: the relative errors of its three forces, those stated (NaN where none is), and how well the truth is known."""
+    """One scene: the relative errors of its three forces, those stated (NaN where none is), and how well the truth is
+    known.
+    """
 
     kind: str
     index: int
@@ -143,7 +145,10 @@ def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str
 
 
 def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0, longest: float = LONGEST) -> Iterator[Verdict | str]:
-    """Verdicts on draws `first` to `first + count − 1` of one kind; words where there is none. `longest` is that of a run."""
+    """Verdicts on draws `first` to `first + count − 1` of one kind; words where there is none.
+
+    `longest` is that of a run.
+    """
     for index in range(first, first + count):
         if kind == "run":
             yield judge_run(draw(seed, index, structures, longest))

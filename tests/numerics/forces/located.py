@@ -1,10 +1,10 @@
 """An independent computation of the motion and of its largest forces: the paper's equations in (u, v), every contact
 event landed on by a step of its own. It shares nothing with the kernels.
 
-Method    Dormand–Prince 8(5,3); what acts in a contact is held fixed in a step: nothing, the law, or nothing although it
-          touches (the law would pull, tension cut)
-Events    the overlap's zero, and that of K δ^{3/2} + g(δ) δ̇ where tension is cut, looked for on the step's polynomial at
-          nine places and at the turning points between them, so that a touch shorter than a step is seen; the step
+Method    Dormand–Prince 8(5,3); what acts in a contact is held fixed in a step: nothing, the law, or nothing although
+          it touches (the law would pull, tension cut)
+Events    the overlap's zero, and that of K δ^{3/2} + g(δ) δ̇ where tension is cut, looked for on the step's polynomial
+          at nine places and at the turning points between them, so that a touch shorter than a step is seen; the step
           is then repeated to end there
 Forces    of contact 0, of contact N, and of the latter's spring: the supremum over the recorded time, that is the
           largest of the values at steps' ends, of the maxima between them and of the right limits where a contact
@@ -132,7 +132,8 @@ def _sample(y, t, h, step, rows, row, period, samples):
 
 @jit
 def one_period(law, step, mode, y, watched, time, tolerance, most_steps, most, counts, rows, maxima, closings):
-    """One drive period from phase 0, y and mode left at its end; where `watched`, `rows` (samples + 1, N) and `maxima`."""
+    """One drive period from phase 0, y and mode left at its end; where `watched`, `rows` (samples + 1, N) and `maxima`.
+    """
     period, t, row, samples = 2.0 * np.pi / law.beta, 0.0, 1, len(rows) - 1
     kept, behind, at_once = np.empty(y.size), False, 0
     while t < period * (1.0 - 1e-15):
@@ -209,8 +210,10 @@ def _motion(law, step, mode, y, periods, record, tolerance, most_steps, most, co
 
 @dataclass(frozen=True, eq=False)
 class Located:
-    """A recorded motion in SI: the largest input, output and elastic output force [N], the closings in the recorded time
-    as (time s, contact, right limit of its force N), displacements (rows, N) [m], the state at the end, and the cost."""
+    """A recorded motion in SI: the largest input, output and elastic output force [N], the closings in the recorded
+    time as (time s, contact, right limit of its force N), displacements (rows, N) [m], the state at the end, and the
+    cost.
+    """
 
     maxima: np.ndarray
     closings: np.ndarray
@@ -253,9 +256,11 @@ class Scaled:
 
 def located(scene: Scene, periods: int, record: int, samples: int = 16, tolerance: float = 1e-12,
             state: State | None = None, most_steps: int = 5_000_000, gaps: np.ndarray | None = None) -> Located:
-    """The motion from rest (or initial velocities), or from `state` at phase 0: `periods` discarded, then `record` recorded.
+    """The motion from rest (or initial velocities), or from `state` at phase 0: `periods` discarded, then `record`
+    recorded.
 
-    `gaps` (N + 1,) [m] are between bodies that are at their places. Raises `TooLong`, and `FloatingPointError` where the numbers are not finite.
+    `gaps` (N + 1,) [m] are between bodies that are at their places. Raises `TooLong`, and `FloatingPointError` where
+    the numbers are not finite.
     """
     scaled = Scaled.of(scene)
     y, mode = scaled.start(scene, state), np.zeros(scene.N + 1, np.int64)
