@@ -8,6 +8,7 @@ from typing import Any
 from ..parts.header import Header
 from ..session.hooks import Actions
 from ..session.session import Session
+from ..session.starts import MOST_BEADS
 from .main_picture import MainPicture
 
 
@@ -57,9 +58,15 @@ class Playback:
         if not message.get("playing"):
             self._playing({"value": False})
             self._header.show_session(self._session)
-        gone = " and your uploaded data are gone" if message.get("uploaded") else ""
-        self._say("The connection was lost. Your settings are restored, but the chain has started again from rest"
-                  f"{gone}.")
+        scene, different = self._session.scene, []
+        if self._session.mode == "live":
+            different.append("the live run has begun anew")
+        elif scene.is_driven and scene.N > MOST_BEADS:  # the link has no room for the state in which it began
+            different.append("the motion begins at rest")
+        if message.get("uploaded"):
+            different.append("your uploaded data are gone")
+        but = f", but {' and '.join(different)}" if different else ""
+        self._say(f"The connection was lost. Your settings are restored{but}.")
 
     def _reset(self, _: dict[str, Any]) -> None:
         if self._pictures.live is not None:

@@ -116,7 +116,7 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
     expect(page.locator("select.start")).to_have_value("previous")
     expect(page.locator("select.speed")).to_have_value("5")
     expect(page.get_by_role("button", name="Play or pause")).to_contain_text("play")
-    expect(page.get_by_role("alert").filter(has_text="the chain has started again from rest and your uploaded data are gone.")).to_be_visible()
+    expect(page.get_by_role("alert").filter(has_text="Your settings are restored, but your uploaded data are gone.")).to_be_visible()
     expect(page.locator("#lost")).to_be_hidden()
     type_into(page, "f", "340")
     page.wait_for_function(BELONGS, arg=340)

@@ -27,6 +27,7 @@ from app.serve.meters import METERS
 from app.session.budget import RefusedPicture
 from app.session.hooks import all_actions
 from app.session.message_checks import listed, whole
+from app.session.starts import MOST_BEADS
 from granchain_core import BadInput, run, scene, settle
 from granchain_core.result import GIVEN_STATE
 
@@ -204,7 +205,19 @@ def test_a_reconnected_page_has_its_pause_back_and_the_rest_from_its_link(dashbo
     session = dashboard.session
     assert (session.speed, session.playing, session.energy_account) == (5.0, False, True)
     assert not dashboard.views.header.state["playing"]
-    assert session.sentence.endswith("has started again from rest and your uploaded data are gone.")
+    assert session.sentence.endswith("Your settings are restored, but your uploaded data are gone.")
+
+
+@pytest.mark.parametrize(("query", "different"), [
+    ("", ""), (f"&N={MOST_BEADS}&start=previous", ""),
+    (f"&N={MOST_BEADS + 1}&start=previous", ", but the motion begins at rest"),
+    (f"&N={MOST_BEADS + 1}&drive=rest&strike=1", ""), ("&mode=live", ", but the live run has begun anew")])
+def test_a_reconnected_page_says_what_its_link_does_not_bring_back(dashboard: Dashboard, query: str,
+                                                                   different: str) -> None:
+    """A settled motion begins where it began before, unless its chain is too long for a link."""
+    dashboard.received({"do": "go", "query": f"v=1&scene=sec2{query}"})
+    dashboard.received({"do": "reconnected", "playing": False})
+    assert dashboard.session.sentence == f"The connection was lost. Your settings are restored{different}."
 
 
 def test_another_theme_reaches_the_pages_and_their_figures(dashboard: Dashboard) -> None:
