@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from granchain_core import Scene
 from granchain_core.child_processes import end_with_parent, starting
 
+#: From the kernels of one method to those of a branch with the motions that it needs: single pieces and their sum in
+#: `COMPILE_SECONDS` of app/serve/compiler.py.
 WORDS = ("Compiling the kernels for this set of effects: 10 to 60 s, once per machine. "
          "`granchain warm` does it ahead of time.")
 

@@ -152,7 +152,7 @@ class MainPicture:
     def _pictures_of(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
         if scene != self._session.insisted:
             check_first_picture(scene)
-        self._await_live_kernels(scene, stop)
+        self._await_first_kernels(scene, stop)
         origin = start or self._session.previous_state(scene)
         if origin is not self._session.started_from:
             self._host.next_tick(self._begun_from, origin)
@@ -173,10 +173,13 @@ class MainPicture:
             self._session.started_from = origin
             self._host.address_changed()
 
-    def _await_live_kernels(self, scene: Scene, stop: TurnFlag) -> None:
-        """Wait until another process has compiled the live kernels: this one must not. Raises `Cancelled`."""
+    def _await_first_kernels(self, scene: Scene, stop: TurnFlag) -> None:
+        """Wait for the fixed-step kernels, which any first picture needs. Raises `Cancelled`.
+
+        Another process compiles them, and the other kernels of the picture and its curve.
+        """
         if not COMPILER.has(scene, FIXED_STEP_KERNELS):
-            words = compiling_words("the kernels for this set of effects", 10).capitalize()
+            words = compiling_words("the kernels for this set of effects", FIXED_STEP_KERNELS).capitalize()
             self._host.next_tick(self._note, f"{words}; the picture then appears by itself.")
             for piece in PICTURE_PIECES:
                 COMPILER.ask(scene, piece)
@@ -189,7 +192,7 @@ class MainPicture:
             with _refusing(scene):
                 if scene != self._session.insisted:
                     check_first_picture(scene)
-            self._await_live_kernels(scene, stop)
+            self._await_first_kernels(scene, stop)
             with live.flag.held(anew=True):
                 picture = live.advance(samples) if samples else live.step(self._session.speed)
             yield picture

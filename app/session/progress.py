@@ -6,10 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from granchain_core.pieces import FIXED_STEP_KERNELS
+
 from ..serve.compiler import compiling_words
 
-#: In the list of what is computed now: not asked for, nothing left to do, under way.
-OFF, READY, COMPUTING = "off", "ready", "computing"
+#: State of an entry in the list of what is computed now: nobody asked for it.
+OFF = "off"
+#: Nothing is left to do.
+READY = "ready"
+#: It is under way.
+COMPUTING = "computing"
 
 #: The state of a computation.
 Status = Literal["none", "waiting", "compiling", "settling", "computing", "measuring", "following", "searching",
@@ -27,12 +33,12 @@ UNDER_WAY: dict[Status, str] = {
 class StatusWords:
     """The words of one computation of a page.
 
-    compiles, seconds : what has to be compiled for it, and how long that takes on two cores [s].
+    compiles, piece : what has to be compiled for it, and the piece of that which takes longest.
     kept : what stays when the visitor stops it, empty if nothing does. instead : words in place of `UNDER_WAY`.
     """
 
     compiles: str = "the kernels"
-    seconds: int = 10
+    piece: str = FIXED_STEP_KERNELS
     kept: str = ""
     instead: Mapping[Status, str] = field(default_factory=dict)
 
@@ -45,7 +51,7 @@ class StatusWords:
 
     def _words(self, status: Status) -> str:
         if status == "compiling":
-            return f"{compiling_words(self.compiles, self.seconds)} …"
+            return f"{compiling_words(self.compiles, self.piece)} …"
         if status == "stopped":
             return f"stopped; {self.kept} are kept" if self.kept else "stopped"
         return self.instead.get(status, UNDER_WAY.get(status, ""))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from granchain_core import BadInput, Settled
+from granchain_core.pieces import ORBIT_KERNELS
 
 from ...serve.queues import LONG
 from ...session.hooks import Actions, Page
@@ -28,7 +29,7 @@ from .view import Analysis
 #: Parts of a computation between two reports of how far it is.
 _PROGRESS_STEPS = 50
 
-WORDS = StatusWords("the kernels of the analysis", 20)
+WORDS = StatusWords("the kernels of the analysis", ORBIT_KERNELS)
 
 
 class AnalysisPage(Page):

@@ -26,7 +26,7 @@ from ...session.session import slider_range, without_frequency
 from ...session.task import Job, Task
 from .view import LONGEST_BRANCH_PERIOD, Branches
 
-WORDS = StatusWords("the kernels for branches", 40, kept="the orbits found so far")
+WORDS = StatusWords("the kernels for branches", BRANCH_KERNELS, kept="the orbits found so far")
 NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no branch. Choose a period, and an orbit of "
                 "that period near it is followed.")
 

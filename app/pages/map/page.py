@@ -40,7 +40,8 @@ _RANDOM_STATES = 64
 _FEW_RANDOM_STATES = 12
 
 WORDS = StatusWords(kept="the cells computed so far")
-SEARCH_WORDS = StatusWords(instead={"searching": "searching from rest, from both sweeps and from random states …"})
+SEARCH_WORDS = StatusWords(
+    piece=ORBIT_KERNELS, instead={"searching": "searching from rest, from both sweeps and from random states …"})
 
 
 def page_grid(scene: Scene) -> Grid:

@@ -16,7 +16,7 @@ from ...session.task import Job, Task
 from .view import Observer
 from .work import ObserverRun, ObserverStep
 
-WORDS = StatusWords("the observer's kernels", 10)
+WORDS = StatusWords("the observer's kernels", OBSERVER_KERNELS)
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ _FIRST_FIGURE = "2"
 #: Parts of a computation between two reports of how far it is.
 _PROGRESS_STEPS = 50
 
-WORDS = StatusWords("the figure's kernels", 20)
+WORDS = StatusWords("the figure's kernels", ORBIT_KERNELS)
 
 
 class PaperPage(Page):

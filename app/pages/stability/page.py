@@ -37,7 +37,7 @@ from .work import PHASES, OrbitAnalysis, OrbitTarget, analyse, search, section_o
 
 _LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
-WORDS = StatusWords("the tangent flow", 20)
+WORDS = StatusWords("the tangent flow", ORBIT_KERNELS)
 
 
 class StabilityPage(Page):
