@@ -18,7 +18,12 @@ from granchain_core.errors import OverBudget, outcome_of, unknown_name
 from . import ending
 from .common import say, show_json
 
-DONE, BAD_INPUT, FAILED = 0, 2, 3
+#: Exit status of a command that did what it was asked for.
+DONE = 0
+#: Exit status of one whose input was refused (`BadInput`).
+BAD_INPUT = 2
+#: Exit status of one whose computation failed (`NumbersFailed`).
+FAILED = 3
 
 
 class _Parser(argparse.ArgumentParser):

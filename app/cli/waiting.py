@@ -11,8 +11,10 @@ import socket
 import threading
 from pathlib import Path
 
-#: Of one request: until its head must have come [s], and the most that is read of it [bytes].
-_PATIENCE, _HEAD = 2.0, 8192
+#: Longest wait for the head of a request [s].
+_LONGEST_WAIT = 2.0
+#: Most that is read of such a head [bytes].
+_LONGEST_HEAD = 8192
 #: The addresses at which a visitor on this machine reaches it.
 _HERE = {"127.0.0.1": socket.AF_INET, "localhost": socket.AF_INET, "::1": socket.AF_INET6}
 
@@ -58,9 +60,9 @@ class Waiting:
 
     def _reply(self, line: socket.socket) -> None:
         with line, contextlib.suppress(OSError):
-            line.settimeout(_PATIENCE)
+            line.settimeout(_LONGEST_WAIT)
             head = b""
-            while b"\r\n\r\n" not in head and len(head) < _HEAD and (more := line.recv(_HEAD)):
+            while b"\r\n\r\n" not in head and len(head) < _LONGEST_HEAD and (more := line.recv(_LONGEST_HEAD)):
                 head += more
             line.sendall(self._answer)
 

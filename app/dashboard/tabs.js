@@ -183,7 +183,7 @@ export function render({ model }) {
   });
   // While a knob moves, numbers come faster than one can read, and tables take time that the pictures need.
   let waiting = 0;
-  window.granchain.on("numbers-told", () => {
+  window.granchain.on("numbers-received", () => {
     if (waiting) return;
     waiting = setTimeout(() => {
       waiting = 0;

@@ -43,7 +43,7 @@ class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, Without
 
     def send(self, **message: Any) -> None:
         """Send a message to this part in the browser."""
-        if not self.told(message):
+        if not self.sent(message):
             self._send_msg(message)
 
     def apply_theme(self, theme: Theme) -> None:

@@ -134,7 +134,7 @@ class WithPlainChanges:
     """A Panel component that is shown once, whose messages and plain values go straight to its model.
 
     Panel takes each through Param's watchers, its own queues and a search of the documents in which a component is
-    shown. `told` and `changed` return False where that way has to be taken: before the page is connected, or with a
+    shown. `sent` and `changed` return False where that way has to be taken: before the page is connected, or with a
     release that keeps models or values elsewhere.
     """
 
@@ -142,7 +142,7 @@ class WithPlainChanges:
         models = list(getattr(self, "_models", {}).values())
         return models[0][0] if len(models) == 1 else None
 
-    def told(self, message: dict[str, Any]) -> bool:
+    def sent(self, message: dict[str, Any]) -> bool:
         """Send a message to the part in the browser, if that can be done here."""
         model = self._shown()
         return model is not None and ESMEvent is not None and tell(model, ESMEvent(model=model, data=message))

@@ -137,10 +137,10 @@ class ForceTrains:
         for series, force, factor, unit in zip((frames.input_force, frames.output_force), largest, self._factors,
                                                self._units[1:], strict=True):
             least = float(series.min())
-            told = least < -_SHOWN_PULL * force or least > _SHOWN_PRESSURE * force
+            has_least = least < -_SHOWN_PULL * force or least > _SHOWN_PRESSURE * force
             words.append([f"max {force / factor:#.{figures}g}".rstrip(".") + f"\N{NO-BREAK SPACE}{unit}",
                           f"min ≈ {least / factor:.{1 if least < 0.0 else 2}g}\N{NO-BREAK SPACE}{unit}".replace(
-                              "-", "\N{MINUS SIGN}") if told else ""])
+                              "-", "\N{MINUS SIGN}") if has_least else ""])
         return words
 
     def output_words(self, force: float, known: bool) -> str:

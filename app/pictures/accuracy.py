@@ -17,7 +17,8 @@ from .theme import AMBER, GREY, TEAL, VIOLET, Theme, apply_theme, frame, themed
 
 _PALETTE = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")
-_NAIVE_MARKS, _NAIVE_COLOUR = ("x", "cross", "asterisk"), GREY
+_NAIVE_MARKS = ("x", "cross", "asterisk")
+_NAIVE_COLOUR = GREY
 _DASHES: dict[str, str | list[int]] = {"granchain": "solid", "naive": [6, 4], "scipy": [2, 4]}
 #: Largest error drawn; larger ones, which tell no more, are drawn here.
 _LARGEST_ERROR = 10.0

@@ -57,8 +57,10 @@ from .strobe_diagram import strobe_diagram
 from .theme import THEMES, Theme
 from .transfer import transfer
 
-#: Width and height of a figure that is not told its size [px]: those of a notebook's cell.
-WIDTH, HEIGHT = 900, 420
+#: Width of a figure for which none is given [px]: that of a notebook's cell.
+WIDTH = 900
+#: Height of such a figure [px].
+HEIGHT = 420
 
 
 def _settled(found: Settled, theme: Theme) -> LayoutDOM:

@@ -30,8 +30,10 @@ _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 _ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
 _MARK = ("x", "y", "tooltip", "place")
-#: Sources of the resonance curve behind the branches: its points, and lines between neighbours of which both repeat.
-_CURVE, _CURVE_LINE = "curve", "curve line"
+#: Source of the points of the resonance curve behind the branches.
+_CURVE = "curve"
+#: Source of the lines between two neighbouring points of it that both repeat.
+_CURVE_LINE = "curve line"
 _TITLE = "largest elastic output force"
 #: Diameter of an orbit's target for the pointer [px]; orbits beside a special point have a smaller one.
 _TARGET = 13

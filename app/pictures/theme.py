@@ -14,7 +14,12 @@ TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 
 #: Colours of marks in several pictures, the same in every theme. Blue is the input force; it is also quasi-periodic
 #: motion, because no picture of regimes shows the input force.
-AMBER, VIOLET, TEAL, BROWN, GREY, BLUE = "#e0900a", "#9b6bf2", "#0fa3b8", "#7a3b00", "#8a8f98", "#3b82f6"
+AMBER = "#e0900a"
+VIOLET = "#9b6bf2"
+TEAL = "#0fa3b8"
+BROWN = "#7a3b00"
+GREY = "#8a8f98"
+BLUE = "#3b82f6"
 
 
 @dataclass(frozen=True)

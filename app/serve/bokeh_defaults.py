@@ -115,14 +115,14 @@ def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
             return dict(query(model, wanted, include_defaults=include_defaults, include_undefined=include_undefined))
         themed, own = _theme(model) or {}, model._unstable_default_values
         names = {*model._property_values, *own, *themed}
-        told = {}
+        changed_values = {}
         for name in model.properties(_with_props=True):
             descriptor = model.lookup(name) if name in names else None
             if descriptor is not None and wanted(descriptor):
                 value = descriptor.get_value(model)
                 if name in themed or not (name in own and isinstance(value, PropertyValueContainer)):
-                    told[name] = value
-        return told
+                    changed_values[name] = value
+        return changed_values
 
     return changed
 

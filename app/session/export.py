@@ -59,8 +59,8 @@ def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
 
     `claim` is the stated relative error of the output force; a cell is empty where a number is not known.
     """
-    told = [(start, point) for start, points in curves.items() for point in points]
-    evidence = evidence_columns([point.regime for _, point in told], "frequency")
+    all_points = [(start, point) for start, points in curves.items() for point in points]
+    evidence = evidence_columns([point.regime for _, point in all_points], "frequency")
     titles = ["start", "frequency_Hz", "force_N", "elastic_part", "at_the_driver", "claim", "regime", "period",
               *evidence]
 
@@ -71,7 +71,7 @@ def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
                 str(point.regime.period or ""), *("" if np.isnan(one) else repr(one) for one in known)]
 
     rows = zip(*(column.values.tolist() for column in evidence.values()), strict=True)
-    return _csv(titles, (row(start, point, known) for (start, point), known in zip(told, rows, strict=True)))
+    return _csv(titles, (row(start, point, known) for (start, point), known in zip(all_points, rows, strict=True)))
 
 
 def script(screen: Screen) -> str:

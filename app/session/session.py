@@ -20,7 +20,8 @@ from .share import EXTRAS, QUESTION, SPEEDS, START, VIEW, encode, pins_in
 from .starts import start_text
 from .switches import ACCOUNT_SWITCH, changes
 
-MODES, STARTS = EXTRAS["mode"], EXTRAS["start"]
+MODES = EXTRAS["mode"]
+STARTS = EXTRAS["start"]
 
 
 @dataclass

@@ -4,14 +4,14 @@ import { button, element, paragraph } from "../../parts/dom.js";
 
 const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey, and the differences are listed here.";
 
-let told = { pins: [], rows: [], full: false };
+let comparison = { pins: [], rows: [], full: false };
 
 // The server's message; the key over the force trains says that there are grey lines.
 export function compareMessage(message) {
   if (message.type !== "compare") return;
-  told = message;
-  document.getElementById("pinned").hidden = !told.pins.length;
-  window.granchain.emit("numbers-told");
+  comparison = message;
+  document.getElementById("pinned").hidden = !comparison.pins.length;
+  window.granchain.emit("numbers-received");
 }
 
 const cell = (textContent, tag = "td") => element(tag, { textContent });
@@ -51,7 +51,7 @@ export function compared(model) {
   const pin = button("pin this picture", () => model.send_msg({ do: "pin" }), { className: "primary" });
   const body = element("div", { className: "compared" });
   const show = () => {
-    const { pins, rows, full } = told;
+    const { pins, rows, full } = comparison;
     pin.disabled = full;
     if (!pins.length) return body.replaceChildren(paragraph(INVITES, "soft"));
     const titles = element("tr", {}, cell("now", "th"), ...pins.map((one, i) => head(model, one, i)));

@@ -12,14 +12,14 @@ const TABLES = {
 };
 const CURVE = "resonance curve"; // the name of its model
 
-let told = { summary: "" };
+let numbers = { summary: "" };
 let chosen = "forces";
 
 export function numbersMessage(message) {
   if (message.type !== "numbers") return;
-  told = message;
+  numbers = message;
   document.getElementById("summary").textContent = message.summary;
-  window.granchain.emit("numbers-told");
+  window.granchain.emit("numbers-received");
 }
 
 // The rows of the curve are those that its figure draws.
@@ -35,7 +35,7 @@ function curveRows() {
 
 function rowsOf(name) {
   const body = element("tbody");
-  for (const row of (name === "curve" ? curveRows() : told[name]) ?? [])
+  for (const row of (name === "curve" ? curveRows() : numbers[name]) ?? [])
     body.append(element("tr", {}, ...row.map((textContent) => element("td", { textContent }))));
   return body;
 }
@@ -49,7 +49,7 @@ export function numbersTab(model) {
   const place = element("div", { className: "numbers" });
   const show = () => {
     pins.show();
-    words.textContent = told.summary || "The first picture is being computed.";
+    words.textContent = numbers.summary || "The first picture is being computed.";
     const [title, titles] = TABLES[chosen];
     place.replaceChildren(table(titles, rowsOf(chosen), { ariaLabel: title }));
   };

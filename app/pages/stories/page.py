@@ -18,19 +18,19 @@ from ...session.task import Job, Task
 
 
 @cache
-def _told() -> tuple[tuple[Story, ...], tuple[str, ...]]:
+def _stories_read() -> tuple[tuple[Story, ...], tuple[str, ...]]:
     return stories()
 
 
 def story_places() -> tuple[str, ...]:
     """Every step of every story by the name it has in a link, "coexisting.2"."""
-    return tuple(f"{story.name}.{number}" for story in _told()[0] for number in range(1, len(story.steps) + 1))
+    return tuple(f"{story.name}.{number}" for story in _stories_read()[0] for number in range(1, len(story.steps) + 1))
 
 
 def story_step(place: str) -> StoryStep:
     """The step that has this name in a link."""
     name, _, number = place.partition(".")
-    return next(story for story in _told()[0] if story.name == name).steps[int(number) - 1]
+    return next(story for story in _stories_read()[0] if story.name == name).steps[int(number) - 1]
 
 
 class StoriesPage(Page):
@@ -40,10 +40,10 @@ class StoriesPage(Page):
         self._host = host
         self._view = view
         self._task = Task(host, ANALYSES, lambda *_: None, "The story", host.failed)
-        told, refused = _told()
-        self._stories = {one.name: one for one in told}
+        known, refused = _stories_read()
+        self._stories = {one.name: one for one in known}
         self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}
-        view.update_state(stories=[{"name": one.name, "title": one.title, "about": one.about} for one in told],
+        view.update_state(stories=[{"name": one.name, "title": one.title, "about": one.about} for one in known],
                           refused=list(refused))
         self.address_taken()
 
