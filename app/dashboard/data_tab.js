@@ -1,4 +1,4 @@
-// The data tab: the visitor's own curve, what its file leaves open, and how far the model is from it.
+// The data tab: the visitor's own curve, questions about its file, and the misfit of the model.
 
 import { button, download, element, paragraph, table } from "../parts/dom.js";
 
@@ -9,7 +9,7 @@ const FORM =
 const SENSITIVITY = "V, with its sensor's sensitivity";
 const CHUNK = 0x8000; // bytes that are turned into text at once
 
-// Every byte as it is: a browser's text() would take the file for UTF-8.
+// The bytes unchanged: text() of a browser would decode the file as UTF-8.
 async function base64Of(file) {
   const bytes = new Uint8Array(await file.arrayBuffer());
   let text = "";
@@ -23,7 +23,7 @@ async function sendFile(model, [chosen]) {
   else model.send_msg({ do: "csv", name: chosen.name, content: await base64Of(chosen) });
 }
 
-// The server's sample file becomes a download.
+// Has the browser save the server's sample file.
 export function saveSample({ type, name, text }) {
   if (type !== "sample") return;
   download(name, new Blob([text], { type: "text/csv" }));
@@ -32,7 +32,7 @@ export function saveSample({ type, name, text }) {
 const options = (values, chosen) =>
   values.map(([value, text]) => element("option", { value, textContent: text, selected: value === chosen }));
 
-// What the visitor has chosen so far, kept while the tab is drawn again; another question starts anew.
+// The visitor's choices for the question `asked`, kept while the tab is drawn again.
 let asked = "";
 let answers = {};
 
@@ -48,7 +48,7 @@ function answersTo(question) {
   return answers;
 }
 
-// The two choices over a column; the units are those of the quantity, and volts need a number.
+// The two choices over a column, quantity and unit. The units depend on the quantity; volts need a sensitivity, too.
 function columnChoice(question, place, chosen) {
   const [number, title] = question.columns[place];
   const quantity = element("select", { ariaLabel: `what column ${number} holds` });
@@ -90,7 +90,7 @@ function select(ariaLabel, values, kept, name) {
   return made;
 }
 
-// What the file leaves open: its first rows, a quantity and a unit for every column, and a button that reads it.
+// The questions about a file: its first rows, quantity and unit of every column, and a button that has it read.
 function questionForm(model, question) {
   const kept = answersTo(question);
   const about = (what) => question.about.includes(what);

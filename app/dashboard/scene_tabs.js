@@ -1,4 +1,4 @@
-// Two tabs that no page has: what to look at, and what the marks of the curve mean.
+// Two tabs without a page: what to look at, and what the marks of the curve mean.
 
 import { element, paragraph } from "../parts/dom.js";
 

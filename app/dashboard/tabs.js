@@ -1,4 +1,4 @@
-// The tabs below the curve: what to look at, what the marks mean, a tab for every page, the visitor's own data.
+// The tabs below the curve: what to look at, what the marks mean, one for every page, and the visitor's own data.
 
 import { accuracyTab } from "../pages/accuracy/accuracy_tab.js";
 import { branchesTab } from "../pages/branches/branches_tab.js";
@@ -17,8 +17,8 @@ import { lookAtTab, regimesTab } from "./scene_tabs.js";
 import { explainTerms } from "./terms.js";
 import { watchVisibility } from "./visibility.js";
 
-// The content of each tab. `show`, where there is one, draws it again when its page publishes something. A tab that
-// `updatesItself` is not made anew when the state changes, which would take away what the pointer is on.
+// Functions that make the tabs. If a function returns `show`, that draws the tab again when its page publishes something.
+// A tab that `updatesItself` is not made anew when the state changes, so what is under the pointer stays.
 const TABS = {
   stories: storiesTab,
   "look at": lookAtTab,
@@ -34,7 +34,7 @@ const TABS = {
   data: dataTab,
 };
 
-// The tab of a page that has no function in TABS: its sentence, or what it is, and a button that opens it.
+// The tab of a page without a function in TABS: its sentence or placeholder, and a button that opens it.
 function plainTab(_, { name, placeholder }) {
   const line = paragraph();
   const show = () => {
@@ -46,10 +46,10 @@ function plainTab(_, { name, placeholder }) {
 
 const READABLE = 250; // ms between two changes of the numbers
 
-// The button that gives the tabs the place of the curve, and back.
+// The button that gives the tabs the place of the curve, or gives it back.
 class LargerButton {
   constructor() {
-    this.wanted = false; // by the visitor
+    this.wanted = false; // whether the visitor asked for it
     const change = () => {
       this.wanted = !this.tall;
       this.set(this.wanted);
@@ -71,13 +71,13 @@ class Tabs {
     this.model = model;
     const rows = model.state.tabs;
     this.rows = new Map(rows.map((row) => [row.name, row]));
-    this.first = rows[0].name; // the tab that is open when nothing else is said
+    this.first = rows[0].name; // the tab that is open by default
     this.chosen = this.first;
     this.redraw = () => {};
     const groups = [...model.state.groups, ""].map((group) => this.group(group, rows));
     this.tabs = groups.flatMap((group) => [...group.querySelectorAll("[role=tab]")]);
     this.list = element("div", { role: "tablist", ariaLabel: "what stands below" }, ...groups);
-    // The larger button floats, so it comes first: the second line of tabs has the whole width.
+    // The larger button comes first because it floats; so a second line of tabs has the whole width.
     this.larger = new LargerButton();
     const top = element("div", { className: "tabs" }, this.larger.el, this.list);
     this.list.addEventListener("keydown", (event) => this.moveByKey(event));
@@ -91,7 +91,7 @@ class Tabs {
     this.watchHeight();
   }
 
-  // A button below the text says that it goes on: many systems hide their scroll bars.
+  // A button below the text shows that there is more, since many systems hide scroll bars.
   watchHeight() {
     const { body, below } = this;
     const look = () => {
@@ -102,7 +102,7 @@ class Tabs {
     new MutationObserver(look).observe(body, { childList: true, subtree: true, attributes: true, characterData: true });
   }
 
-  // The tabs of a group, with its name before them.
+  // The tabs of a group, after its name.
   group(name, rows) {
     const tabs = rows.filter((row) => row.group === name).map((row) => this.tab(row));
     const label = name ? [element("small", { textContent: name })] : [];
@@ -126,7 +126,7 @@ class Tabs {
     window.granchain.emit("tab", name);
   }
 
-  // The Tab key stops once; arrows, Home and End go from tab to tab.
+  // The Tab key stops at the open tab only; arrow keys, Home and End go from tab to tab.
   moveByKey(event) {
     const { length } = this.tabs;
     const here = this.tabs.indexOf(event.target);
@@ -181,7 +181,7 @@ export function render({ model }) {
     window.granchain.closePage();
     tabs.choose("numbers");
   });
-  // While a knob moves, numbers come faster than one can read, and tables take time that the pictures need.
+  // While a knob moves, numbers come faster than one can read, and drawing tables takes time from the pictures.
   let waiting = 0;
   window.granchain.on("numbers-received", () => {
     if (waiting) return;
@@ -190,7 +190,7 @@ export function render({ model }) {
       if (tabs.chosen === "numbers") tabs.redraw();
     }, READABLE);
   });
-  // A step back or forward.
+  // After a step back or forward.
   window.granchain.on("place", ({ tab: name, page: over }) => {
     tabs.choose(tabs.rows.has(name) ? name : tabs.first);
     window.granchain.openPage(over || null);

@@ -1,5 +1,5 @@
-// Terms that explain themselves: the first of each in a piece of text gets its definition, which stands in
-// docs/glossary.md, on hover, on focus and on a touch.
+// Terms that explain themselves: hover, focus or touch shows a term's definition from docs/glossary.md. In each text
+// only the first use of a term does so.
 
 import { hideMeaning, showMeaning } from "../parts/bubble.js";
 import { element } from "../parts/dom.js";
@@ -11,7 +11,7 @@ function termOf(words, name, meaning) {
   term.dataset.meaning = `${name}: ${meaning}`;
   const show = () => showMeaning(term, term.dataset.meaning);
   for (const begin of ["focus", "click"]) term.addEventListener(begin, show);
-  // A pointer that rests while the page moves under it asks for nothing.
+  // A pointer that is still while the page moves under it shows nothing.
   term.addEventListener("pointermove", ({ movementX, movementY }) => {
     if (movementX || movementY) show();
   });
@@ -20,8 +20,8 @@ function termOf(words, name, meaning) {
 }
 
 let pattern = null;
-let meanings = null; // by the term in small letters
-// The terms as one pattern, with their plurals; the longest come first.
+let meanings = null; // definitions by the term in lower case
+// One pattern for all terms and their plurals, the longest first.
 function terms() {
   if (!pattern) {
     const { terms } = window.granchain;

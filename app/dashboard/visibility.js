@@ -1,24 +1,24 @@
-// What of the page somebody looks at: most of it is computed, and moves, only then.
+// Which pages somebody looks at, since most of them compute and move only then.
 
 import { onScreen, PHONE } from "../parts/dom.js";
 
-const CURVE_NAME = "curve"; // its figure, beside the names of the pages
+const CURVE_NAME = "curve"; // stands for the curve among the names of the pages
 
-// Calls `tell(name, value)` when somebody begins or ceases to look at a page or at the curve: at the page's tab, or at the
-// page itself over the pictures, which hides tabs and curve. A page that works hidden is looked at as long as it is open,
-// even where its window is not on the screen or its tab was scrolled away. On a phone, and in a story, the curve counts as
-// looked at, because the status line takes names from it. `granchain.visible` has the same for scripts,
-// with the event of that name.
+// Calls `tell(name, value)` when somebody begins or ceases to look at a page or at the curve. One looks at a page in
+// its tab, or over the pictures, where it hides tabs and curve. A page that works hidden counts as looked at while it is
+// open, even if its window is hidden or its tab is scrolled off the screen. The curve counts as looked at on a phone and
+// in a story, because the status line takes names from it. Scripts find the same names in `granchain.visible`; the event
+// "visible" announces a change.
 export function watchVisibility(pages, tell) {
   const page = window.granchain;
-  const shown = { tabs: true, curve: true }; // what is on the screen
+  const shown = { tabs: true, curve: true }; // which of these elements are on the screen
   let tab = "";
-  let telling = false; // a story names the place on the curve, on the screen or not
+  let telling = false; // whether a story is shown
   page.visible = new Set([CURVE_NAME]); // what the server starts with
 
   const isOpen = (name) => (page.overlay ?? tab) === name;
   const isSeen = (name) => !document.hidden && (page.overlay === name || shown.tabs);
-  // A page that has published nothing is not built yet, and would miss what it was sent.
+  // A page that has published nothing is not built yet; it would miss messages sent to it.
   const isBuilt = (name) => !pages[name].overlay || page.pages.has(name);
   const isVisible = (name) => isOpen(name) && isBuilt(name) && (pages[name].works_hidden || isSeen(name));
 

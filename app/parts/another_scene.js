@@ -1,4 +1,4 @@
-// The pictures of another scene than the chosen one are grey until its own come; its kernels may have to be compiled.
+// After another scene is chosen, the old pictures are grey until the new ones come: kernels may have to be compiled.
 export function markAnotherScene(model) {
   const mark = () => {
     const { shown } = window.granchain;

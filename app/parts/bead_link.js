@@ -1,5 +1,5 @@
-// Which bead is which column: from the bead that is pointed at, or else from the chosen one, a line goes to its column
-// of the map, which has a frame. The chain is wider than the map, so a bead does not stand over its column.
+// A line joins the bead under the pointer, or else the chosen bead, to its column of the map, which has a frame. The
+// chain is wider than the map, so a bead is not above its column.
 
 import { draw } from "./plot.js";
 
@@ -21,7 +21,7 @@ export class BeadLink {
     return this.drawing.canvas.getBoundingClientRect();
   }
 
-  // The pointer is on a bead or in its column; 0 for neither.
+  // The pointer has come to a bead or its column; 0 for neither.
   point(bead) {
     const known = bead >= 1 && bead <= this.drawing.beads ? bead : 0;
     if (known === this.drawing.pointed) return;

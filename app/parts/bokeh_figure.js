@@ -1,4 +1,4 @@
-// A Bokeh figure of its own in an element: made on the server by a function of app/pictures, filled here.
+// A Bokeh figure in an element. A function of app/pictures makes it on the server; here it gets its data.
 
 import { documentOf, drawDocument, forgetDocument, frameOf } from "./bokeh.js";
 
@@ -9,7 +9,7 @@ export class BokehFigure {
     this.ready = Promise.resolve();
   }
 
-  // Another figure in place of the present one, as when the theme changes; `filled` gives it its data again.
+  // Puts another figure in place of the present one, as for another theme; `filled` gives it the data.
   load(item, words) {
     if (!item || item === this.item) return;
     this.item = item;
@@ -17,7 +17,7 @@ export class BokehFigure {
     this.host.setAttribute("aria-label", words);
     this.enqueue(async () => {
       this.clear();
-      // Filled before it is drawn: an axis without data has no range.
+      // The data come before it is drawn: an axis without data has no range.
       this.document = documentOf(item);
       this.filled(this);
       this.views = await drawDocument(this.document, this.host);
@@ -29,7 +29,7 @@ export class BokehFigure {
     this.enqueue(() => this.clear());
   }
 
-  // One after the other; what fails is reported and does not keep the next from being drawn.
+  // Figures are drawn one after the other. A failure is reported; the next figure is drawn all the same.
   enqueue(change) {
     this.ready = this.ready.then(change).catch((problem) => console.error(problem));
   }
@@ -45,7 +45,7 @@ export class BokehFigure {
     return this.document?.get_model_by_name(name);
   }
 
-  // Properties of the model of this name, as the data of a source.
+  // Sets properties of the model of this name, such as the data of a source.
   set(name, properties) {
     this.model(name)?.setv(properties);
   }
@@ -63,8 +63,8 @@ export class BokehFigure {
     source.change.emit();
   }
 
-  // On a tap, calls choose(source, row). `pick` selects among the rows hit, by default the nearest; of several sources
-  // the first in `names` wins.
+  // On a tap, calls choose(source, row). `pick` selects one of the rows hit, by default the nearest. If rows of several
+  // sources are hit, the source that comes first in `names` wins.
   taps(names, choose, pick = (rows, data, at) => nearest(rows, data, at, frameOf(this.views.roots[0]))) {
     const hit = new Map();
     const chosen = () => {
@@ -83,7 +83,7 @@ export class BokehFigure {
   }
 }
 
-// Of some rows the one whose x and y are nearest to a place on the screen.
+// The row, of those given, that is nearest to a place on the screen.
 function nearest(rows, { x, y }, { sx, sy }, { x_scale, y_scale }) {
   const far = (row) => Math.hypot(x_scale.compute(x[row]) - sx, y_scale.compute(y[row]) - sy);
   return rows.reduce((best, row) => (far(row) < far(best) ? row : best));
@@ -102,7 +102,7 @@ function join({ x, y }, lines) {
   }
 }
 
-// The data of a figure that grows: kept, so that another figure can be filled with it, and added to those that are there.
+// The data of a figure that grows. They are kept, since a figure in another theme must get all of them again.
 export class StreamedData {
   constructor() {
     this.clear();
@@ -131,13 +131,13 @@ export class StreamedData {
     for (const figure of figures) {
       fillModels(figure, models);
       for (const [name, columns] of Object.entries(rows)) figure.stream(name, columns);
-      // What is streamed leaves the colours of earlier rows as they were: another scale is for all.
+      // Streaming does not recolour earlier rows, so after a change of scale all rows are set anew.
       if (Object.keys(models).length) for (const name of Object.keys(rows)) figure.model(name)?.change.emit();
       for (const [name, added] of Object.entries(lines)) figure.extend(name, added);
     }
   }
 
-  // Everything at once, into a figure that is new or shows something else.
+  // Sets everything at once, in a figure that is new or shows something else.
   fill(figure) {
     fillModels(figure, this.models);
     for (const [name, data] of Object.entries({ ...this.rows, ...this.lines }))

@@ -1,12 +1,12 @@
-// The bubble that says what something on the page means, beside it: a term, an entry of the status line. It goes with
-// the Escape key, when what it stands beside is scrolled away, and with a click elsewhere.
+// A bubble that says what a term or an entry of the status line means, beside it. The Escape key and a click elsewhere
+// close it, and scrolling that moves what it explains.
 
 import { element } from "./dom.js";
 
 const bubble = element("div", { id: "term", className: "bubble", role: "tooltip", hidden: true });
 document.body.append(bubble);
 
-let explained = null; // the element beside which it stands, and where that was
+let explained = null; // the explained element, and where it was
 let place = null;
 
 export const hideMeaning = () => {
@@ -18,7 +18,7 @@ function hideIfMoved() {
   if (now && (now.top !== place.top || now.left !== place.left)) hideMeaning();
 }
 
-// Shows `words` below `anchor`, above it where there is more room; `controls` stand under the words.
+// Shows `words` below `anchor`, or above it if there is more room, with `controls` under the words.
 export function showMeaning(anchor, words, ...controls) {
   bubble.replaceChildren(words, ...controls);
   bubble.hidden = false;
@@ -30,8 +30,8 @@ export function showMeaning(anchor, words, ...controls) {
   bubble.style.top = `${bottom + tall + 12 < innerHeight ? bottom + 6 : Math.max(8, top - tall - 6)}px`;
 }
 
-// Has a click on `anchor`, or the Enter key, show what it means: that is what a touch screen has in place of a pointer
-// that rests. `meaning` is called for the words and the controls.
+// A click on `anchor`, or the Enter key, shows what it means; on a touch screen no pointer can rest on it. `meaning`
+// returns the words and the controls.
 export function explains(anchor, meaning) {
   const show = () => showMeaning(anchor, ...meaning());
   anchor.addEventListener("click", show);
@@ -42,5 +42,5 @@ export function explains(anchor, meaning) {
 
 document.addEventListener("keydown", ({ key }) => key === "Escape" && hideMeaning());
 document.addEventListener("scroll", hideIfMoved, true);
-// Before the click itself, which may show another meaning.
+// On pointerdown, so before the click, which may show another meaning.
 document.addEventListener("pointerdown", (event) => event.composedPath().includes(bubble) || hideMeaning(), true);

@@ -1,4 +1,4 @@
-// The chain on the page, over the map whose columns are its beads; its clock is the page's.
+// The chain of the main page, above the map whose columns are its beads. Its clock is that of the whole page.
 
 import { BeadLink } from "./bead_link.js";
 import { ChainDrawing } from "./chain_drawing.js";
@@ -12,14 +12,14 @@ import { colourOf, Steel } from "./steel.js";
 const PEAK =
   "The largest force in this picture, and the smallest where the contact pulls or is always pressed: below zero the dashpot of an opening contact pulls. How far the axis goes is said below the map: “same scale” or “fit”.";
 
-// Calls `act` after the present animation frame: messages posted during a frame are delivered after it.
+// Calls `act` after the present animation frame, by a message: those posted during a frame are delivered after it.
 function afterFrame(act) {
   const channel = new MessageChannel();
   channel.port1.onmessage = act;
   channel.port2.postMessage(null);
 }
 
-const FINE = 3; // pixels of a bead in a file for one on the screen
+const FINE = 3; // pixels of a bead in a file for each pixel on the screen
 
 // Room for the driver and for the wall beside the beads, in pixels.
 const DRIVER = 62,
@@ -36,17 +36,17 @@ class Chain {
     this.crosshair = new Crosshair(this.clock, this.cursor, (bead) => this.link.point(bead));
     this.sound = new Sound();
     this.dirty = true;
-    this.asked = 0; // the animation frame that was asked for
-    this.narrow = null; // as the server was last told; null before it was
+    this.asked = 0; // number of the requested animation frame
+    this.narrow = null; // the value last sent to the server; null before the first
   }
 
-  // Has the next animation frame draw the chain anew.
+  // Draws the chain anew in the next animation frame.
   mark() {
     this.dirty = true;
     this.wake();
   }
 
-  // Asks for an animation frame. Each asks for the next while the chain moves; one that stands still costs nothing.
+  // Requests an animation frame. Each requests the next while the chain moves, so a chain at rest costs nothing.
   wake() {
     this.asked ||= requestAnimationFrame((now) => {
       this.asked = 0;
@@ -96,7 +96,7 @@ class Chain {
       place.textContent = energy_labels[i];
     });
     for (const one of this.scales) one.ariaPressed = String((one.value === "fit") === fit);
-    // More words where there is room, of the scale that is chosen.
+    // Longer words where there is room, only for the chosen scale.
     const more = (words, rest) => [words, element("span", { className: "roomy", textContent: rest })];
     this.leftTitle.textContent = driven ? "driver" : "left end";
     this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
@@ -108,11 +108,11 @@ class Chain {
   }
 
   receive(message) {
-    window.granchain.answerReceived(); // to a ping, too: “pong” says nothing else
+    window.granchain.answerReceived(); // any message answers a ping; “pong” says nothing more
     if (message.type === "frames") this.load(message);
   }
 
-  // A click on a bead chooses it; in the map, a click on its column.
+  // A click on a bead, or on its column of the map, chooses the bead.
   setUpBeads() {
     this.column = document.getElementById("column");
     this.canvas.title = "Click a bead to see its motion, its contacts and its spectrum";
@@ -167,7 +167,7 @@ class Chain {
     window.granchain.emit("painted", { number, live, lag: Date.now() - 1000 * sent });
   }
 
-  // The chain as it is now, on a context that writes a file.
+  // Draws the chain as it is now into a context that writes a file.
   redraw(context) {
     const { frames, row } = this.clock;
     const { context: own, ratio, steel } = this.drawing;
@@ -186,7 +186,7 @@ class Chain {
     this.clock.moveTo(((row / frames.samples + 1) % periods) / periods);
   }
 
-  // In an animation frame.
+  // Draws one animation frame.
   tick(now) {
     const page = window.granchain;
     this.clock.tick(now, page.lost);

@@ -4,9 +4,9 @@ import { extremes, sampler } from "./chain_series.js";
 import { prefixed, stepBelow } from "./plot.js";
 import { Steel } from "./steel.js";
 
-const NUMBERED = 13; // px: a smaller bead has no number
+const NUMBERED = 13; // px; smaller beads have no number
 
-// How the largest overlap and the largest displacement are drawn at most, in distances of two beads.
+// The largest overlap and the largest displacement as drawn, in distances of two beads.
 const OVERLAP = 0.3,
   TRAVEL = 0.8;
 
@@ -16,8 +16,8 @@ export class ChainDrawing {
     this.context = canvas.getContext("2d");
     this.steel = new Steel(palette);
     this.chosen = 0; // the bead that is marked, 0 for none
-    this.pointed = 0; // the one that the pointer is on, or in whose column
-    this.hasLeftBody = true; // a driver or a plate, which cuts the first bead where they meet
+    this.pointed = 0; // the bead under the pointer, or whose column is under it; 0 for none
+    this.hasLeftBody = true; // whether there is a driver or plate, which cuts the first bead where they meet
   }
 
   readTheme() {
@@ -56,7 +56,7 @@ export class ChainDrawing {
     this.arrange();
   }
 
-  // Where the beads rest, in distances of two of the largest beads from the driver's face; beads at rest touch.
+  // The places of rest from the driver's face, in distances of two of the largest beads. Beads at rest touch.
   rest(radii) {
     this.largest = Math.max(...radii);
     this.homes = [-0.5];
@@ -70,7 +70,7 @@ export class ChainDrawing {
     this.arrange();
   }
 
-  // One distance of two beads on the screen: as large as the room allows.
+  // The distance of two beads on the screen, as large as the room allows.
   arrange() {
     if (!this.long || !this.room) return;
     this.span = Math.min(this.room, this.long * this.widest());
@@ -139,7 +139,7 @@ export class ChainDrawing {
     return 0.58 * this.height;
   }
 
-  // A closed contact: a bar where the bodies are flattened, as tall as the force is strong. An open one is a gap.
+  // A closed contact is a bar where the bodies are flattened; its height shows the force. An open contact is a gap.
   contact(c, force, frames, place, radius, y) {
     const { context: g, ink } = this;
     const share = Math.min(1, Math.abs(force) / this.force);
@@ -159,7 +159,7 @@ export class ChainDrawing {
     g.lineCap = "butt";
   }
 
-  // A bead, cut where it presses on its neighbour, half of the overlap each.
+  // A bead. Where it presses on a neighbour, each of the two is cut by half of the overlap.
   bead(i, place, y, sizes, share) {
     const { context: g, ink } = this;
     const x = place(i),
@@ -208,7 +208,7 @@ export class ChainDrawing {
     const tall = 1.5 * radius,
       deep = Math.min(26, 0.8 * pitch + 6);
     const driver = place(0) + radius;
-    g.fillStyle = this.driven ? ink.drive : ink.steel; // a plate at rest has no rod that pushes it
+    g.fillStyle = this.driven ? ink.drive : ink.steel; // only a driver has a rod; a plate is at rest
     g.fillRect(driver - deep, y - tall, deep, 2 * tall);
     if (this.driven)
       g.fillRect(driver - deep - Math.min(60, driver), y - 0.18 * radius, Math.min(60, driver), 0.36 * radius);
@@ -263,7 +263,7 @@ export class ChainDrawing {
     const [metres, name] = tape((0.22 * this.width) / (this.pitch * this.exaggeration));
     const long = metres * this.pitch * this.exaggeration;
     const factor = this.factor.toLocaleString("en").replaceAll(",", "\u202f");
-    // The bar is a real displacement, drawn as much larger as those of the beads; with little room it has fewer words.
+    // The bar is magnified as the displacements of the beads are. With little room it has fewer words.
     const forms = [
       [`displacements drawn × ${factor}`, `${name} of displacement`],
       [`drawn × ${factor}`, `${name} of displacement`],
@@ -289,7 +289,7 @@ export class ChainDrawing {
   }
 }
 
-// The largest of 1, 2, 5, 10, … metres that is not above `most`, with its name.
+// The largest length that is 1, 2 or 5 times a power of ten [m] and not above `most`, with its name.
 function tape(most) {
   const metres = stepBelow(most);
   const [unit, letter] = prefixed(metres);

@@ -1,6 +1,6 @@
-// The numbers of a chain's motion: out of a message, at an instant, and the largest of all.
+// The numbers of a chain's motion: read from a message, at an instant, and the largest.
 
-// The four series of a chain in a message's one array, from value `start` on, and where they end.
+// The four series of a chain, which lie in a message's one array from index `start` on, and the index after them.
 export function unpack({ rows, beads, values }, start = 0) {
   const series = {};
   let end = start;

@@ -22,7 +22,7 @@ export class Clock {
     this.frames = frames;
   }
 
-  // From now on: the time for which it stood still does not count.
+  // Starts from now: the time while it stood still does not count.
   play(playing) {
     this.playing = playing;
     this.last = performance.now();
@@ -48,7 +48,7 @@ export class Clock {
   }
 }
 
-const STILL = 4; // px that a pointer may move in a click
+const STILL = 4; // px; a pointer that moves farther drags and does not click
 
 // The line across all time pictures; dragging it, or any of the pictures, stops time.
 export class Cursor {
@@ -117,7 +117,7 @@ export class Cursor {
     });
   }
 
-  // Whether the titles of the axes under the force trains, each centred under its frame, have too little room.
+  // Whether an axis title under the force trains is wider than its room.
   narrow({ left, right }) {
     const pen = document.createElement("canvas").getContext("2d");
     pen.font = `bold ${getComputedStyle(document.documentElement).getPropertyValue("--small").trim()} helvetica`;
@@ -146,7 +146,7 @@ export class Cursor {
     move(event);
   }
 
-  // A press in the map that has not moved chooses the column under it.
+  // A click in the map chooses the bead of the column under it.
   clicked(from, to, element) {
     if (element !== this.map || to.type !== "pointerup") return;
     if (Math.hypot(to.clientX - from.clientX, to.clientY - from.clientY) > STILL) return;

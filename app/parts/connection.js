@@ -1,5 +1,5 @@
-// Watches the connection. While the server does not answer, the pictures may not belong to the knobs: the pictures are
-// greyed, the knobs disabled, and a banner says so. When the server is back, the page reloads from its own share link.
+// Watches the connection. While the server does not answer, pictures and knobs may not belong together. So the pictures
+// are grey, the knobs are disabled, and a banner says so. Once the server is back, the page reloads from its link.
 (() => {
   const page = window.granchain;
   // All in milliseconds; PING_EVERY + PING_TIMEOUT stays below 2 s.
@@ -13,13 +13,13 @@
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
-  // What an address says besides tab, page and look (the theme), which only the browser knows.
+  // The part of an address that the server knows: all but tab, page and look (the theme).
   const linkOf = (search) => {
     const query = new URLSearchParams(search);
     for (const name of ["tab", "page", "look"]) query.delete(name);
     return query.toString();
   };
-  // The last share link from the server, and the requests since then that it has not answered.
+  // The last share link from the server. `unanswered` has the requests that are not in it yet.
   let link = linkOf(location.search);
   let known = false; // whether the server has sent one
   const unanswered = new Map();
@@ -47,7 +47,7 @@
   const address = () => {
     const url = new URL(location.href);
     const query = new URLSearchParams(link);
-    // Another scene has knobs of its own.
+    // Knobs of the scene before do not belong to the new one.
     if (unanswered.has("scene"))
       for (const name of [...query.keys()]) if (!["v", ...viewFields].includes(name)) query.delete(name);
     for (const [name, value] of unanswered) {
@@ -67,7 +67,7 @@
     for (const name of [...query.keys()]) if (!["v", "scene", ...page.knobNames].includes(name)) query.delete(name);
     return query.toString();
   };
-  // Whether the picture on the screen is that of the knobs, and no better one follows; a live run has none.
+  // Whether the picture on the screen is the final one of these knobs. A live run has no final picture.
   const isSettled = () => {
     const { knobs, final } = page.shown ?? {};
     return known && !unanswered.size && Boolean(final) && new URLSearchParams(knobs).toString() === knobsAsked();
@@ -82,8 +82,8 @@
     Object.assign(place, where);
     follow(acted);
   };
-  // The address is always that of what is on the screen, so that reload, back and a bookmark bring it back. What a
-  // visitor does, and then rests, is a step of the browser's own history, so that back is undo and forward is redo.
+  // The address always describes what is on the screen, so reload, back and a bookmark restore it. A change by the
+  // visitor that is followed by a rest is a step of the browser's history, so back is undo and forward is redo.
   const FOLLOW_AFTER = 400; // ms; a browser limits how many changes it takes a second
   let following = 0,
     stepping = false; // whether the visitor has done something since the last step
@@ -100,7 +100,7 @@
   };
   page.on("theme", () => follow(known));
 
-  // Where in the history the page is. `newest` is the last step that one can go forward to.
+  // The page's place in the history: `at` is the present step, `newest` the last one that “forward” can reach.
   const NEWEST = "granchain-newest";
   const remember = (value) => {
     try {
@@ -112,7 +112,7 @@
   const steps = {
     at: 0,
     newest: 0,
-    returning: false, // while the server takes over an address of the history
+    returning: false, // from a step back or forward until the server has applied its address
     begin(at, newest) {
       Object.assign(this, { at, newest: Math.max(at, newest) });
       this.tell();
@@ -146,7 +146,7 @@
     page.emit("place", place);
     link = linkOf(location.search);
   });
-  // The server shows what the address says.
+  // The server has applied an address of the history.
   const addressApplied = (query) => {
     linkRefined(query);
     steps.returning = false;
@@ -168,12 +168,11 @@
   let ping = null,
     closed = false,
     leaving = false;
-  // Milliseconds since the last unanswered ping (null if all are answered), since the last answer, since the last
-  // attempt to reach a lost server, and since the lost server answered HTTP again (null if it does not).
-  let sincePing = null,
-    sinceAnswer = 0,
-    sinceTry = RETRY_EVERY,
-    sinceReached = null;
+  // Times in milliseconds.
+  let sincePing = null, // since the ping that is unanswered; null if there is none
+    sinceAnswer = 0, // since the last answer
+    sinceTry = RETRY_EVERY, // since the last attempt to reach a lost server
+    sinceReached = null; // since a lost server answered HTTP again; null while it does not
 
   // The last pictures as one image, shown in grey until the rebuilt page has its own.
   const canvases = (node) =>
@@ -213,7 +212,7 @@
     }
   };
   const tryAgain = async () => {
-    sinceTry = -Infinity; // not while one is under way
+    sinceTry = -Infinity; // no second attempt while this one is under way
     const alive = await reach();
     sinceTry = 0;
     if (!alive) sinceReached = null;
@@ -221,7 +220,7 @@
     else sinceReached ??= 0;
   };
 
-  // A late tick counts as four at most: after the computer slept, or while the page is busy, the server is not blamed.
+  // A late tick counts as four at most: the server is not to blame if the computer slept or the page is busy.
   let last = performance.now();
   const tick = () => {
     const now = performance.now(),
@@ -242,7 +241,7 @@
   };
   setInterval(tick, TICK);
 
-  // The server has answered: a socket that was only silent goes on, and what was sent meanwhile has been read.
+  // The server has answered. If its socket was only silent, the page goes on, as the server has read all that was sent.
   const answerReceived = () => {
     sincePing = null;
     sinceAnswer = 0;

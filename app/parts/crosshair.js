@@ -1,5 +1,5 @@
-// Where the pointer is in one picture, a line goes through all of them, with the values at that time. Shift and drag in
-// the map is a measuring tape: time, distance and speed between two places.
+// A line through all pictures at the time under the pointer, with the values at that time. Dragging with Shift in the
+// map measures time, distance and speed between two places.
 
 import { element } from "./dom.js";
 import { draw, prefixed } from "./plot.js";
@@ -33,7 +33,7 @@ export class Crosshair {
     document.addEventListener("keydown", ({ key }) => key === "Escape" && this.roll());
   }
 
-  // Where an event is: its share of the time shown and of the beads, and its place in the stage.
+  // The place of a pointer event: as a part of the time shown and of the beads, and in pixels of the stage.
   at({ clientX, clientY }) {
     const { stage, area, columns } = this.cursor;
     const box = stage.getBoundingClientRect();
@@ -42,7 +42,7 @@ export class Crosshair {
     return { x, y, time: (y - area.y) / area.height, beads: (x - columns.left) / columns.width };
   }
 
-  // One drawing for an animation frame.
+  // Draws at most once in an animation frame.
   moved(event) {
     this.event = event;
     if (this.asked) return;
@@ -97,7 +97,7 @@ export class Crosshair {
     Object.assign(this.bead.style, { left, top: `${area.y}px`, height: `${area.height}px` });
   }
 
-  // The measuring tape, from where shift was pressed to where the pointer is let go.
+  // The measuring tape, from where the drag began to where the pointer is.
   measure(event) {
     const { frames } = this.clock;
     if (!frames || frames.rows < 2) return;

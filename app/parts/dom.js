@@ -1,4 +1,4 @@
-// Elements, and the controls that several parts of the page have.
+// Elements and controls that several parts of the page use.
 
 // Whether the page is arranged for a phone, as page.css has it.
 export const PHONE = matchMedia("(max-width: 820px)");
@@ -35,7 +35,7 @@ export const table = (titles, body, properties = {}) => {
   return element("table", properties, element("thead", {}, head), body);
 };
 
-// In a tab: the button that opens its page.
+// The button in a tab that opens the page of the tab.
 export const openButton = (name) =>
   button("open the page", () => window.granchain.openPage(name), { className: "open" });
 
@@ -50,14 +50,14 @@ export const pageHead = (title, ...controls) =>
     button("✕", () => window.granchain.closePage(), { title: "Back to the chain", className: "close" }),
   );
 
-// A file for the visitor, by the name it is saved under.
+// Has the browser save a file under this name.
 export function download(name, blob) {
   const link = element("a", { href: URL.createObjectURL(blob), download: name });
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
 }
 
-// The choices of a list of beads, as many as the chain has; the bead that was chosen stays if there is one.
+// Fills a list with the beads of the chain; the chosen bead stays chosen if the chain still has it.
 export function fillBeads(select, count) {
   if (select.length === count) return;
   const chosen = Math.min(Number(select.value) || 1, count);
@@ -65,7 +65,7 @@ export function fillBeads(select, count) {
   select.value = String(chosen);
 }
 
-// Calls `act` when an element has another width; what `act` changes in its height calls nothing.
+// Calls `act` when the width of an element changes, but not when its height does, which `act` may change.
 export function onWidth(host, act) {
   let width = 0;
   new ResizeObserver(() => {
@@ -75,5 +75,5 @@ export function onWidth(host, act) {
   }).observe(host);
 }
 
-// Calls `act` with whether an element is on the screen, whenever it comes there or leaves.
+// Calls `act(visible)` whenever an element comes onto the screen or leaves it.
 export const onScreen = (host, act) => new IntersectionObserver(([entry]) => act(entry.isIntersecting)).observe(host);

@@ -2,7 +2,7 @@
 
 import { element, onWidth } from "./dom.js";
 
-// A line that is longer than the column is set smaller, down to this part of the size of the others.
+// A line that is too long for the column is made smaller, down to this part of the usual size.
 const SMALLEST = 0.55;
 
 export function render({ model }) {

@@ -1,5 +1,4 @@
-// Pictures of the page as PNG and SVG, made in the browser from what is on the screen; the other files come from the
-// server.
+// The list of exports. The browser makes PNG and SVG from what is on the screen; the other files come from the server.
 
 import { figuresIn, modelsNamed, svgContext, svgOf, viewOf, writtenSvg } from "./bokeh.js";
 import { button, download, element } from "./dom.js";
@@ -7,7 +6,7 @@ import { draw, SVG } from "./plot.js";
 
 const MARGIN = 12, // px around a picture
   SHARP = 2; // pixels of a PNG for one of the picture
-// Of the main page: the name in a file, the element, the model of its figure.
+// The pictures of the main page: name in a file, element, and model of the figure.
 const FIGURES = {
   driver: ["at the driver", "left", "input force"],
   energy: ["kinetic energy", "map", "kinetic energy"],
@@ -19,7 +18,7 @@ const style = (name) => getComputedStyle(document.documentElement).getPropertyVa
 
 const views = (name) => modelsNamed(name).map(viewOf).filter(Boolean);
 
-// One piece of a picture: its box on the screen, and its drawing.
+// One piece of a picture: its box on the screen and its drawing.
 const figurePiece = (view) => ({ box: view.el.getBoundingClientRect(), svg: () => svgOf(view) });
 
 // The chain is drawn once more, by the same code, on a context that writes SVG.
@@ -36,7 +35,7 @@ const chainPiece = () => {
   };
 };
 
-// The words that stand over the pictures, where they are on the screen.
+// The words over the pictures, at their places on the screen.
 const wordsOf = (selector) =>
   [...document.querySelectorAll(selector)]
     .filter((one) => one.checkVisibility() && one.textContent.trim())
@@ -50,7 +49,7 @@ const wordsOf = (selector) =>
       return { box, text: mark + one.textContent.trim(), color, fontSize, fontWeight };
     });
 
-// The bar with the colours of the energy.
+// The colour bar of the energy.
 const colours = () => {
   const bar = document.querySelector("#scale .colours b");
   return { box: bar.getBoundingClientRect(), stops: window.granchain.chain.colours };
@@ -94,11 +93,11 @@ function broken(words, most) {
   return lines;
 }
 
-// The frame of a picture: what it shows in a line on top, then everything where it is on the screen.
+// A whole picture: a title that says what it shows, and below it every piece at its place on the screen.
 function sheet(title, { parts, words, bars }) {
   const all = bounds([...parts, ...words, ...bars].map(({ box }) => box));
   const line = parseFloat(style("--small")) || 14;
-  const lines = broken(title, all.width / (0.56 * line)); // an average letter is so wide
+  const lines = broken(title, all.width / (0.56 * line)); // 0.56: mean width of a letter over the height of a line
   const head = 1.25 * line * lines.length + 2 * MARGIN;
   return {
     line,
@@ -153,7 +152,7 @@ function svg(title, found) {
   return { text: new XMLSerializer().serializeToString(root), width, height };
 }
 
-// A PNG is the SVG in pixels, more of them than a screen has.
+// A PNG is the SVG in pixels, `SHARP` times as many as on the screen.
 async function png({ text, width, height }) {
   const image = Object.assign(new Image(), { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(text)}` });
   await image.decode();
@@ -162,7 +161,7 @@ async function png({ text, width, height }) {
   return new Promise((done) => canvas.toBlob(done, "image/png"));
 }
 
-// The file name of a picture and its first line: scene, frequency, regime.
+// The file name of a picture and its title: scene, frequency, regime.
 function captionOf(what) {
   const { scene, f } = window.granchain.shown ?? {};
   return { name: `${scene}-${f}Hz-${what}`, title: `${scene}, f = ${f} Hz: ${window.granchain.regime ?? ""}` };

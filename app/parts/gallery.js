@@ -1,5 +1,5 @@
-// The gallery of scenes: a card for each with a small picture, its title, a sentence and a question. Its content comes
-// when it is opened for the first time.
+// The gallery of scenes: a card for each with a small picture, its title, a sentence and a question. The cards are
+// requested when the gallery is first opened.
 
 import { button, element } from "./dom.js";
 
@@ -44,7 +44,7 @@ export class Gallery {
     return card;
   }
 
-  // The open scene is marked and has the focus.
+  // The card of the open scene is marked and has the focus.
   mark() {
     for (const card of this.cards.children) {
       card.ariaCurrent = String(card.value === this.scene);

@@ -50,7 +50,7 @@ class Header {
     ];
     this.root = element("div", { className: "part bar" }, ...(window.granchain.embedded ? small : all));
     this.order = [...this.root.children];
-    this.root.append(this.scenes.gallery.root); // not among what layoutControls() moves, which would close it
+    this.root.append(this.scenes.gallery.root); // outside what layoutControls() moves: a moved dialog closes
   }
 
   makeButtons() {
@@ -79,7 +79,7 @@ class Header {
     );
   }
 
-  // Puts into the menu “⋯” what the bar has no room for, the least needed first.
+  // Moves controls into the menu “⋯” until the bar has room for the others, the least needed first.
   layoutControls() {
     const { root, popovers } = this;
     const focused = root.getRootNode().activeElement;
@@ -106,7 +106,7 @@ class Header {
     focused?.focus();
   }
 
-  // The name of the page has no place in a menu; it is left out.
+  // The name of the page is no control: it is left out, not moved into the menu.
   putAway(...controls) {
     for (const control of controls) {
       if (control === this.name) control.remove();
@@ -133,7 +133,7 @@ class Header {
     this.model.send_msg({ do: name, ...more });
   }
 
-  // Sends a choice that a share link carries, and keeps it until the server has answered.
+  // Sends a choice that is part of the share link; the address has it before the server answers.
   request(name, value, message) {
     window.granchain.requested(name, value);
     this.send(name, message);
@@ -186,18 +186,18 @@ class Header {
     this.begun = true;
   }
 
-  // Time goes as it went before a lost connection; for those who asked their browser for less motion it begins paused.
+  // The replay runs or pauses as before a lost connection. If the browser is set to less motion, it begins paused.
   begin() {
     const { again } = window.granchain;
     if (again) this.restore(again);
     else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
 
-  // The first state carries the theme of the link; after that only the button changes it.
+  // Only the first state sets the theme, that of the link; later only the button changes it.
   takeTheme(theme) {
     if (this.themed || !theme) return;
     this.themed = true;
-    window.granchain.setTheme(theme, false); // "auto" is none of the themes and changes nothing
+    window.granchain.setTheme(theme, false); // "auto" is no theme and changes nothing
   }
 
   showChoices(state) {
@@ -212,7 +212,7 @@ class Header {
     this.layoutControls();
   }
 
-  // Where the motion on the screen began; a scene without a drive has one start only.
+  // Shows where the motion on the screen began. A scene without a drive has only one start, so the list is hidden.
   showStart({ mode, start = "rest", origin = "rest", driven = true, starts, started_elsewhere }) {
     const elsewhere = start === "rest" && origin !== "rest";
     this.start.options[0].textContent = elsewhere ? started_elsewhere : starts[0][1];
@@ -229,7 +229,7 @@ class Header {
     window.granchain.kept = { ...window.granchain.kept, playing };
   }
 
-  // After a lost connection: what the share link does not carry.
+  // After a lost connection: sends what the share link does not contain.
   restore(again) {
     window.granchain.again = null;
     const { playing = true, uploaded = false } = again;

@@ -2,7 +2,7 @@
 
 import { button } from "./dom.js";
 
-// Paths of our own, so that no font needs these symbols.
+// SVG paths, since a font may lack these symbols.
 const ICONS = {
   knobs: "M3 6h7m4 0h7M3 12h3m4 0h11M3 18h11m4 0h3M12 4v4M8 10v4M16 16v4",
   reset: "M4 12a8 8 0 1 0 3-6.2M7 2v4h4",
@@ -24,6 +24,6 @@ const ICONS = {
 export const icon = (name, words = name) =>
   `<svg viewBox="0 0 24 24" aria-hidden="true"><path d="${ICONS[name]}"/></svg><span>${words}</span>`;
 
-// A button with an icon over a word; its title, which has that word, is also its accessible name.
+// A button with an icon over a word. Its title contains the word and is also its accessible name.
 export const iconButton = (innerHTML, title, act, className = "") =>
   button("", act, { innerHTML, title, ariaLabel: title, className: `icon ${className}` });

@@ -1,4 +1,4 @@
-// In a frame on a slide: what is shown, and the way to the whole page.
+// The bar of an embedded page: its title, and a link to the whole page.
 
 import { element } from "./dom.js";
 

@@ -1,10 +1,10 @@
 // The keys that work everywhere on the page.
 
-// Whether the event comes from a field, a list or a button, which use the key themselves.
+// Whether the event comes from a field, a list or a button, which needs the key itself.
 const inField = (event) =>
   event.composedPath().some((node) => /^(INPUT|SELECT|BUTTON|TEXTAREA|SUMMARY)$/.test(node.tagName));
 
-// Ctrl-Z undoes and Ctrl-Shift-Z or Ctrl-Y redoes, but for what is being typed.
+// Ctrl-Z is undo, Ctrl-Shift-Z and Ctrl-Y are redo, except in a field, where the browser undoes typing.
 function takeStep(event) {
   const key = event.key.toLowerCase();
   if (event.composedPath().some((node) => node.dataset?.typing)) return;

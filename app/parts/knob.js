@@ -1,10 +1,11 @@
-// One knob: slider, number and unit; arrows fine, shift coarse, double click back to the scene's value.
+// One knob: slider, number and unit. Arrow keys move it in small steps, with Shift in large ones; a double click
+// restores the scene's value.
 
 import { element } from "./dom.js";
 
 const STEPS = 1000;
 
-// Slider position (0..1) to value and back, for the three kinds of range.
+// From slider position (0 to 1) to value and back, for the three kinds of range.
 const RANGE = {
   linear: {
     value: (p, { low, high }) => low + p * (high - low),
@@ -20,7 +21,7 @@ const RANGE = {
   },
 };
 
-// A slider is good for four figures; a typed value keeps all of its own.
+// A slider gives four figures; a typed value keeps all its figures.
 const rounded = (value) => Number(value.toPrecision(4));
 
 const written = (value, factor) => {
@@ -86,7 +87,7 @@ export class Knob {
     for (const input of [this.slider, this.field]) input.addEventListener("keydown", (event) => this.key(event));
   }
 
-  // The ends of the slider are the ends of the range, to all figures.
+  // The ends of the slider are exactly the ends of the range, not rounded to four figures.
   slid(position) {
     const { low, high, scale, whole } = this.spec;
     if (position === 0) this.set(low);
@@ -124,7 +125,7 @@ export class Knob {
     this.send({ do: "set", name: this.spec.name, value }, now);
   }
 
-  // Shows why the knob has no effect now; without such words, what its value 0 means.
+  // Shows why the knob has no effect now or, if it has one, what its value 0 means.
   say(idle) {
     const { at_zero } = this.spec;
     if (!at_zero) return;
@@ -140,7 +141,7 @@ export class Knob {
         this.select.add(new Option(Number(value).toPrecision(4), value));
       this.select.value = String(value);
     } else if (typeof value === "number") {
-      // A value that is being typed is left alone.
+      // A value that is being typed is not overwritten.
       if (!this.editing) this.field.value = written(value, this.spec.factor);
       this.field.style.width = `${Math.max(3, this.field.value.length) + 1.6}ch`;
       const place = RANGE[this.spec.scale].place(value, this.spec);

@@ -1,4 +1,4 @@
-// The knobs, one below the other; those that are seldom moved are folded away under "more knobs".
+// The knobs, one below the other; those that are seldom moved are under "more knobs".
 
 import { element } from "./dom.js";
 import { Knob } from "./knob.js";
@@ -6,7 +6,7 @@ import { Knob } from "./knob.js";
 const KEPT = "κ = k/(K√A₀): at the same k, κ changes with A₀. Set κ to get the old value back.";
 const FREQUENCY = "Frequency of one bead on its foundation spring alone: √(k/m) / 2π.";
 
-// Sends one message per animation frame and knob, which is all the eye can follow; the first goes at once.
+// Sends at most one message per animation frame and knob, since faster changes cannot be seen. The first goes at once.
 class Sender {
   constructor(model) {
     this.model = model;
@@ -29,7 +29,7 @@ class Sender {
     if (!this.resting) requestAnimationFrame(() => this.flush());
   }
 
-  // Whether nothing newer than message `seq` has been sent or waits.
+  // Whether message `seq` is the newest: none was sent after it and none waits.
   isNewest(seq) {
     return seq >= this.sent && !this.waiting.size;
   }

@@ -1,9 +1,9 @@
-// Modules are imported by the browser itself. The shim that Panel loads for browsers without import maps, which this page
-// does not need, would fetch and rewrite every one of them: 0.2 s of each opening.
-window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); // the maps Panel adds are empty here
+// The browser imports modules itself. Panel loads a shim for browsers without import maps, which this page does not
+// need. The shim would fetch and rewrite every module: 0.2 s of each opening.
+window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); // the maps that Panel adds are empty
 
-// What the parts of the page share in the browser: events, what pages publish, the theme and the drawer. Everything that
-// `window.granchain` has is declared at the end.
+// What the parts of the page share in the browser: events, what pages publish, the theme and the drawer of knobs. All
+// members of `window.granchain` are declared at the end.
 window.granchain = (() => {
   const listeners = new Map();
   const on = (name, listener) => {
@@ -14,8 +14,8 @@ window.granchain = (() => {
     for (const listener of listeners.get(name) ?? []) listener(detail);
   };
 
-  // What pages publish for other parts, such as their tabs: kept by page, and emitted as "page:NAME", so that a page may
-  // have the name of any event.
+  // What pages publish for other parts, such as their tabs. It is kept by page and announced as the event "page:NAME",
+  // which cannot be confused with an event that has the name of a page.
   const pages = new Map();
   const publish = (name, data) => {
     pages.set(name, data);
@@ -45,7 +45,7 @@ window.granchain = (() => {
       }
     emit("theme", theme);
   };
-  // A step back or forward: the theme of its address, or the one that was there without any choice.
+  // After a step back or forward: takes the theme of the address or, if it has none, the one before any choice.
   const restoreTheme = (theme) => {
     chosen = THEMES.includes(theme);
     setTheme(chosen ? theme : first, false);
@@ -60,14 +60,14 @@ window.granchain = (() => {
   // `?embed=1`: the pictures alone, for a slide.
   const embedded = new URLSearchParams(location.search).get("embed") === "1";
   document.documentElement.classList.toggle("embed", embedded);
-  // On a phone: all knobs, in the lower half of the screen, or the first alone.
+  // On a phone: shows all knobs in the lower half of the screen, or only the first.
   const drawer = (open) => {
     if (open) scrollTo({ top: 0 });
     const { classList } = document.getElementById("page");
     classList.toggle("drawer", open);
     if (open) showCurve(false);
   };
-  // On a phone: the resonance curve on one screen with the pictures, or below them.
+  // On a phone: shows the resonance curve together with the pictures on one screen, or below them.
   const showCurve = (shown) => {
     const { classList } = document.getElementById("page");
     if (classList.contains("curved") === shown) return;
@@ -76,14 +76,14 @@ window.granchain = (() => {
     scrollTo({ top: 0 });
     emit("curved", shown);
   };
-  // The name of the page that lies over the pictures, or null; the curve is computed then only if that page needs it.
+  // The name of the page over the pictures, or null. An open page stops the curve unless it needs the curve.
   let overlay = null;
   const openPage = (name) => {
     if (name === overlay) return;
     overlay = name;
     document.getElementById("page").classList.toggle("overlaid", name !== null);
     for (const one of document.querySelectorAll("[data-overlay]")) one.hidden = one.dataset.overlay !== name;
-    // The one main part of the page is what is on the screen.
+    // The main landmark is the part that is on the screen; a page may have only one.
     document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
     emit("overlay", name);
   };
@@ -92,7 +92,7 @@ window.granchain = (() => {
     if (event.key === "Escape" && overlay) closePage();
   });
 
-  // Sealed: no other script can add a member. A member that is null here is filled by the script that has it.
+  // Sealed: no script can add a member. The script that a comment names sets the members that are null here.
   return Object.seal({
     on,
     emit,
@@ -119,8 +119,8 @@ window.granchain = (() => {
     terms: {},
     // connection.js: the connection, the share link and the history
     lost: false, // whether the server does not answer
-    kept: {}, // what a page built again after a lost connection needs besides its link
-    again: null, // the same, in the page built again
+    kept: {}, // what the page needs besides its link when it is reloaded after a lost connection
+    again: null, // what the page before the reload kept in `kept`
     place: null, // the open tab and the page over the pictures
     steps: null,
     setLocation: null,

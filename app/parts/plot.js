@@ -8,13 +8,13 @@ export const draw = (tag, attributes = {}, ...children) => {
   return element;
 };
 
-// The factor and letter of the SI prefix in which a value reads between 1 and 1000, rounded to three figures (app/format.py).
+// Factor and letter of the SI prefix in which a value, to three figures, reads from 1 to 1000 (as in app/format.py).
 const PREFIXES = [..."GMk mµnpfa"].map((letter, i) => [10 ** (9 - 3 * i), letter.trim()]);
 export const prefixed = (value) => PREFIXES.find(([factor]) => Math.abs(value) >= 0.9995 * factor) ?? [1, ""];
 
 export const round3 = (value) => Number(value.toPrecision(3));
 
-// The round steps of a decade, and the one nearest to a value from below or from above.
+// The round numbers of a decade, and the nearest one below or above a value.
 const STEPS = [1, 2, 5, 10];
 const inDecade = (value, pick) => {
   const power = 10 ** Math.floor(Math.log10(value));
@@ -31,7 +31,7 @@ export function ticks(low, high, count) {
   return found;
 }
 
-// A frame with a scale in both directions; `box` is where data go.
+// A frame with axes in both directions; `box` is the room for data.
 export function frame(host, { left, right, top, bottom }, label) {
   const width = Math.max(60, host.clientWidth),
     height = Math.max(60, host.clientHeight);

@@ -1,4 +1,4 @@
-// What opens over the pictures from the bar on top: the help, and the link to the picture.
+// The boxes that the bar on top opens over the pictures: the help, and the link to the picture.
 
 import { button, element } from "./dom.js";
 import { exportMenu } from "./export_menu.js";
@@ -71,14 +71,14 @@ export class Popovers {
     this.toggle("help");
   }
 
-  // Opens the one of this name and closes the others, or closes it.
+  // Opens the box of this name, or closes it if it is open; closes the others.
   toggle(name) {
     const open = this[name].hidden;
     this.close();
     this[name].hidden = !open;
   }
 
-  // The page's address is shown and goes to the clipboard.
+  // Shows the page's address and copies it to the clipboard.
   showLink() {
     const { href } = window.granchain.address();
     history.replaceState(history.state, "", href);

@@ -1,10 +1,10 @@
-// The figure of a result, sent whole as a message (result_figure.py), and again in another theme.
+// The figure of a finished result. The server sends it whole (result_figure.py), and again for another theme.
 
 import { element } from "./dom.js";
 import { BokehFigure } from "./bokeh_figure.js";
 
 export class ResultFigure {
-  // In the page of this name; `place` tells several figures of a page apart.
+  // A figure on the page of this name; `place` distinguishes several figures of a page.
   constructor(page, place = "", className = "picture") {
     this.page = page;
     this.place = place;
@@ -26,7 +26,7 @@ export class ResultFigure {
     }
   }
 
-  // Drawn where it is seen: hidden, it would have no size.
+  // Drawn only when it is visible: a hidden element has no size.
   draw() {
     if (window.granchain.overlay !== this.page || !this.item) return;
     const { figure, words, shape } = this.item;

@@ -5,8 +5,8 @@ import { Gallery } from "./gallery.js";
 import { icon, iconButton } from "./icons.js";
 
 export class SceneChooser {
-  // `ask` asks the server for the gallery's cards, `choose` opens a scene; `changed` is called when the list has another
-  // width.
+  // `ask` requests the gallery's cards from the server, `choose` opens a scene; `changed` is called when the width of the
+  // list changes.
   constructor(ask, choose, changed) {
     this.list = chooser("scene", "scene", choose);
     this.list.addEventListener("mousedown", () => this.openList());

@@ -1,8 +1,9 @@
 // The force at the wall as sound, off until it is asked for: the whole periods on the screen at their own speed,
 // repeated. Loud is strong on the scale of the pictures, so an anti-resonance is quiet.
 
-const LASTS = 0.5; // s of sound that is repeated; more than a period, so that the pitch is exact to a few hundredths of a percent
-const LOUDEST = 0.25; // of what the loudspeaker can do
+// s of sound that is repeated. As this is more than one period, the pitch is exact to a few hundredths of a percent.
+const LASTS = 0.5;
+const LOUDEST = 0.25; // largest amplitude, over full scale
 const FADE = 0.02; // s
 
 export class Sound {
@@ -17,7 +18,7 @@ export class Sound {
     this.play(frames);
   }
 
-  // Another picture, another sound. A running chain has no periods to repeat.
+  // Makes the sound of another picture. A live run has none, since it has no periods to repeat.
   play(frames) {
     this.stop();
     if (!this.on || !frames || frames.live || frames.rows < 2) return;
@@ -37,7 +38,7 @@ export class Sound {
     this.source = null;
   }
 
-  // The force without its mean, which one cannot hear, between its samples in straight lines.
+  // The force without its mean, which is inaudible, interpolated linearly between samples.
   buffer({ rows, beads, samples, f, force, scale }) {
     const last = rows - 1; // the row after the last is the first again
     const at = (row) => force[row * (beads + 1) + beads];

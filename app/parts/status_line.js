@@ -17,8 +17,8 @@ const ENTRIES = [
   ["effects", (v) => v.join(" · "), "The effects being computed; an absent one has no code and costs nothing."],
 ];
 
-// The order in which entries give way where the line is too short: an entry first gets its shorter words, as often as
-// the server has a shorter form, and is then left out.
+// The order in which entries give way if the line is too short: an entry takes its shorter forms, one after the other,
+// and is then left out.
 const GIVES_WAY = ["effects", "method", "start", "accuracy", "energy", "regime", "regime", "accuracy"];
 const NOT_ON_PHONE = ["force", "method", "start", "effects"];
 
@@ -37,13 +37,13 @@ function emptyEntry(name, tag = "span") {
   return entry;
 }
 
-// The entries, always in one line: if the line wrapped, every picture would move and be drawn anew while a knob moves.
+// The entries stay on one line. If the line wrapped while a knob moves, all pictures would move and be drawn anew.
 class Line {
   constructor() {
     this.el = element("div", { className: "line" });
     this.pen = document.createElement("canvas").getContext("2d");
-    this.fonts = new Map(); // by the entry's name; asking the browser for them costs a layout
-    // The entries stay and change their words: if one were replaced while it is pressed, there would be no click.
+    this.fonts = new Map(); // fonts by the entry's name, kept because asking the browser for one costs a layout
+    // Elements stay and only their words change: an element that is replaced while it is pressed gets no click.
     this.regime = emptyEntry("regime", "b");
     this.others = new Map(ENTRIES.map(([name]) => [name, emptyEntry(name)]));
     this.rest = emptyEntry("rest");
@@ -83,7 +83,7 @@ class Line {
     }
     const [font, padding] = this.fonts.get(name);
     this.pen.font = font;
-    const before = name === "accuracy" ? "error: " : ""; // the style sheet's
+    const before = name === "accuracy" ? "error: " : ""; // the style sheet adds these words
     return this.pen.measureText(before + entry.textContent).width + padding + this.gap;
   }
 
@@ -101,7 +101,7 @@ class Line {
     this.regime.title = this.regime.textContent === regime ? regime_hint : `${regime}. ${regime_hint}`;
   }
 
-  // There it may have several lines: the page scrolls.
+  // On a phone it may have several lines, since the page scrolls.
   fitPhone() {
     for (const name of NOT_ON_PHONE) if (this.entries.has(name)) this.entries.get(name).hidden = true;
     // More than two lines would cover the pictures.
@@ -116,7 +116,7 @@ class Line {
 
   fitLine() {
     const { state } = this;
-    let need = this.gap; // beside what grows
+    let need = this.gap; // px; one gap for the element that grows
     for (const [name, entry] of this.entries) need += this.widthOf(name, entry);
     this.rest.hidden = true;
     if (need > this.room) need += this.widthOf("rest", this.rest);
@@ -133,7 +133,7 @@ class Line {
     }
   }
 
-  // Entries that found no room are behind the dots at the end.
+  // The dots at the end list the entries that have no room.
   nameRest() {
     const hidden = [...this.entries.values()].filter((entry) => entry.hidden);
     this.rest.hidden = !hidden.length;
@@ -141,7 +141,7 @@ class Line {
   }
 }
 
-// Says what motion there is now, once it has stood for a moment: a moving knob passes many.
+// Tells screen readers which motion there is, once it has stayed for a moment: a moving knob passes through many.
 const STANDS = 1200; // ms
 let timer = 0;
 function announce(words) {

@@ -1,9 +1,9 @@
 // Beads of steel that glow with their energy: drawn once for every size and step of energy, then copied.
 
-const STEPS = 48; // of energy that one can tell apart
-const GLOWS = 0.3; // the square root of the share of the scale's top from which on a bead has a halo
+const STEPS = 48; // steps of energy, enough that one cannot see them
+const GLOWS = 0.3; // √(energy over the top of the scale) above which a bead has a halo
 
-// The colour of an energy that is this part of the scale's top, from the list of app/pictures/energies.py.
+// The colour of an energy, given over the top of the scale; app/pictures/energies.py makes the list.
 export const colourOf = (palette, share) => palette[Math.round((palette.length - 1) * Math.max(0, Math.min(1, share)))];
 
 const channels = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
@@ -23,7 +23,7 @@ export class Steel {
     this.made = new Map();
   }
 
-  // A square picture of a bead with its glow, and how far it reaches from the bead's middle, in radii.
+  // A square picture of a bead with its glow, and half its side in radii of the bead.
   bead(room, share, ratio, ink) {
     const radius = Math.max(room, 0.5); // a page that is being resized may have no room for a moment
     const step = Math.round(STEPS * Math.sqrt(Math.max(0, Math.min(1, share))));
@@ -42,7 +42,7 @@ export class Steel {
     g.translate(half, half);
     const hot = this.palette ? colourOf(this.palette, glow ** 2) : ink.steel;
     if (glow > GLOWS) this.halo(g, radius, glow, hot);
-    const body = Math.min(1, 1.7 * glow); // how much of the steel's own colour the energy replaces
+    const body = Math.min(1, 1.7 * glow); // the part of the steel's own colour that the energy replaces
     const shade = g.createRadialGradient(-0.35 * radius, -0.4 * radius, 0.05 * radius, 0, 0, radius);
     shade.addColorStop(0, mixed(ink.shine, hot, 0.6 * body));
     shade.addColorStop(0.45, mixed(ink.steel, hot, body));

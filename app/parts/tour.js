@@ -1,5 +1,5 @@
-// The tour of a first visit: five steps, each beside a part of the page. It can be left at any time, does not come
-// again by itself, and stops nothing.
+// The tour of a first visit: five steps, each beside a part of the page. A visitor can leave it at any time. It comes
+// once and interrupts nothing.
 
 import { button, element, PHONE } from "./dom.js";
 
@@ -20,7 +20,7 @@ const remembered = () => {
   try {
     return localStorage.getItem(KEPT_AS) !== null;
   } catch {
-    return true; // a browser that keeps nothing would show it at every visit
+    return true; // in a browser that stores nothing it would come at every visit
   }
 };
 
@@ -40,7 +40,7 @@ export class Tour {
     document.addEventListener("keydown", ({ key }) => key === "Escape" && !this.root.hidden && this.end());
   }
 
-  // At a first visit, once there is something to see; not in a frame on a slide, nor over a page that a link opens.
+  // Begins at a first visit once there is a picture; not in an embedded page, nor over a page that a link opens.
   begin() {
     const page = window.granchain;
     if (remembered() || page.embedded || page.place.page || page.place.tab) return;
@@ -62,7 +62,7 @@ export class Tour {
     this.place();
   }
 
-  // What is told about has a frame. On a phone the knobs are in their drawer, so their button has it.
+  // The part that a step explains has a frame; on a phone, where knobs are hidden in a drawer, the bar has it.
   part() {
     const [id] = STEPS[this.number];
     const part = document.getElementById(id);
@@ -73,7 +73,7 @@ export class Tour {
     for (const one of document.querySelectorAll(".toured")) one.classList.remove("toured");
     if (this.root.hidden) return;
     this.part().classList.add("toured");
-    this.part().scrollIntoView({ block: PHONE.matches ? "start" : "nearest" }); // there the words are at the bottom
+    this.part().scrollIntoView({ block: PHONE.matches ? "start" : "nearest" }); // a phone has the words at the bottom
   }
 
   // Beside the part where there is room, else below or above it, else at the bottom of the window.

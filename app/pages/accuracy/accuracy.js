@@ -1,4 +1,4 @@
-// The Accuracy page, over the pictures: what accuracy costs here and now, and what naive steps would have drawn.
+// The Accuracy page, over the pictures: what accuracy costs for this scene, and the force that naive steps would draw.
 
 import { button, element, meter, pageHead, paragraph, table } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";
@@ -39,7 +39,7 @@ const SYMBOLS =
 class AccuracyPage {
   constructor(model) {
     this.model = model;
-    this.asked = null; // the last message about the accuracy asked for
+    this.asked = null; // the last message about the requested accuracy
     this.again = button("measure again", () => model.send_msg({ do: "accuracy-measure" }));
     this.stop = button("stop", () => model.send_msg({ do: "accuracy-stop" }));
     this.meter = meter("progress of the measurement");

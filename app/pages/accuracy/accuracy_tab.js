@@ -1,11 +1,13 @@
-// The Accuracy tab: error against time in small, and the way to the page. The page fills its figure with the same function.
+// The Accuracy tab: a small picture of error against time, and the way to the page, whose figure the same function
+// fills.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
 import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
 
 const STALE = "The knobs have moved; open the page to measure again.";
 
-// Error against time as it is known now: points by method, then what is asked, cheapest and used.
+// Error against time, as far as it is measured: points by method, the requested accuracy, the cheapest setting, and the
+// one in use.
 export function fillAccuracy(figure, { drawn, asked }) {
   for (const [name, data] of Object.entries(drawn)) figure.set(name, { data });
   fillModels(figure, asked?.marks);

@@ -1,15 +1,15 @@
-// The accurate output force, and over it the one that a naive method with few steps would have drawn.
+// The accurate output force and, over it, the force that a naive method with few steps would have drawn.
 
 import { element } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";
 
-// The naive steps in a drive period that are chosen at first.
+// Steps in a drive period that are chosen first.
 const USUAL_STEPS = 200;
 
 const percent = (error) =>
   error >= 0.995 ? `${Math.round(100 * error)} %` : `${Number((100 * error).toPrecision(2))} %`;
 
-// What the choice would have drawn, in a sentence.
+// A sentence on the force that the chosen steps would have drawn.
 function verdict(chosen) {
   if (!chosen) return "";
   return chosen.failure
@@ -42,15 +42,15 @@ export class NaiveForces {
 
   load(message) {
     const { buffer, byteOffset, length } = message.values;
-    // A plain array of numbers, whatever kind of buffer it came in.
+    // A plain Float32Array, whatever array class the message has.
     this.data = { ...message, values: new Float32Array(buffer, byteOffset, length) };
     this.offer(message.drawn);
     this.root.hidden = false;
     this.figure.load(message.figure, "output force, accurate and naive");
   }
 
-  // Fills both choices and keeps what was chosen. The first time it chooses the usual steps and the method whose
-  // error is largest with them.
+  // Fills both lists and keeps what is chosen. The first time it chooses the usual steps, and the method with the
+  // largest error.
   offer(drawn) {
     const before = [this.methods.value, this.steps.value];
     const names = [...new Set(drawn.map((one) => one.method))];

@@ -1,4 +1,4 @@
-// The page "Analysis", over the pictures: a question about the present scene, its fields, and its answer.
+// The Analysis page, over the pictures: a question about the present scene, its fields, and its answer.
 
 import { button, element, meter, pageHead } from "../../parts/dom.js";
 import { ResultFigure } from "../../parts/result_figure.js";
@@ -6,7 +6,7 @@ import { ResultFigure } from "../../parts/result_figure.js";
 const ABOUT =
   "Four questions about the motion of the present scene. Choose one; it is computed when you press “compute”.";
 
-// What a visitor chooses for one field: an entry of a list, or a text.
+// The control of one field: a list or a text field.
 function control({ label, value, choices, chosen }) {
   const input = choices.length
     ? element("select", {}, ...choices.map((choice) => new Option(choice, choice)))
@@ -54,7 +54,7 @@ class AnalysisPage {
     this.send({ do: "analysis-compute", values });
   }
 
-  // Fields with the values that are offered for the present scene; what a visitor has changed stays if it can.
+  // Shows fields with the values offered for the present scene. A value that the visitor has changed stays if possible.
   fill(question, fields) {
     if (fields === this.fields) return;
     const kept = question === this.question ? this.controls.filter(({ input }) => input.dataset.changed) : [];

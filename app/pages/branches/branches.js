@@ -4,9 +4,9 @@ import { button, element, pageHead, paragraph } from "../../parts/dom.js";
 import { BokehFigure, StreamedData } from "../../parts/bokeh_figure.js";
 
 const WORDS = "largest elastic output force of periodic orbits over drive frequency";
-// Below this width in pixels the legend stands in two columns.
+// px; a narrower picture has its legend in two columns.
 const NARROW = 700;
-const MARGIN = 0.05; // beside the branch, as a part of its length
+const MARGIN = 0.05; // room beside the branch, over its length
 const ABOUT =
   "Each point is a motion that repeats, followed in frequency: solid where a small disturbance dies out, dashed where it grows, so that no chain settles there. Grey: where the chain settles from rest. Drawn is the elastic part of the force, which changes smoothly along a branch; the main page shows the whole force.";
 const STALE =
@@ -26,7 +26,7 @@ function periodChoice(longest) {
   );
 }
 
-// The chosen point of the picture, in words, with what can be done with it.
+// The chosen point of the picture in words, and buttons for what can be done with it.
 class Choice {
   constructor(send) {
     this.send = send;
@@ -92,7 +92,7 @@ class BranchesPage {
     this.root = element("div", { className: "part sheet" }, head, say, this.work);
     this.data = new StreamedData();
     this.figure = new BokehFigure(this.picture, (one) => this.fill(one));
-    this.everywhere = [this.figure]; // its tab adds its own
+    this.everywhere = [this.figure]; // all figures with these data; the tab adds its own
   }
 
   request() {
@@ -108,14 +108,14 @@ class BranchesPage {
     this.fit();
   }
 
-  // The line at the present frequency, and a legend as wide as there is room.
+  // Sets the line at the present frequency, and the columns of the legend by the width of the picture.
   fit() {
     const { now } = this.model.state;
     this.figure.set("now", { location: now ?? null, visible: now !== undefined });
     this.figure.set("legend", { ncols: this.picture.clientWidth < NARROW ? 2 : 6 });
   }
 
-  // The picture from the first to the last orbit; a branch can be short beside the curve.
+  // Shows only the frequencies of the branch, which can be short compared with the curve.
   zoomIn() {
     const plot = this.figure.model("branches");
     const { x, y } = this.data.rows.orbits;
@@ -180,6 +180,6 @@ export function render({ model }) {
   window.granchain.on("overlay", opened);
   new ResizeObserver(() => page.fit()).observe(page.work);
   page.show();
-  opened(window.granchain.overlay); // by a link
+  opened(window.granchain.overlay); // a link may open the page
   return page.root;
 }

@@ -1,4 +1,4 @@
-// The Branches tab: the small version of the picture and the way to the page.
+// The Branches tab: a small version of the picture, and a button that opens the page.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";

@@ -1,4 +1,4 @@
-// The effects panel: a switch for every effect, its slot in the compiled kernel, what it costs, and what is being computed.
+// The Effects tab: a switch for every effect, its slot in the compiled kernel and its cost, and what is computed now.
 
 import { element, paragraph } from "../../parts/dom.js";
 
@@ -9,7 +9,7 @@ const COST =
 const MINUS =
   "A minus: steps are quicker with the effect, because fewer of them are divided where contacts open or close.";
 
-// The columns of the costs, with their hints.
+// The columns of the table of costs: title and hint.
 const COLUMNS = [
   ["effect", ""],
   ["arithmetic alone", "What its code adds to a plain RK4 step, in which the arithmetic is always the same."],
@@ -22,7 +22,7 @@ const COLUMNS = [
 const signed = (value) =>
   `${value < 0 ? "−" : "+"}${Math.abs(value) < 9.95 ? Math.abs(value).toFixed(1) : Math.abs(value).toFixed(0)}`;
 
-// Nanoseconds, how far they varied between the turns, and per cent.
+// A cost in nanoseconds with its variation between measurements, and in per cent.
 const cost = (measured) => {
   if (!measured) return null;
   const { difference, percent, spread } = measured;
@@ -58,7 +58,7 @@ function effectRow(model, effect, slot) {
   return rows;
 }
 
-// Every effect with its costs, and below them the time of a whole step.
+// A table of all effects with their costs, and in the last row the time of a whole step.
 function costTable(model, { effects, slots, step }) {
   const slotOf = new Map(slots.map((one) => [one.slot, one]));
   const ns = (value) => (value ? `${value.toFixed(0)} ns` : "–");
@@ -80,7 +80,7 @@ function costTable(model, { effects, slots, step }) {
   );
 }
 
-// Whether an effect certainly makes steps quicker although it adds arithmetic.
+// Whether an effect makes steps faster, by more than the variation, although it adds arithmetic.
 const saves = ({ code, motion }) => motion && motion.difference + motion.spread < Math.min(0, code.difference);
 
 function activityRow({ name, state, detail }) {

@@ -1,14 +1,14 @@
-// The page "Hard cases", over the pictures: a card for each case, none of which runs before the visitor asks.
+// The Hard cases page, over the pictures: a card for each case, which runs when the visitor asks for it.
 
 import { button, element, meter, pageHead, table } from "../../parts/dom.js";
 import { ResultFigure } from "../../parts/result_figure.js";
 
-// Text with its powers, "10^5" and "F^{1/6}", raised.
+// Text in which powers such as "10^5" and "F^{1/6}" are raised.
 const raised = (text) =>
   text
     .split(/(\^\{[^}]+\}|\^-?\d+)/)
     .map((piece) => (piece.startsWith("^") ? element("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
-const EXPLAINED_AFTER = 20; // seconds after which the card says why the first run on a computer takes long
+const EXPLAINED_AFTER = 20; // s; after that the card says why the first run on a computer takes long
 
 function rowTable(rows) {
   const body = element("tbody");
@@ -108,7 +108,7 @@ class HardCases {
     window.granchain.publish("hard", { sentence: summary });
   }
 
-  // Once a second: how long the case under way has been running.
+  // Once a second it shows how long the present case has been running.
   tick() {
     for (const card of this.cards.values()) if (card.began !== null) card.tick();
   }

@@ -1,4 +1,4 @@
-// All attractors of the present setting, as a table below the map.
+// The table of all attractors of the present setting, below the map.
 
 import { button, element, paragraph, table } from "../../parts/dom.js";
 import { MAP } from "./cells.js";
@@ -24,7 +24,7 @@ const attractorRow = (one, load) =>
     element("td", {}, button("show", load)),
   );
 
-// The table, or how far the search is; `load` is called with an attractor's number.
+// Makes the table or, while the search runs, says how far it is. `load` is called with an attractor's number.
 export function attractorList(load) {
   if (MAP.search !== "done") return MAP.searched ? [paragraph(MAP.searched, "soft")] : [];
   const rows = MAP.attractors.map((one, number) => attractorRow(one, () => load(number)));

@@ -1,11 +1,11 @@
-// What the browser knows of the map: its figure and cells, its state and the attractors.
+// The map as the browser knows it: figure, cells, state and attractors.
 
 import { StreamedData } from "../../parts/bokeh_figure.js";
 
 export const MAP = {
   head: null,
   cells: new StreamedData(),
-  figure: null, // the one on the screen
+  figure: null, // the BokehFigure of the tab
   now: { x: [], y: [] },
   done: 0,
   status: "none",
@@ -16,11 +16,11 @@ export const MAP = {
   search: "none",
   searched: "",
   shown: "force",
-  // Redraws the tab; set when it is first opened, and without effect while it is closed.
+  // Redraws the tab. It is set when the tab is first opened, and does nothing while the tab is closed.
   redraw: () => {},
 };
 
-// Why a computation failed or, if it did not, how it stands.
+// Why a computation failed or, if it did not, how far it is.
 const wordsOf = ({ sentence, progress }) => sentence || progress;
 
 export function mapMessage(message) {
@@ -40,7 +40,7 @@ export function mapMessage(message) {
   MAP.redraw(message.type);
 }
 
-// The row of the cell drawn at a place of the grid: the finest one computed so far.
+// The row of the finest cell computed so far at a place of the grid; −1 if there is none.
 export function cellAt(i, j) {
   const { number, spacing } = MAP.cells.rows.cells ?? { number: [] };
   for (let step = 1; step <= 64; step *= 2) {
@@ -50,13 +50,13 @@ export function cellAt(i, j) {
   return -1;
 }
 
-// Of the cells that a tap has hit, the row of the one from the finest net.
+// The row of the finest of the cells that a tap has hit.
 export const finest = (rows) => {
   const { spacing } = MAP.cells.rows.cells;
   return rows.reduce((best, row) => (spacing[row] < spacing[best] ? row : best));
 };
 
-// The two knobs' values of a cell, in SI.
+// The values of the two knobs at a cell, in SI.
 export function valuesOf(row) {
   const { x, y } = MAP.head;
   const number = MAP.cells.rows.cells.number[row];

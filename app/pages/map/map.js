@@ -1,4 +1,4 @@
-// The map: regime or largest force over f and A0, coarse first, and all attractors of the present setting.
+// The Map tab: regime or largest force over two knobs, coarse first, and all attractors of the present setting.
 
 import { button, element, meter, paragraph } from "../../parts/dom.js";
 import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
@@ -17,7 +17,7 @@ const within = (value, count) => Math.max(0, Math.min(count - 1, value));
 class MapTab {
   constructor(model) {
     this.send = (name, more = {}) => model.send_msg({ do: name, ...more });
-    this.cursor = null; // row and column of the cell that the arrow keys have chosen
+    this.cursor = null; // row and column of the cell chosen with the arrow keys
     this.choices = SHOWN.map(([name, title]) => button(title, () => this.choose(name), { value: name }));
     this.meter = meter("progress of the map");
     this.stop = button("stop", () => this.send("map-stop"));
@@ -40,7 +40,7 @@ class MapTab {
     ];
   }
 
-  // Force or regime.
+  // Shows the force or the regime.
   choose(name) {
     MAP.shown = name;
     this.redraw();
@@ -75,7 +75,7 @@ class MapTab {
     this.dress();
   }
 
-  // Which colours, where the page is now, and the cell of the arrow keys.
+  // Sets the colours, the mark of the present setting, and the cell chosen with the arrow keys.
   dress() {
     fillModels(this.figure, MAP.head?.shown[MAP.shown]);
     this.figure.set("now", { data: MAP.now });
@@ -86,7 +86,7 @@ class MapTab {
     if (row >= 0) this.line.textContent = MAP.cells.rows.cells.tooltip[row];
   }
 
-  // `what` is the type of the message that has come; without it everything is drawn again.
+  // Draws again what a message of type `what` changes; everything without a type.
   redraw(what) {
     for (const choice of this.choices) choice.ariaPressed = String(choice.value === MAP.shown);
     this.showProgress();

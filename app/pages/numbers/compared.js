@@ -1,4 +1,4 @@
-// Up to three pinned pictures in the Numbers tab: their numbers, and by how much the present picture differs.
+// Up to three pinned pictures in the Numbers tab: their numbers, and how much the present picture differs from them.
 
 import { button, element, paragraph } from "../../parts/dom.js";
 
@@ -6,7 +6,7 @@ const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey,
 
 let comparison = { pins: [], rows: [], full: false };
 
-// The server's message; the key over the force trains says that there are grey lines.
+// Takes the server's message. With pins, the key over the force trains says what the grey lines are.
 export function compareMessage(message) {
   if (message.type !== "compare") return;
   comparison = message;
@@ -32,21 +32,21 @@ function head(model, { name, sign, words, known }, number) {
   return place;
 }
 
-// A pinned value, and below it how much larger the present one is: the difference and the ratio.
+// A pinned value and, below it, the present value minus and over the pinned one.
 function pinned([value, ...differences]) {
   const place = cell(value);
   for (const textContent of differences) if (textContent) place.append(element("small", { textContent }));
   return place;
 }
 
-// A quantity: its name over the whole width, below it the present value and those of the pins.
+// A quantity: a row with its name, and below it a row with the present and the pinned values.
 function lines({ title, now, pins }) {
   const name = element("th", { textContent: title, scope: "rowgroup", colSpan: 1 + pins.length });
   const values = element("tr", { className: title === "motion" ? title : "" }, cell(now), ...pins.map(pinned));
   return element("tbody", {}, element("tr", {}, name), values);
 }
 
-// The button that pins, and the table of what is pinned.
+// The button that pins, and the table of pinned pictures.
 export function compared(model) {
   const pin = button("pin this picture", () => model.send_msg({ do: "pin" }), { className: "primary" });
   const body = element("div", { className: "compared" });

@@ -1,5 +1,5 @@
-// The Numbers tab: the pictures in words and in tables, and beside pinned ones. The words describe the pictures to a
-// screen reader, too.
+// The Numbers tab: the pictures in words, in tables, and compared with pinned ones. The words also describe the
+// pictures to a screen reader.
 
 import { modelsNamed } from "../../parts/bokeh.js";
 import { element, paragraph, table } from "../../parts/dom.js";
@@ -22,7 +22,7 @@ export function numbersMessage(message) {
   window.granchain.emit("numbers-received");
 }
 
-// The rows of the curve are those that its figure draws.
+// The rows of the curve come from what its figure draws.
 function curveRows() {
   const [figure] = modelsNamed(CURVE);
   const points = (figure?.renderers ?? [])

@@ -1,9 +1,9 @@
-// The drawings of the Observer page: the chain, its observer, and between them the force that goes from one to the other.
+// The drawings of the Observer page: the chain, its observer, and between them the force from one to the other.
 
 import { ChainDrawing } from "../../parts/chain_drawing.js";
 import { element } from "../../parts/dom.js";
 
-// A chain that fills its own canvas, without the words of the main picture.
+// A chain on a canvas of its own, without the words of the main picture.
 class WholeChain extends ChainDrawing {
   measure() {
     const box = this.canvas.getBoundingClientRect();
@@ -13,7 +13,7 @@ class WholeChain extends ChainDrawing {
   words() {}
 }
 
-// The observer: instead of the driver an arrow that is as long as the force.
+// The observer. In place of the driver it has an arrow whose length shows the force.
 class PushedChain extends WholeChain {
   constructor(...words) {
     super(...words);
@@ -36,7 +36,7 @@ class PushedChain extends WholeChain {
     else this.arrow(force, place(1) - radius, y, this.left);
   }
 
-  // With its tip at x = `tip`; the largest force is `room` long, but at least 30 px.
+  // Its tip is at x = `tip`. The arrow of the largest force is `room` px long, but at least 30 px.
   arrow(force, tip, y, room) {
     const { context: g, ink } = this;
     const long = Math.min(1, Math.abs(force) / this.force) * Math.max(30, room);
@@ -57,7 +57,7 @@ class PushedChain extends WholeChain {
   }
 }
 
-// The canvas with as many pixels as the screen has under it, empty and ready to draw in CSS pixels.
+// Clears a canvas at the resolution of the screen; its context then draws in CSS pixels.
 function cleared(canvas) {
   const { width, height } = canvas.getBoundingClientRect();
   const ratio = window.devicePixelRatio || 1;
@@ -69,7 +69,7 @@ function cleared(canvas) {
   return { context, width, height };
 }
 
-// F_in of the period that plays, with a dot where it is now.
+// F_in over the period that is replayed, with a dot at the present time.
 function drawForce(canvas, { message, chain }, row) {
   const { context: g, width, height } = cleared(canvas);
   const { rows, beads } = message;

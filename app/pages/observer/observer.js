@@ -1,4 +1,4 @@
-// The Observer page: the chain above, its observer below, between them the force that couples them, and their distance.
+// The Observer page: the chain, below it its observer, the force that couples them, and their distance.
 
 import { button, element, pageHead } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";
@@ -6,7 +6,7 @@ import { Chains } from "./chains.js";
 import { fillDistance, showDistance } from "./observer_tab.js";
 import { Replay } from "./replay.js";
 
-const KEPT_A_PERIOD = 8; // points of the distance
+const KEPT_A_PERIOD = 8; // points of the distance in a drive period
 const KEPT_PERIODS = 80;
 
 // The foundation's stiffness: a slider, and a button for each of the paper's two values.
@@ -32,7 +32,7 @@ class KappaControl {
   }
 }
 
-// The distance of a period's rows, thinned out, as points [drive period, distance].
+// The distance in a period, thinned out, as points [drive period, distance].
 function thinned({ distance, message: { rows, number } }) {
   const stride = Math.max(1, Math.round((rows - 1) / KEPT_A_PERIOD));
   const points = [];
@@ -51,7 +51,7 @@ class ObserverPage {
     const send = (name, more = {}) => model.send_msg({ do: name, ...more });
     const control = (words, name, title) => button(words, () => send(name), { title });
     this.model = model;
-    this.asked = 0; // the animation frame that was asked for
+    this.asked = 0; // number of the requested animation frame
     this.history = [];
     this.kappa = new KappaControl((value) => send("set", { name: "kappa", value }), model.state.paper_kappa);
     this.said = element("b");
@@ -89,7 +89,7 @@ class ObserverPage {
     this.showDistance();
   }
 
-  // Here and, if it is on the screen, in the tab.
+  // Draws the distance on the page and, if it is on the screen, in the tab.
   showDistance() {
     const { figures, state } = this.model;
     const page = window.granchain;
@@ -99,7 +99,7 @@ class ObserverPage {
     if (page.overlay === "observer") showDistance(this.figure, figures.page, this.known);
   }
 
-  // A period begins to play; one with a lower number begins another history.
+  // The replay of a period begins. A lower number than before means another run, whose history is empty.
   begin(step) {
     if (this.history.length && this.history.at(-1)[0] > step.message.number) this.history = [];
     this.history.push(...thinned(step));
@@ -108,7 +108,7 @@ class ObserverPage {
     this.showDistance();
   }
 
-  // Asks for an animation frame. Each asks for the next while somebody looks at the page or its tab.
+  // Requests an animation frame. Each requests the next while somebody looks at the page or its tab.
   wake() {
     this.asked ||= requestAnimationFrame((time) => {
       this.asked = 0;

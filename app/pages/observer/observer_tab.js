@@ -1,9 +1,9 @@
-// The Observer tab: the distance in small, and the way to the page. The page fills its figure with the same function.
+// The Observer tab: a small picture of the distance, and the way to the page, whose figure the same function fills.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";
 
-// The distance over time, and what the multipliers predict of it; each point is [drive period, distance].
+// The distance over time, and its prediction by the multipliers; each point is [drive period, distance].
 export function fillDistance(figure, { history, prediction }) {
   const data = (points) => ({
     period: points.map(([period]) => period),

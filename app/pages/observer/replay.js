@@ -1,12 +1,13 @@
-// The periods that the server computes for the Observer page: asked for in time, kept in a queue, replayed one by one.
+// Periods that the server computes for the Observer page. They are requested ahead, queued, and replayed one by one.
 
 import { unpack } from "../../parts/chain_series.js";
 
 const PERIODS_A_SECOND = 4;
 const AHEAD = 2; // periods that wait in the queue
-const ASK_AGAIN = 2000; // ms until it asks again: an observer in step sends nothing, until it is nudged elsewhere
+// ms from a request to the next if no period came: an observer in step with its chain sends none until it is nudged.
+const ASK_AGAIN = 2000;
 
-// One message's array as the frames of both chains and their distance.
+// The frames of both chains and their distance, from one message's array.
 function parted(message) {
   const { rows, values } = message;
   const first = unpack(message);
@@ -16,7 +17,7 @@ function parted(message) {
 }
 
 export class Replay {
-  // `ask` asks the server for a period; `begin` is called with each one when it begins to play.
+  // `ask` requests a period from the server; `begin` is called with each period when its replay begins.
   constructor(ask, begin) {
     this.ask = ask;
     this.begin = begin;
@@ -28,14 +29,14 @@ export class Replay {
     this.askAfter = 0;
   }
 
-  // A period has come; the first of another run takes the place of those that wait.
+  // Takes a period from the server. The first of another run replaces those that wait.
   add(message) {
     this.askAfter = 0;
     if (message.began) this.queue = [];
     this.queue.push(parted(message));
   }
 
-  // Seconds since the last frame; 0.1 at most, so that a hidden tab does not make it jump.
+  // Seconds since the last frame, at most 0.1, so that the replay does not jump after its tab was hidden.
   seconds(time) {
     const passed = Math.min(0.1, (time - this.last) / 1000);
     this.last = time;

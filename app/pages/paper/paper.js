@@ -1,4 +1,4 @@
-// The page "The paper", over the pictures: figures are computed when they are chosen, with caption and rows of the table.
+// The page of the paper, over the pictures: a chosen figure is computed; it has a caption and rows of the table.
 
 import { button, element, meter, pageHead, paragraph, table } from "../../parts/dom.js";
 import { ResultFigure } from "../../parts/result_figure.js";
@@ -7,7 +7,7 @@ const ABOUT =
   "The figures of Zhang et al. (2016), computed here from the presets. Choose one; what the paper states and where we differ stands under it.";
 const TITLES = ["the paper states", "we get", "do they differ?", "command"];
 
-// Text with what is between two stars in bold.
+// Text in which words between two stars are bold.
 const bold = (text) => text.split("**").map((piece, i) => (i % 2 ? element("b", { textContent: piece }) : piece));
 
 function statedTable(rows) {

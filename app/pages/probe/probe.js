@@ -1,4 +1,4 @@
-// The Probe page, over the pictures: one bead in six pictures. A click on a bead, in the chain or the map, chooses it.
+// The Probe page, over the pictures: one bead in six pictures. A click on a bead or its column of the map chooses it.
 
 import { button, element, fillBeads, pageHead, paragraph } from "../../parts/dom.js";
 import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";

@@ -1,4 +1,4 @@
-// The Probe tab: the phase portrait of the chosen bead, small, and the way to the page.
+// The Probe tab: a small phase portrait of the chosen bead, and the way to the page.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
 import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";

@@ -1,11 +1,11 @@
-// One Floquet mode as a motion of the chain: where a small disturbance of the orbit moves every bead.
+// One Floquet mode as a motion of the chain: how a small disturbance of the orbit moves every bead.
 
 import { ChainDrawing } from "../../parts/chain_drawing.js";
 import { element } from "../../parts/dom.js";
 import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
 
 class DisturbedChain extends ChainDrawing {
-  // A mode has no size of its own: the largest displacement is drawn as this part of the beads' distance.
+  // A mode has no size of its own: its largest displacement is drawn as this part of the distance of two beads.
   load(frames) {
     this.rest(frames.radii);
     this.exaggeration = 0.42;
@@ -15,12 +15,12 @@ class DisturbedChain extends ChainDrawing {
 
   contact() {}
 
-  // The lines below the beads are as far apart as the beads, however flat the picture is.
+  // The lines below the beads are as far apart as the beads, whatever the height of the picture.
   widest() {
     return Number.POSITIVE_INFINITY;
   }
 
-  // Smaller than their distance, so that a disturbance does not draw them over each other.
+  // Beads are smaller than their distance, so that displaced beads do not overlap.
   size(radius) {
     return Math.min(0.8 * radius, 0.3 * this.height);
   }
@@ -38,7 +38,7 @@ class DisturbedChain extends ChainDrawing {
     g.stroke();
   }
 
-  // The places of the beads on the orbit, behind everything else.
+  // The places of the beads on the orbit, drawn behind everything else.
   ground(frames, _, radius, y) {
     const { context: g, ink } = this;
     g.strokeStyle = ink.text;
@@ -61,7 +61,7 @@ export class ModeView {
     this.canvas = element("canvas");
     this.drawing = new DisturbedChain(this.canvas);
     this.host = element("div", { className: "picture" });
-    this.hosts = [this.canvas, this.host]; // what is drawn anew when its size changes
+    this.hosts = [this.canvas, this.host]; // elements whose change of size calls for a new drawing
     this.title = element("h3", { textContent: "mode" });
     this.note = element("span", { className: "soft" });
     this.root = element(
@@ -74,7 +74,7 @@ export class ModeView {
     );
   }
 
-  // Which disturbance it is; `rank` is that of the chosen multiplier, 0 the largest.
+  // Says which disturbance it is. `rank` is that of the chosen multiplier; 0 is the largest.
   showTitle(rank) {
     const leading = this.mode?.size < 1 ? "the slowest to die out" : "the fastest to grow";
     this.title.textContent = this.mode ? (rank ? "the chosen disturbance" : leading) : "mode";
@@ -123,7 +123,7 @@ export class ModeView {
     return c * re[row * beads + i] - s * im[row * beads + i];
   }
 
-  // At `phase` drive periods: the disturbance begins afresh with every period of the orbit, turned but not grown.
+  // Draws the mode at `phase` drive periods. With every period of the orbit it starts again, rotated but not grown.
   draw(phase) {
     if (!this.mode || phase === this.last) return;
     this.last = phase;
@@ -143,7 +143,7 @@ export class ModeView {
     if (this.now) this.now.setAttribute("transform", `translate(0 ${this.Y(row / (rows - 1)).toFixed(1)})`);
   }
 
-  // Every bead's disturbance over one period of the orbit, time downwards as on the main page.
+  // Draws the disturbance of every bead over one period of the orbit; time runs downwards, as on the main page.
   seismogram() {
     const { mode, drawing } = this;
     const f = frame(

@@ -1,4 +1,4 @@
-// The multipliers in the complex plane; a click on one, or an arrow key, chooses the disturbance that is shown.
+// The multipliers in the complex plane. A click on one, or an arrow key, chooses the disturbance that is shown.
 
 import { element } from "../../parts/dom.js";
 import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";

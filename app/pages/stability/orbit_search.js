@@ -1,4 +1,4 @@
-// The row that searches for an unstable orbit nearby, and leads back from one that was found.
+// The row with the search for an unstable orbit nearby, and the way back from an orbit that was found.
 
 import { button, element } from "../../parts/dom.js";
 

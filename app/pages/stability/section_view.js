@@ -1,4 +1,4 @@
-// The Poincaré section on the page: its picture, and the choice of bead and drive phase.
+// The Poincaré section of the page: its picture, and the choice of bead and drive phase.
 
 import { element, fillBeads } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";
@@ -53,7 +53,7 @@ export class SectionView {
     else this.figure.remove();
   }
 
-  // Which part of the plane: all of it, or that of the second half of the points.
+  // Shows the whole plane, or the part with the second half of the points.
   showRanges() {
     const ranges = this.close.checked ? this.data?.near : this.data?.drawn;
     if (ranges) for (const name of ["displacements", "velocities"]) this.figure.set(name, ranges[name]);

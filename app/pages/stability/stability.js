@@ -1,4 +1,4 @@
-// The Stability page, over the pictures: whether a disturbance dies out, which way it leaves, and on what evidence.
+// The Stability page, over the pictures: whether a disturbance dies out, how it grows if not, and the evidence.
 
 import { element, pageHead } from "../../parts/dom.js";
 import { ModeView } from "./mode.js";

@@ -1,4 +1,4 @@
-// The Stability tab: the unit circle and the sentence; it draws what the Stability page holds.
+// The Stability tab: the unit circle and the sentence, both from the Stability page.
 
 import { element, openButton, paragraph } from "../../parts/dom.js";
 import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";

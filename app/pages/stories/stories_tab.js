@@ -1,13 +1,13 @@
-// The Stories tab: all stories, or one step of the one that is told: what to see, a question, and its answer on demand.
+// The Stories tab: the list of stories, or one step: what to see, a question, and its answer on demand.
 
 import { button, element, paragraph, PHONE } from "../../parts/dom.js";
 
 const INVITES = "A story turns the knobs, says where to look, and asks. All controls stay available.";
 
-let revealed = ""; // the step whose answer has been asked for
-let told = ""; // the step that was shown last
+let revealed = ""; // the step whose answer is shown
+let shownStep = ""; // the step that was shown last
 
-// The part of the page that a step is about has a frame.
+// Puts a frame around the part of the page that a step is about.
 function point(look, telling = false) {
   document.getElementById("curves").classList.toggle("telling", telling);
   window.granchain.emit("telling", telling);
@@ -54,13 +54,13 @@ function telling(model, story) {
   return [row, element("h3", { textContent: title }), paragraph(say), paragraph(ask, "ask"), ...open, answered];
 }
 
-// On a phone a step that begins stands at the top of the screen.
+// On a phone a step that begins is scrolled to the top of the screen.
 function comeUp(story) {
   const step = story ? `${story.name} ${story.step}` : "";
-  if (step === told) return;
-  const before = told;
-  told = step;
-  // The same for the list of stories, which stands below the pictures, except when the page has just been opened.
+  if (step === shownStep) return;
+  const before = shownStep;
+  shownStep = step;
+  // So is the list of stories after a step, as it is below the pictures; not when the page has just been opened.
   if ((step || before) && PHONE.matches) requestAnimationFrame(() => document.getElementById("tabs").scrollIntoView());
 }
 
@@ -71,5 +71,5 @@ export function storiesTab(model) {
   return { content: story ? telling(model, story) : chooser(model) };
 }
 
-// Another tab points to nothing.
+// When another tab is opened, nothing has a frame.
 export const leaveStories = () => point("");
