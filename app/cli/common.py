@@ -23,7 +23,7 @@ from .foundation import kept_spring
 
 T = TypeVar("T")
 
-#: Between two looks whether a computation has ended [s].
+#: Time between two checks whether a computation has ended [s].
 _LOOK = 0.05
 #: Time to end that a computation has after its stop flag is set [s].
 _PATIENCE = 1.2

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from types import FrameType
     from typing import NoReturn
 
-#: What a computation has to end, and to write what it has, before the process ends in any case [s].
+#: Time that a computation has to end and to write its results, before the process ends in any case [s].
 _GRACE = 2.5
 #: Exit status by signal.
 _STATUS: dict[int, int] = {signal.SIGINT: 130, signal.SIGTERM: 143}

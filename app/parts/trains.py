@@ -34,11 +34,11 @@ _ZERO: dict[str, Any] = {"line_width": 1, "line_alpha": 0.35, "level": "underlay
 _TICKS = (3, 6)
 #: The smallest number that is written in the unit of an axis.
 _SMALLEST_READABLE = 0.01
-#: The smallest force is shown beside the largest if it is a pull above this part of the largest …
+#: Smallest pull that is shown beside the largest force, over that force.
 _SHOWN_PULL = 0.01
-#: … or a pressure above this part of it.
+#: Smallest pressure of an always pressed contact that is shown beside the largest force, over that force.
 _SHOWN_PRESSURE = 0.2
-#: By figure; the browser measures them and says whether there is room for such titles (`ForceTrains.fit`).
+#: Widest titles of the axes. The browser measures them and says whether there is room for them (`ForceTrains.fit`).
 WIDEST_TITLES = {"left": INPUT.label("mN"), "right": OUTPUT.label("mN")}
 
 

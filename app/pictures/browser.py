@@ -28,7 +28,7 @@ _PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-
              "chrome")
 _OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
             "--disable-background-networking", "--virtual-time-budget=20000"]
-#: By how much the window is larger than the page [px], because its frame takes some; the rest is cut off.
+#: Size of the window minus that of the page [px]. The frame of the window takes some of it; the rest is cut off.
 _FRAME_ROOM = 200
 #: Longest time for one figure [s].
 _LONGEST_TIME = 120

@@ -26,7 +26,7 @@ WORDS = {"rest": "from rest", "up": "sweep up", "down": "sweep down"}
 LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈○"}
 #: What the dashes mean, in a sentence.
 KEY = "Solid line: from rest; dashed: frequency rising; dotted, with hollow marks: frequency falling."
-#: What fills the marks, by the start of a sweep: a column, or nothing, so that both sweeps show where they differ.
+#: Filling of the marks by the start of a curve: a column, or none, so that one sees where the two sweeps differ.
 FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
 #: A tooltip's lines for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]

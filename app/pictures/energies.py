@@ -12,6 +12,7 @@ from bokeh.palettes import Inferno256
 
 from .theme import Theme
 
+#: Number of colours.
 _STEPS = 1024
 #: Colours of energies from 0 to the largest, evenly spaced. They follow the square root of the energy, which is
 #: proportional to the speed: weak motion stays visible next to strong. Steps of the root are fine where it is dark.

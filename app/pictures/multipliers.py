@@ -20,6 +20,7 @@ from .theme import Theme, apply_theme, frame, themed
 
 #: Multipliers farther out are drawn at the edge, with their modulus beside them.
 _LARGEST_DRAWN = 2.4
+#: Least half-width of the plane: the unit circle with some room.
 _AROUND = 1.18
 #: A mark of a smaller modulus is small.
 _SMALL_MARK = 0.02

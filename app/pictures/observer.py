@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 
 from .theme import Theme, apply_theme, frame, themed
 
-#: How many drive periods are shown at once; panning shows the earlier ones that are kept.
+#: Drive periods that are shown at once; panning shows the earlier ones that are kept.
 SHOWN_PERIODS = 60
 #: The lower end of the axis of distances.
 _SMALLEST_DISTANCE = 1e-13

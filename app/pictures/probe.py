@@ -24,7 +24,7 @@ from .theme import Theme, apply_theme, frame, span_of, themed
 _MOST_ROWS = 700
 #: The spectrum ends at this multiple of the drive frequency.
 _LAST_HARMONIC = 12.5
-#: What glyphs refer to.
+#: Columns of a source to which glyphs refer.
 _COLUMNS = ("x", "y", "floor", "number", "contact", "from", "to")
 #: The spectrum's smallest amplitude, over its largest.
 _SMALLEST_AMPLITUDE = 1e-4

@@ -13,7 +13,7 @@ from .theme import Theme, apply_theme, frame, span_of, themed
 
 #: Sections with fewer points than this have their transient drawn larger.
 _FEW_POINTS = 150
-#: How many points of the way to an orbit are joined.
+#: Most points of the way to an orbit that are joined.
 _MOST_JOINED = 60
 
 

@@ -17,7 +17,7 @@ KINDS = ("PULL-DOC-REQ", "PATCH-DOC")
 CHANGES = ("ModelChanged", "MessageSent")
 #: Encoded values that are allowed: NaN and infinities, lists, sets and dictionaries, and events.
 TYPES = ("number", "array", "set", "map", "event")
-#: How deep lists and dictionaries may be nested; our page nests six.
+#: Deepest nesting of lists and dictionaries that is read; our page nests six.
 DEEPEST = 20
 
 

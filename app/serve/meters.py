@@ -17,9 +17,9 @@ from tornado.web import HTTPError, RequestHandler
 
 #: Upper bounds of the histogram of answers [s].
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-#: Between two measurements of how late the event loop is [s].
+#: Time between two measurements of how late the event loop is [s].
 _LATENESS_INTERVAL = 0.25
-#: How many of these measurements are kept: those of ten seconds.
+#: Number of these measurements that are kept: those of ten seconds.
 _LATENESSES_KEPT = 40
 #: The server is called busy when a knob's message, or the computation for it, waits longer than this [s].
 _BUSY_WAIT = 0.3

@@ -17,7 +17,7 @@ from .channel import can_lock, run_locked
 Receive = Callable[[dict[str, Any]], None]
 
 _NUMBERS = {"nan": float("nan"), "inf": float("inf"), "+inf": float("inf"), "-inf": float("-inf")}
-#: By document and a model's id: who receives a part's messages.
+#: The receiver of a part's messages, by document and model id.
 _RECEIVERS: weakref.WeakKeyDictionary[Document, dict[str, weakref.WeakMethod[Receive]]] = weakref.WeakKeyDictionary()
 
 

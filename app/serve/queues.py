@@ -160,7 +160,7 @@ COMPILATIONS = Queue("compilations", 2)
 
 TurnWork = Callable[[TurnFlag], Iterator[object]]
 
-#: How long a first result is computed before a newer request stops it [s].
+#: Time for which a first result is computed before a newer request stops it [s].
 _FIRST_RESULT_TIME = 1.0
 
 

@@ -19,7 +19,7 @@ from .turns import Flag, TurnFlag
 
 Item = TypeVar("Item")
 
-#: Between two checks of a visitor's stop flag while it waits [s]; new items wake it at once.
+#: Time between two checks of a visitor's stop flag while it waits [s]; new items wake it at once.
 _STOP_CHECK_INTERVAL = 0.5
 
 

@@ -26,12 +26,12 @@ Result = TypeVar("Result")
 #: A computation without a result counts as just begun for this processor time [s]. A first picture of ten beads takes
 #: a tenth of it.
 _BEGINNING_CPU_TIME = 0.03
-#: How long a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
+#: Time for which a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
 #: another thread costs some waits for the interpreter.
 _TIME_SLICE = 0.02
 #: Most computations that began lately whose waits are averaged.
 _MOST_WAITS = 200
-#: How far back such an average reaches [s].
+#: Span of time over which the waits are averaged [s].
 _WAITS_WINDOW = 10.0
 #: A computation that has waited this long gets a slice although others use all cores [s].
 _LONGEST_WAIT = 0.5

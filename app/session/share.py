@@ -61,14 +61,15 @@ VIEW: dict[str, ViewField] = {
 }
 #: Their values; the first is the default.
 EXTRAS: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}
-#: Where the motion began, the pinned pictures, and the question of the Analysis page: texts that `starts.py`, `pins.py`
-#: and `pages/analysis/questions.py` read.
+#: Field of the state in which the motion began, a text that `starts.py` reads.
 START = "from"
+#: Fields of the pinned pictures, texts that `pins.py` reads.
 PINS = ("pin", "pin2", "pin3")
+#: Field of the question of the Analysis page, a text that `pages/analysis/questions.py` reads.
 QUESTION = "question"
 #: Most characters of a link.
 LONGEST = 4500
-#: How many of them are left for what the browser adds: tab, page, look, embed.
+#: Characters of these that are kept free for what the browser adds: tab, page, look, embed.
 _ADDED_BY_BROWSER = 100
 
 
