@@ -8,9 +8,12 @@ from dataclasses import dataclass
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Those of steady states that never repeat; their errors are not stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
-#: What distances are taken to shrink by per orbit (`Regime.contraction`): |μ|, at most 1 less the first number; a decay
-#: that was observed, at most the second; and the third where none was.
-LEAST_BELOW_1, SLOWEST_DECAY, DECAY_NOT_SEEN = 1e-6, 0.999, 0.5
+#: A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.contraction`).
+LEAST_BELOW_1 = 1e-6
+#: Without |μ| it is taken to shrink by the observed decay, at most this.
+SLOWEST_DECAY = 0.999
+#: Where no decay was observed, it is taken to shrink by this.
+DECAY_NOT_SEEN = 0.5
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,9 @@
 """The table of what can be compiled ahead of time.
 
-A *structure* is the set of effects a scene has; moving a slider never changes it, adding a foundation or another
-dissipation law does, and the kernels of a new structure are compiled once per machine. They come in pieces, each of
-which can be compiled in its own process.
+The kernels of a new *structure* are compiled once per machine. A structure is the effects of a scene and their law,
+whether its beads are alike, and the vector that its bodies fit into. A slider changes it only where it turns an effect
+on or off (k, D, F0), makes beads unequal, or takes N over 6, 14 or 30. The kernels come in pieces, each of which can be
+compiled in its own process.
 """
 
 from __future__ import annotations
@@ -51,7 +52,7 @@ from .stop import Stop
 
 
 def structure(shown: Scene) -> str:
-    """Name of a scene's structure: its set of effects and the vectors its bodies fit into."""
+    """Name of a scene's structure."""
     width = next((f"vector of {width}" for width in WIDTHS if width >= shown.N + 2), "long")
     effects = [effect.key(shown) for effect in effects_of(shown)]
     law = [] if shown.has_dissipation else ["none"]

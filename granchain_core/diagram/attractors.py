@@ -29,14 +29,15 @@ from .sameness import SECTION_SETTING, Found, found, merged
 #: Frequencies of a sweep before the one asked for.
 _SWEEP = 8
 #: Drive periods at each of them.
-_PASS = 150
+_PASS_PERIODS = 150
 #: Distance from the frequency asked for at which a sweep begins, relative to it.
-_AWAY = 0.08
+_SWEEP_RANGE = 0.08
 #: Size of the box of random states, in units of the largest displacements and velocities of the motion from rest.
 _BOX = 1.5
-#: Displacement from an unstable orbit, relative to the motion, and drive periods before the next check: enough to
-#: leave an orbit with |μ| = 1.003.
-_BESIDE, _RUN_ON = 1e-2, 3000
+#: Displacement from an unstable orbit, relative to the motion.
+_DEPARTURE = 1e-2
+#: Drive periods before the next check: enough to leave an orbit with |μ| = 1.003.
+_DEPARTURE_PERIODS = 3000
 #: Most random states.
 MOST_STATES = 10_000
 
@@ -123,8 +124,8 @@ def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
     for one in group:
         shape = np.random.default_rng(one.result.number).standard_normal((2, len(u)))
         engine = Engine(orbit.scene, SECTION_SETTING, 1, stop=stop)
-        engine.start(State(u + _BESIDE * np.abs(u).max() * shape[0], v + _BESIDE * np.abs(v).max() * shape[1]))
-        engine.periods(_RUN_ON)
+        engine.start(State(u + _DEPARTURE * np.abs(u).max() * shape[0], v + _DEPARTURE * np.abs(v).max() * shape[1]))
+        engine.periods(_DEPARTURE_PERIODS)
         yield Start(orbit.scene, engine.state, one.result.number)
 
 
@@ -142,8 +143,8 @@ def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> 
     dice = np.random.default_rng(seed)
     size = _BOX * np.abs(strobes).max(axis=(0, 2)) * (scene.A0, velocity)
     size = np.maximum(size, (scene.A0, 2.0 * math.pi * scene.f * scene.A0))
-    origins = [Origin("rest", rest(scene)), Origin("up", _swept(scene, 1.0 - _AWAY, stop)),
-               Origin("down", _swept(scene, 1.0 + _AWAY, stop))]
+    origins = [Origin("rest", rest(scene)), Origin("up", _swept(scene, 1.0 - _SWEEP_RANGE, stop)),
+               Origin("down", _swept(scene, 1.0 + _SWEEP_RANGE, stop))]
     for number in range(random_states):
         u, v = size[:, None] * dice.uniform(-1.0, 1.0, (2, scene.N))
         origins.append(Origin(f"random {number}", State(u, v)))
@@ -162,10 +163,10 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
 
 
 def _run_on(scene: Scene, state: State, stop: Stop | None) -> tuple[State, np.ndarray, float]:
-    """State after `_PASS` periods by the fixed-step method, scaled strobes on the way, the unit of velocity [m/s]."""
+    """State after `_PASS_PERIODS` by the fixed-step method, scaled strobes on the way, the unit of velocity [m/s]."""
     engine = Engine(scene, SECTION_SETTING, 1, stop=stop)
     engine.start(state)
-    strobes, _ = engine.periods(_PASS)
+    strobes, _ = engine.periods(_PASS_PERIODS)
     return engine.state, strobes, engine.scaled.scales.velocity
 
 

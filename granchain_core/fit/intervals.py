@@ -12,10 +12,14 @@ from .search import Problem, descended
 
 #: The part of repetitions in which an interval holds the truth.
 LEVEL = 0.95
-#: Steps towards each end, evaluations of a descent on the way, and how near √Δχ² must come to its limit.
-_STEPS, _DESCENT, _AT_THE_LIMIT = 8, 6, 0.03
-#: A misfit that much below the least so far, in its unit, is another minimum.
-_LOWER = 0.3
+#: Most steps towards each end of an interval.
+_MOST_STEPS = 8
+#: Most evaluations of a descent on the way.
+_DESCENT_CALLS = 6
+#: Distance of √Δχ² from its limit at which the end is found, relative to the limit.
+_ROOT_TOLERANCE = 0.03
+#: A misfit lower than the least so far by this, in its unit, is another minimum.
+_BETTER_BY = 0.3
 
 
 class BetterMinimum(Exception):
@@ -68,7 +72,7 @@ def profile(problem: Problem, best: np.ndarray, j: int, scale: float, freedom: i
     found: dict[float, float] = {float(best[j]): 0.0}
     ends = []
     for sign in (-1.0, 1.0):
-        lowest = -math.inf if last else -_LOWER * scale
+        lowest = -math.inf if last else -_BETTER_BY * scale
         ends.append(_end(problem, best, j, others, ridge, sign, reach, top, least, lowest, found))
     one = problem.free[j]
     places = sorted(found)
@@ -84,13 +88,13 @@ def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: n
     inside, root_inside = float(best[j]), 0.0
     outside, root_outside = math.nan, math.nan
     start, trial = best, best[j] + sign * reach
-    for _ in range(_STEPS):
+    for _ in range(_MOST_STEPS):
         trial = min(max(trial, 0.0), 1.0)
         if abs(trial - inside) < 1e-9:
             break
         place = np.clip(start + ridge * (trial - start[j]), 0.0, 1.0)
         place[j] = trial
-        place = descended(problem, place, others, _DESCENT)
+        place = descended(problem, place, others, _DESCENT_CALLS)
         rise = problem.misfit(place) - least
         if rise < lowest:
             raise BetterMinimum(place)
@@ -100,7 +104,7 @@ def _end(problem: Problem, best: np.ndarray, j: int, others: list[int], ridge: n
             inside, root_inside, start = trial, root, place
         else:
             outside, root_outside = trial, root
-        if abs(root - top) < _AT_THE_LIMIT * top:
+        if abs(root - top) < _ROOT_TOLERANCE * top:
             return trial, False
         if root <= top and trial == bound:
             return bound, True

@@ -26,10 +26,16 @@ from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
 Target = CurveTarget | SeriesTarget | FeatureTarget
 #: Step of derivatives, in parts of the bounds: above the noise of a curve's points (1e-5), below a peak's width.
 STEP = 2e-3
-#: Places from which the search goes down, evaluations of each, and of the simplex for every parameter.
-_STARTS, _DESCENT, _SIMPLEX = 3, 20, 40
-#: Least distance of these places, as a fraction of the range between the bounds, and how often the design is doubled.
-_APART, _ROUNDS = 0.1, 3
+#: Places from which the search goes down.
+_STARTS = 3
+#: Most evaluations of a descent from one of them.
+_DESCENT_CALLS = 20
+#: Most evaluations of the simplex for every parameter.
+_SIMPLEX_CALLS = 40
+#: Least distance of two starts in a parameter, as a fraction of the range between its bounds.
+_APART_BY = 0.1
+#: Most rounds of the search, each with a design twice as large.
+_MOST_ROUNDS = 3
 
 
 @dataclass(eq=False)
@@ -134,7 +140,7 @@ def _beside(place: np.ndarray, j: int) -> np.ndarray:
     return other
 
 
-def descended(problem: Problem, place: np.ndarray, moving: Sequence[int], most: int = _DESCENT) -> np.ndarray:
+def descended(problem: Problem, place: np.ndarray, moving: Sequence[int], most: int = _DESCENT_CALLS) -> np.ndarray:
     """The place to which `least_squares` goes from `place` when only the parameters `moving` may change."""
     moving = list(moving)
     if not moving:
@@ -158,7 +164,8 @@ def simplex(problem: Problem, place: np.ndarray, size: float) -> np.ndarray:
     corners = np.vstack([place, *(place + (size if place[j] + size <= 1.0 else -size) * np.eye(count)[j]
                                   for j in range(count))])
     found = minimize(problem.misfit, place, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count,
-                     options={"initial_simplex": corners, "maxfev": _SIMPLEX * count, "xatol": 1e-4, "fatol": 1e-3})
+                     options={"initial_simplex": corners, "maxfev": _SIMPLEX_CALLS * count, "xatol": 1e-4,
+                              "fatol": 1e-3})
     better = np.clip(found.x, 0.0, 1.0)
     return better if problem.misfit(better) <= problem.misfit(place) else place
 
@@ -166,7 +173,7 @@ def simplex(problem: Problem, place: np.ndarray, size: float) -> np.ndarray:
 def searched(problem: Problem, design: int, enough: Callable[[np.ndarray], bool]) -> np.ndarray:
     """The best place: a design over the bounds, descents from its best places, a simplex where regimes change.
 
-    Where the best place is not good `enough`, the design is doubled until there were `_ROUNDS`: a valley that was
+    Where the best place is not good `enough`, the design is doubled until there were `_MOST_ROUNDS`: a valley that was
     missed must not be a verdict on the model.
     """
     count = len(problem.free)
@@ -175,7 +182,7 @@ def searched(problem: Problem, design: int, enough: Callable[[np.ndarray], bool]
     tried: list[np.ndarray] = []
     starts: list[np.ndarray] = []
     ends: list[np.ndarray] = []
-    for turn in range(_ROUNDS):
+    for turn in range(_MOST_ROUNDS):
         new = sequence.random_base2(size) if turn == 0 else sequence.random(len(tried))
         tried += list(0.02 + 0.96 * (new + 0.5 * 2.0**-size) % 1.0)
         ends += [_down(problem, start) for start in _apart(problem, tried, starts)]
@@ -192,7 +199,7 @@ def _apart(problem: Problem, tried: list[np.ndarray], starts: list[np.ndarray]) 
     new: list[np.ndarray] = []
     problem.ahead(tried)
     for place in sorted(tried, key=problem.misfit):
-        if all(np.abs(place - other).max() > _APART for other in starts):
+        if all(np.abs(place - other).max() > _APART_BY for other in starts):
             starts.append(place)
             new.append(place)
         if len(new) == _STARTS:

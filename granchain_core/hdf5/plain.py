@@ -29,7 +29,7 @@ _MOST_ATTRIBUTE = 16_000_000
 _MOST_WORDS, _MOST_DIMENSIONS = 100_000, 3
 #: Most objects of a file that are listed, and groups within groups.
 _MOST_OBJECTS, _DEEPEST = 2000, 5
-#: What stands in the file for a word of variable length [bytes].
+#: Size of the reference to a string of variable length [bytes].
 _REFERENCE = 16
 _NUMBERS = (h5t.FLOAT, h5t.INTEGER)
 #: Memory that a child may take beside what it starts with and the file's own size, three times [bytes].

@@ -70,7 +70,8 @@ def _unit(dimension: str, asked: str | None) -> str:
     return str(found)
 
 
-def _told(record: ForceRecord, units: str) -> ForceRecord:
+def _described(record: ForceRecord, units: str) -> ForceRecord:
+    """The record with a sentence on how it was read."""
     output = "with" if record.output is not None else "no"
     return replace(record, understood=(
         f"{len(record.time)} samples from {record.time[0]:.6g} to {record.time[-1]:.6g} s, "
@@ -89,7 +90,7 @@ def _from_hdf5(path: Path) -> ForceRecord:
             file.numbers(f"{group}/{name}", rows, "any", unit) if name != "output_force" or file.has(f"{group}/{name}")
             else None for name, unit in (("time", "s"), ("input_force", "N"), ("output_force", "N")))
         assert time is not None and force is not None
-    return _told(checked(ForceRecord(time, force, output)), "HDF5 in s and N")
+    return _described(checked(ForceRecord(time, force, output)), "HDF5 in s and N")
 
 
 def _group(file: File) -> str:

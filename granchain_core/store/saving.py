@@ -15,7 +15,7 @@ from .writing import write_file, write_result
 
 
 def save(result: Labelled, path: str | Path, measured: Measured | Series | None = None) -> Path:
-    """Write a result to an HDF5 file with labelled axes and units (README.md, "Files").
+    """Write a result to an HDF5 file with labelled axes and units (docs/result-files.md).
 
     Parameters
     ----------

@@ -26,12 +26,24 @@ from ..stop import Stop
 from ..version import __version__
 from .sensors import Sensors
 
-#: Samples of the model: per sample of the sensors, per time 1/f_c of their filter, and least number per drive period.
-_FINER, _PER_BANDWIDTH, _LEAST = 4, 32, 96
-#: Relative error of the state that a record begins with, and steps of the record for one default step.
-_ACCURACY, _REFINE = 1e-5, 2
-#: Most samples of a series, records of a curve, values of the model's motion behind one of them, and drive periods.
-MOST_SAMPLES, MOST_RECORDS, MOST_VALUES, MOST_PERIODS = 1_000_000, 10_000, 20_000_000, 10_000
+#: Samples of the model per sample of the sensors.
+_PER_SAMPLE = 4
+#: Samples of the model per time 1/f_c of the sensors' filter.
+_PER_BANDWIDTH = 32
+#: Least samples of the model per drive period.
+_LEAST_SAMPLES = 96
+#: Relative error of the state that a record begins with.
+_START_ACCURACY = 1e-5
+#: Steps of a record for one default step.
+_STEPS_PER_DEFAULT = 2
+#: Most samples of a series.
+MOST_SAMPLES = 1_000_000
+#: Most records of a curve.
+MOST_RECORDS = 10_000
+#: Most values of the model's motion behind one record, beads times samples.
+MOST_VALUES = 20_000_000
+#: Most drive periods of a record.
+MOST_PERIODS = 10_000
 
 
 def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int = 0, stop: Stop | None = None) -> str:
@@ -183,20 +195,20 @@ def _recorded(scene: Scene, count: int, sensors: Sensors, random: np.random.Gene
 
 def _samples(scene: Scene, sensors: Sensors) -> int:
     """Samples of the model in a drive period: many for one of the sensors, and for the filter."""
-    fastest = _FINER * sensors.rate
+    fastest = _PER_SAMPLE * sensors.rate
     if sensors.bandwidth < 0.5 * sensors.rate:
         fastest = min(fastest, max(sensors.rate, _PER_BANDWIDTH * sensors.bandwidth))
-    return max(_LEAST, math.ceil(fastest / scene.f))
+    return max(_LEAST_SAMPLES, math.ceil(fastest / scene.f))
 
 
 def _motion(scene: Scene, length: float, samples: int, stop: Stop | None) -> Run:
     """The steady state from phase 0 on, over `length` [s] and a little more."""
-    found = settle(scene.evolve(accuracy=max(scene.accuracy, _ACCURACY)), stop=stop)
+    found = settle(scene.evolve(accuracy=max(scene.accuracy, _START_ACCURACY)), stop=stop)
     periods = math.ceil(length * scene.f) + 1
     if periods * samples * scene.N > MOST_VALUES:
         raise BadInput(f"{periods} drive periods of {samples} samples for {scene.N} beads are more than "
                        f"{MOST_VALUES:.0e} values; take fewer periods or a smaller rate.")
-    setting = fixed_step_setting(_REFINE)
+    setting = fixed_step_setting(_STEPS_PER_DEFAULT)
     engine = Engine(scene, setting, samples, stop=stop)
     engine.start(State(found.run.displacement[-1], found.run.velocity[-1]))
     began, rows = time.perf_counter(), engine.record(periods * samples)

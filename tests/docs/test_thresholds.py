@@ -45,7 +45,7 @@ def test_a_threshold_of_the_page_is_that_of_the_code(printed: str, name: str, fi
 
 
 def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
-    assert len(ROWS) == REGIMES.count(".py` |") > 20
+    assert len(ROWS) == REGIMES.count(".py` |")
     assert {file for _, _, file in ROWS} == {
         "kernels/strobes/periodicity", "kernels/batch/period_end", "steady/regime_criteria", "steady/lyapunov",
         "steady/settling/regime_decisions", "steady/settling/advance", "steady/settling/finite_difference_map",
@@ -68,7 +68,7 @@ def test_the_thresholds_of_a_response_are_those_of_the_code() -> None:
     """docs/orbits.md tells the rule of resonances; every number with a name in its two files is there."""
     text = (ROOT / "docs" / "orbits.md").read_text(encoding="utf-8")
     rows = re.findall(r"\| ([\d./]+) \| `(\w+)` in `([\w/]+)\.py` \|", text)
-    assert len(rows) == text.count(".py` |\n") == 8
+    assert len(rows) == text.count(".py` |\n") > 0
     for printed, name, file in rows:
         module = importlib.import_module("granchain_core." + file.replace("/", "."))
         assert float(Fraction(printed)) == pytest.approx(getattr(module, name), rel=1e-15)

@@ -110,11 +110,11 @@ _IN_SIMD_KERNELS: dict[str, set[type]] = {"rk4": set(), "batch": set(), "regular
 def by_slot(absent, forceinline=False):
     """A function whose code depends on which effect stands in its first argument, decided when it is typed.
 
-    The decorated function is the code for an absent effect (slot None). `function.of(Slot, …)` registers the code
-    for slots of these NamedTuple classes. The code for None returns an argument as it is, or a zero that callers only
-    add, which leaves no instruction; tests/kernels/test_machine_code.py checks this for short chains, batches and the
-    flow with tangents. A slot without code is a TypeError that names slot and function, in Python and while a kernel is
-    typed.
+    The decorated function is the code for an absent effect (slot None). `function.of(Slot, …)` registers the code for
+    slots of these NamedTuple classes. The code for None returns an argument as it is, or a zero that callers only add,
+    which leaves no instruction. tests/kernels/test_machine_code.py counts instructions of short chains and batches, and
+    products with zero in the flow with tangents. A slot without code is a TypeError that names slot and function, in
+    Python and while a kernel is typed.
     """
     implementations = {type(None): absent}
 

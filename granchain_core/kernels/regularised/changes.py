@@ -21,7 +21,7 @@ _AT_REST = 1e-9
 _FIRST_STEP = 0.12
 #: A step that would reach this part of the way to a release goes beyond it.
 _NEARLY_RELEASED = 0.8
-#: By this factor of the way.
+#: Length of such a step, as a factor of the way to the release.
 _BEYOND_RELEASE = 1.3
 #: A distance between two values of a step is searched if the cubic's rise above both, enlarged by this part, reaches 0.
 _RISE_MISSED = 0.25

@@ -43,9 +43,9 @@ _FAILED = 0.5
 _SURE = 0.3
 #: Most derivatives of the rough and of the exact map each.
 _MOST = 6
-#: Each step of `follow` that began above this residual is followed by one that reuses its derivative,
+#: A step of `follow` that began above this residual may be followed by one that reuses its derivative.
 _LAST = 1e-6
-#: which is taken if it begins below this residual.
+#: The step that reuses the derivative is taken if it begins below this residual.
 _REUSED_BELOW = 1e-4
 #: Most steps of `follow`.
 _MOST_FOLLOWED = 8

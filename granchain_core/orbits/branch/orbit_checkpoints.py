@@ -49,8 +49,8 @@ class OrbitCheckpoints:
         points, special = self._written.get(arm.direction, (0, 0))
         self._written[arm.direction] = len(arm.points), len(arm.special)
         self.kept.add({"period": period, "direction": arm.direction, "first": [points, special],
-                       "points": [_told(point) for point in arm.points[points:]],
-                       "special": [_special_told(one) for one in arm.special[special:]],
+                       "points": [_as_json(point) for point in arm.points[points:]],
+                       "special": [_special_as_json(one) for one in arm.special[special:]],
                        "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason})
 
     def begin(self, branch: Branch) -> None:
@@ -85,7 +85,7 @@ def _packed(pieces: list[dict[str, Any]]) -> bytes:
     return json.dumps(pieces, default=np.generic.item).encode()
 
 
-def _told(point: BranchPoint) -> dict[str, Any]:
+def _as_json(point: BranchPoint) -> dict[str, Any]:
     record = {one.name: getattr(point, one.name) for one in fields(BranchPoint)}
     for name in _ARRAYS:
         record[name] = np.asarray(record[name])
@@ -103,10 +103,10 @@ def _point(record: dict[str, Any]) -> BranchPoint:
     return BranchPoint(**{**record, **arrays, "multipliers": multipliers, "residuals": tuple(record["residuals"])})
 
 
-def _special_told(one: SpecialPoint) -> dict[str, Any]:
+def _special_as_json(one: SpecialPoint) -> dict[str, Any]:
     multiplier = None if one.multiplier is None else [complex(one.multiplier).real, complex(one.multiplier).imag]
-    return {"kind": one.kind, "knob": one.knob, "interval": list(one.interval), "before": _told(one.before),
-            "after": _told(one.after), "multiplier": multiplier, "contact": one.contact, "event": one.event}
+    return {"kind": one.kind, "knob": one.knob, "interval": list(one.interval), "before": _as_json(one.before),
+            "after": _as_json(one.after), "multiplier": multiplier, "contact": one.contact, "event": one.event}
 
 
 def _special(record: dict[str, Any]) -> SpecialPoint:

@@ -29,16 +29,19 @@ SPECIAL_KINDS = (*BIFURCATIONS, "grazing")
 WIDTH = 1e-5
 #: The tangents at both ends of a bracket meet within this factor times its length, because the branch turns by at most
 #: 30° in a step (walk.py).
-_SIDE = 1.25
+_TANGENT_REACH = 1.25
 #: Offset of the next orbit from the root of the straight line through the test function, as a fraction of the bracket.
-_BESIDE = 0.02
-#: The offset from the root of the parabola, where a third value is known: of the width that is narrow enough, and of
-#: the distance between both roots, since the parabola's error is a small part of the line's.
-_OF_WIDTH, _OF_ERROR = 0.4, 0.1
+_OFFSET_FROM_ROOT = 0.02
+#: Where a third value is known, the offset from the root of the parabola has two parts. The first is this fraction of
+#: the width that is narrow enough.
+_WIDTH_PART = 0.4
+#: The second is this fraction of the distance between both roots: the parabola's error is a small part of the line's.
+_ERROR_PART = 0.1
 #: Every this many levels the middle is taken, whatever the test function says.
-_MIDDLE = 5
+_LEVELS_TO_MIDDLE = 5
 #: Most levels of bisection between two neighbours; the interval is then taken as it is.
-_DEEPEST = 60
+_MOST_LEVELS = 60
+
 
 @dataclass(frozen=True, eq=False)
 class SpecialPoint:
@@ -84,7 +87,7 @@ def _brackets(axis: KnobAxis, a: BranchPoint, b: BranchPoint, between: Between, 
     """Narrow brackets of all changes between a and b; `beyond` is an orbit next to one of them outside."""
     if a.signature == b.signature:
         return []
-    if _narrow(axis, a, b) or depth >= _DEEPEST:
+    if _narrow(axis, a, b) or depth >= _MOST_LEVELS:
         return [(a, b)]
     fraction, is_end = _fraction(axis, a, b, depth, beyond)
     middle = (between.careful if careful else between.exact if is_end else between.rough)(a, b, fraction)
@@ -112,7 +115,7 @@ def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, fl
     """
     low, high = min(a.knob, b.knob), max(a.knob, b.knob)
     if a.turning != b.turning:
-        reach = _SIDE * _distance(axis, a, b) * min(abs(a.tangent[-1]), abs(b.tangent[-1])) * axis.slope(high)
+        reach = _TANGENT_REACH * _distance(axis, a, b) * min(abs(a.tangent[-1]), abs(b.tangent[-1])) * axis.slope(high)
         return (high, float(high + reach)) if a.turning > 0 else (float(low - reach), low)
     return low, high
 
@@ -133,13 +136,13 @@ def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
     value the root is known so well that the two can be as near as the bracket is to be narrow.
     """
     values = _test_values(a, b)
-    if depth % _MIDDLE == _MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:
+    if depth % _LEVELS_TO_MIDDLE == _LEVELS_TO_MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:
         return 0.5, False
-    root, beside, is_end = values[0] / (values[0] - values[1]), _BESIDE, False
+    root, beside, is_end = values[0] / (values[0] - values[1]), _OFFSET_FROM_ROOT, False
     better = None if beyond is None else _inverse_quadratic_root(a, b, values, beyond)
     if better is not None:
-        near, unsure = _OF_WIDTH * _wanted(axis, a, b) / _width(axis, a, b), _OF_ERROR * abs(better - root)
-        root, beside, is_end = better, min(near + unsure, _BESIDE), unsure <= 0.5 * near
+        near, unsure = _WIDTH_PART * _wanted(axis, a, b) / _width(axis, a, b), _ERROR_PART * abs(better - root)
+        root, beside, is_end = better, min(near + unsure, _OFFSET_FROM_ROOT), unsure <= 0.5 * near
     fraction = root + beside if root < 0.5 else root - beside
     return min(max(fraction, 0.5 * beside), 1.0 - 0.5 * beside), is_end
 

@@ -40,10 +40,10 @@ def points_in(kept: Kept[CurvePoint]) -> list[CurvePoint]:
 
 
 def _packed(points: list[CurvePoint]) -> bytes:
-    return json.dumps([_told(point) for point in points], default=np.generic.item).encode()
+    return json.dumps([_as_json(point) for point in points], default=np.generic.item).encode()
 
 
-def _told(point: CurvePoint) -> dict[str, Any]:
+def _as_json(point: CurvePoint) -> dict[str, Any]:
     state = point.state
     return {**{name: float(getattr(point, name)) for name in _NUMBERS}, "regime": asdict(point.regime),
             "force_errors": asdict(point.force_errors), "failure": point.failure, "status": point.status,

@@ -37,7 +37,8 @@ Found = dict[int, list[np.ndarray]]
 
 
 def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
-    """Strobes, largest forces and jumps of each scene; who has ended makes room for the next, as in settle.py."""
+    """Strobes, largest forces and jumps of each scene; a member that has ended makes room for the next, as in
+    steady/batch/jobs.py."""
     waiting, batch = iter(numbers), Batch(scenes[numbers[0]], Stop())
     found: Found = {}
     held: dict[int, int] = {}
