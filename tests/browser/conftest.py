@@ -22,9 +22,6 @@ HERE = Path(__file__).parent
 #: How most pages are opened.
 USUAL: dict[str, Any] = {"viewport": ViewportSize(width=1280, height=800), "reduced_motion": "reduce"}
 
-#: How the message of a test begins that waited for something which did not come: Playwright's, and `until`'s.
-WAITED_IN_VAIN = ["TimeoutError: ", "AssertionError: Locator expected", "AssertionError: Page expected",
-                  "AssertionError: did not come"]
 #: Whether a test has failed.
 FAILED = pytest.StashKey[bool]()
 #: Those of a context's options that a page can have by itself.
@@ -36,15 +33,13 @@ expect.set_options(timeout=60_000)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """A test of the browser that waited in vain is run once more, and the summary says so.
+    """A test of the browser that fails is run once more, and the summary says so; `.ci/run` allows few repetitions.
 
-    On two busy processors Chromium loses a click now and then, which says nothing of the page, and what the click
-    should have brought does not come. A test that saw something wrong is not run again, and `.ci/run` allows few
-    repetitions.
+    On two busy processors Chromium loses a click now and then, or draws late, which says nothing of the page.
     """
     for item in items:
         if item.path.is_relative_to(HERE):
-            item.add_marker(pytest.mark.flaky(reruns=1, only_rerun=WAITED_IN_VAIN))
+            item.add_marker(pytest.mark.flaky(reruns=1))
 
 
 @pytest.hookimpl(wrapper=True)

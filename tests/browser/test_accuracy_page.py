@@ -118,7 +118,7 @@ def fits(page: Page, sheet: Locator) -> None:
     """At every size the figure is inside the window."""
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
         page.set_viewport_size({"width": width, "height": height})
-        assert page.evaluate("document.documentElement.scrollWidth") == width
+        page.wait_for_function("(width) => document.documentElement.scrollWidth === width", arg=width)  # figures follow
         box = sheet.locator(".work .picture").bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
 
