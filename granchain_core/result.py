@@ -122,8 +122,8 @@ class ForceErrors:
         return tuple(np.nan if e is None else e for e in values)  # type: ignore[return-value]
 
 
-class HasForces(Protocol):
-    """What has largest forces [N] with relative errors: a run, a point of a curve, an attractor."""
+class LargestForces(Protocol):
+    """What has largest forces [N]: a run, a driven motion, an observation, a point of a curve, an attractor."""
 
     @property
     def max_input_force(self) -> float: ...
@@ -131,6 +131,11 @@ class HasForces(Protocol):
     def max_output_force(self) -> float: ...
     @property
     def max_output_force_elastic(self) -> float: ...
+
+
+class HasForces(LargestForces, Protocol):
+    """Largest forces with their relative errors."""
+
     @property
     def force_errors(self) -> ForceErrors: ...
 

@@ -2,22 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from granchain_core import Driven, Run, Scene
-    from granchain_core.result import Cost
-
-
-class Forces(Protocol):
-    """A result with largest forces [N]: a run, a driven motion, an observation, an attractor."""
-
-    @property
-    def max_output_force(self) -> float: ...
-    @property
-    def max_output_force_elastic(self) -> float: ...
-    @property
-    def max_input_force(self) -> float: ...
+    from granchain_core.result import Cost, LargestForces
 
 
 def scene_json(scene: Scene) -> dict[str, Any]:
@@ -25,7 +14,7 @@ def scene_json(scene: Scene) -> dict[str, Any]:
     return {"scene": scene.name, "knobs": scene.knobs, "effects": scene.effects}
 
 
-def forces_json(found: Forces) -> dict[str, Any]:
+def forces_json(found: LargestForces) -> dict[str, Any]:
     """The largest forces [N]."""
     return {"max_output_force": found.max_output_force, "max_output_force_elastic": found.max_output_force_elastic,
             "max_input_force": found.max_input_force}
@@ -39,7 +28,7 @@ def errors_json(found: Run | Driven) -> dict[str, Any]:
             "energy_residual": found.energy_residual}
 
 
-def forces_in_words(found: Forces) -> str:
+def forces_in_words(found: LargestForces) -> str:
     """The largest forces, in one line."""
     return (f"largest output force {found.max_output_force:.6g} N (elastic {found.max_output_force_elastic:.6g} N), "
             f"input force {found.max_input_force:.6g} N")
