@@ -3,6 +3,10 @@
 The module imports nothing: commands name pieces before they load the compiler.
 """
 
+#: What follows any steady state: the period of its strobes, and a state in SI.
+REGIME_KERNELS = "regime"
+#: Checks of a batch, the same for every structure.
+CHECK_KERNELS = "checks"
 CURVE_KERNELS = "curve"
 ADAPTIVE_KERNELS = "adaptive"
 FIXED_STEP_KERNELS = "fixed step"

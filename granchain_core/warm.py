@@ -35,6 +35,7 @@ from .pieces import (
     ACCURACY_KERNELS,
     ADAPTIVE_KERNELS,
     BRANCH_KERNELS,
+    CHECK_KERNELS,
     COST_ACCOUNT_KERNELS,
     COST_KERNELS,
     CURVE_KERNELS,
@@ -42,12 +43,14 @@ from .pieces import (
     MOTION_KERNELS,
     OBSERVER_KERNELS,
     ORBIT_KERNELS,
+    REGIME_KERNELS,
 )
 from .scaling import scale_chain
 from .scene import Scene, scene
 from .scene.effects import effects_of
 from .state import rest
 from .steady.lyapunov import exponents
+from .steady.regime_criteria import SLOW_RECORD, converging, find_period, return_distance
 from .stop import Stop
 
 
@@ -69,6 +72,21 @@ def _engine(setting: Setting) -> Callable[[Scene], None]:
         engine.record(2)
 
     return compile_engine
+
+
+def _regime(short: Scene) -> None:
+    """The period of a record of strobes, and a state in SI."""
+    find_period(np.zeros((2, 2, short.N)))
+    scale_chain(short).to_si(np.zeros(2 * (short.N + 2)))
+
+
+def _checks(short: Scene) -> None:
+    """Checks of a batch, and of the records that it leaves undecided."""
+    record = np.zeros((SLOW_RECORD, 2, short.N))
+    if can_share_batch(short):
+        Batch(short, Stop()).compile_checks()
+    converging(record)
+    return_distance(record)
 
 
 def _curve(short: Scene) -> None:
@@ -119,8 +137,8 @@ def _cost(balance: bool) -> Callable[[Scene], None]:
 
 #: Every piece with the function that compiles it by a short run, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
-    CURVE_KERNELS: _curve, ADAPTIVE_KERNELS: _engine(adaptive_setting(1e-3)),
-    FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
+    REGIME_KERNELS: _regime, CHECK_KERNELS: _checks, CURVE_KERNELS: _curve,
+    ADAPTIVE_KERNELS: _engine(adaptive_setting(1e-3)), FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
     ORBIT_KERNELS: _orbit, BRANCH_KERNELS: _branch, OBSERVER_KERNELS: _observer,
     ACCURACY_KERNELS: compile_methods, COST_KERNELS: _cost(balance=False), COST_ACCOUNT_KERNELS: _cost(balance=True),
 }
@@ -157,15 +175,18 @@ USUAL = ("sec2", "rig")
 def warm_scenes(names: Iterable[str] = USUAL, workers: int = 2) -> Iterable[str]:
     """Compile all pieces of these scenes' structures in `workers` processes; yields what has been finished.
 
-    A structure's pieces are compiled in one process: they share parts that are compiled once a process.
+    A structure's pieces are compiled in one process: they share parts that are compiled once a process. Every other
+    process begins with the last piece, so that none waits for the kernels that all structures share.
     """
     seen: dict[str, Scene] = {}
     for name in names:
         seen.setdefault(structure(scene(name)), scene(name))
+    orders = list(PIECES), list(reversed(PIECES))
     with ExitStack() as stack:
         pools = [stack.enter_context(pool(1)) for _ in range(workers)]
         with starting():
             jobs = [one_of_them.submit(_compile, (one, piece))
-                    for one, one_of_them in zip(seen.values(), cycle(pools), strict=False) for piece in PIECES]
+                    for one, one_of_them, pieces in zip(seen.values(), cycle(pools), cycle(orders), strict=False)
+                    for piece in pieces]
         for job in as_completed(jobs):
             yield job.result()

@@ -28,7 +28,7 @@ QUICK = (
     "architecture", "public", "scene", "experiment", "store/test_files.py", "store/test_hdf5_border.py", "dashboard",
     "session", "integrate", "run/test_peaks.py", "kernels/equations", "kernels/effects", "kernels/rk4",
     "kernels/dop853", "kernels/test_absent_effects.py", "kernels/simd/test_vector_nan.py",
-    "kernels/batch/test_period_end.py", "kernels/batch/test_refill.py", "physics/test_impact.py",
+    "kernels/batch/test_checks.py", "kernels/batch/test_refill.py", "physics/test_impact.py",
     "physics/test_work_on_the_way.py", "steady/test_claims.py", "steady/test_places.py", "orbits/test_orbits.py",
     "orbits/test_orbit_claims.py", "diagram/test_boundary.py", "observe/test_force_files.py",
     "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py", "test_format.py",

@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from granchain_core import Amplitude, BadInput, Scene
-from granchain_core.pieces import FIXED_STEP_KERNELS
+from granchain_core.pieces import CHECK_KERNELS, FIXED_STEP_KERNELS
 
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
 from .compiling import compiling_beside
@@ -48,7 +48,7 @@ def do(arguments: argparse.Namespace) -> None:
     if low > high:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
     amplitude = chosen_amplitude(arguments, chosen)
-    with compiling_beside(chosen, FIXED_STEP_KERNELS):
+    with compiling_beside(chosen, CHECK_KERNELS, FIXED_STEP_KERNELS):
         swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points), amplitude)
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", swept)
     if arguments.json:

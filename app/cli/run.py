@@ -9,11 +9,13 @@ from typing import Any
 
 from granchain_core import BadInput, Run, Scene
 from granchain_core.integrate import method_for
+from granchain_core.pieces import REGIME_KERNELS
 from granchain_core.regime import Regime
 from granchain_core.result import start_words
 from granchain_core.run.budget import BUDGET
 
 from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
+from .compiling import compiling_beside
 from .data_options import add_answers
 from .driven import do_driven
 from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json
@@ -55,7 +57,8 @@ def do(arguments: argparse.Namespace) -> None:
         check_writable(arguments.out)
     if arguments.explain:
         _explain(chosen, arguments, sys.stderr if arguments.json else sys.stdout)
-    result = _result(chosen, arguments)
+    with compiling_beside(chosen, REGIME_KERNELS):
+        result = _result(chosen, arguments)
     _warn(result, arguments.budget)
     write_picture(arguments.picture, f"A motion of {chosen.name}", result)
     if arguments.json:

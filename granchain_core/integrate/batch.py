@@ -9,8 +9,10 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..kernels.batch import run as kernels
-from ..kernels.batch.period_end import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, STROBES_KEPT
+from ..kernels.batch.checks import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, check_member
+from ..kernels.batch.record import STROBES_KEPT
 from ..kernels.batch.unequal import Unequal
+from ..kernels.compiling.by_address import address_of
 from ..kernels.compiling.entry import entry
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.forces.peaks import PEAKS
@@ -54,6 +56,7 @@ class Batch:
         self.example = scaled = scale_chain(example)
         self.stop = stop
         self._run: Any = None
+        self._check = 0
         n, slots = example.N, scaled.slots
         dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
         self.members = kernels.Members(
@@ -139,15 +142,20 @@ class Batch:
         state = self.state
         state.shadow[member], state.shadow[shadow], state.distance[member] = shadow, kernels.IS_SHADOW, distance
 
+    def compile_checks(self) -> int:
+        """Address of the kernel that checks a member's regime, compiled first where it is not there yet."""
+        return address_of(check_member, self.state, 0)
+
     def growth(self, member: int) -> np.ndarray:
         """Logarithm of the growth of the distance to the member's shadow in each period (periods,); NaN if lost."""
         return self.state.growth[member, : int(self.state.periods[member])]
 
     def run(self) -> tuple[int, bool]:
         """Run until a member is due for a check; its number, and whether it is finite."""
-        arguments = self.members, self.state, self.stop.flag
         if self._run is None:
-            self._run = entry(kernels.run_batch, *arguments)
+            self._run = entry(kernels.run_batch, self.members, self.state, self.stop.flag, 0)
+            self._check = self.compile_checks()
+        arguments = self.members, self.state, self.stop.flag, self._check
         status, member = self._run(*arguments)
         if status == CANCELLED:
             raise Cancelled

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..integrate import Engine
 from ..integrate.batch import Batch
-from ..kernels.batch.period_end import STROBES_KEPT
+from ..kernels.batch.record import STROBES_KEPT
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scaling import ScaledChain
 

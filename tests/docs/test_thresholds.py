@@ -15,7 +15,7 @@ from documents import ROOT
 
 from granchain_core import orbit, scene
 from granchain_core.integrate import methods
-from granchain_core.kernels.batch import period_end
+from granchain_core.kernels.batch import record
 from granchain_core.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.curve import resonance
@@ -47,7 +47,7 @@ def test_a_threshold_of_the_page_is_that_of_the_code(printed: str, name: str, fi
 def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
     assert len(ROWS) == REGIMES.count(".py` |")
     assert {file for _, _, file in ROWS} == {
-        "kernels/strobes/periodicity", "kernels/batch/period_end", "steady/regime_criteria", "steady/lyapunov",
+        "kernels/strobes/periodicity", "kernels/batch/checks", "steady/regime_criteria", "steady/lyapunov",
         "steady/settling/regime_decisions", "steady/settling/advance", "steady/settling/finite_difference_map",
         "steady/steady_state", "regime", "steady/settling/nearby_orbit", "steady/batch/jobs", "integrate/batch"}
 
@@ -77,7 +77,7 @@ def test_the_thresholds_of_a_response_are_those_of_the_code() -> None:
 
 
 def test_a_batch_keeps_the_strobes_on_which_a_decision_is_based() -> None:
-    assert period_end.STROBES_KEPT >= regime_decisions.REMEMBERED
+    assert record.STROBES_KEPT >= regime_decisions.REMEMBERED
 
 
 def test_the_caps_of_the_contraction_are_the_pages() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.kernels.batch import period_end
+from granchain_core.kernels.batch import checks
 from granchain_core.steady.batch import jobs
 from granchain_core.steady.curve.resonance_curve import draft_curve, resonance_curve
 from granchain_core.steady.settling.advance import run_until_settled
@@ -88,4 +88,4 @@ def test_scenes_that_batches_cannot_run_have_no_draft() -> None:
 
 def test_constants_of_the_disturbance_leave_room() -> None:
     """A disturbance is far above what counts as settled and far below what changes the sequence of contacts."""
-    assert 10.0 * period_end.SETTLED_DISTANCE < period_end._DISTURBANCE < 1e-2
+    assert 10.0 * checks.SETTLED_DISTANCE < checks._DISTURBANCE < 1e-2

@@ -6,7 +6,8 @@ from . import killers as k
 from .mutant import Mutant
 
 _BATCH_STEP, _BATCH_RUN, _CORRECTION = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
-_LOOKS, _WIDE, _RUN, _ALONG = "kernels/batch/period_end.py", "kernels/rk4/short_chain.py", "kernels/rk4/short_chain_steps.py", "kernels/rk4/long_chain.py"
+_PERIOD_END, _CHECKS = "kernels/batch/period_end.py", "kernels/batch/checks.py"
+_SHORT, _RUN, _LONG = "kernels/rk4/short_chain.py", "kernels/rk4/short_chain_steps.py", "kernels/rk4/long_chain.py"
 _MATH = "kernels/simd/functions.py"
 _BATCH = "integrate/batch.py"
 
@@ -36,13 +37,13 @@ IN_BATCHES = (
            "what is taken back of the path is wrong for Kuwabara and Kono's law", k.BATCH_CHECKS),
     Mutant("batch-wall-not-corrected", _CORRECTION, "for c in range(values.last + 1):", "for c in range(values.last):",
            "touches of the wall in batches are not corrected", k.BATCH_ONE),
-    Mutant("batch-t-plus-dt", _LOOKS, "state.phase[0, member], state.phase[1, member] = 0.0, 1.0", "state.peaks[0, member] = 0.0",
+    Mutant("batch-t-plus-dt", _PERIOD_END, "state.phase[0, member], state.phase[1, member] = 0.0, 1.0", "state.peaks[0, member] = 0.0",
            "the phase in batches turns on from period to period and is never set right", k.BATCH_PHASE),
-    Mutant("batch-orbit-not-disturbed", _LOOKS, "if period > 0 and state.slowest[member] > 0.0:", "if period > 0 and state.slowest[member] > 2.0:",
+    Mutant("batch-orbit-not-disturbed", _CHECKS, "if period > 0 and state.slowest[member] > 0.0:", "if period > 0 and state.slowest[member] > 2.0:",
            "an unstable orbit that extrapolation led to is drawn as periodic", k.BATCH_CHECKS),
-    Mutant("batch-disturbance-always-decays", _LOOKS, "if last <= _PART_LEFT * first:", "if last < 1e300:",
+    Mutant("batch-disturbance-always-decays", _CHECKS, "if last <= _PART_LEFT * first:", "if last < 1e300:",
            "an orbit is called stable though the disturbance grew", k.BATCH_CHECKS),
-    Mutant("batch-jump-not-proved", _LOOKS, "proved = n > 0 and change < state.change_before_extrapolation[member]", "proved = True",
+    Mutant("batch-jump-not-proved", _CHECKS, "proved = n > 0 and change < state.change_before_extrapolation[member]", "proved = True",
            "an extrapolation that led away is kept", k.BATCH_CHECKS),
     Mutant("batch-shadow-not-pulled-back", _BATCH_RUN, "* (start / now)", "* 1.0",
            "the exponent of batches is that of a distance long since large", k.LYAPUNOV),
@@ -69,30 +70,30 @@ IN_BATCHES = (
 )
 
 IN_ROWS = (
-    Mutant("wide-weights", _WIDE, "x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + shift", "x.u + sixth * (x.du + du4 + du2 + du3) + shift",
+    Mutant("wide-weights", _SHORT, "x.u + sixth * (x.du + du4 + 2.0 * (du2 + du3)) + shift", "x.u + sixth * (x.du + du4 + du2 + du3) + shift",
            "RK4 of short chains with wrong weights", k.SIMD_PLAIN),
-    Mutant("wide-given-back-sign", _WIDE, "values.inverse_mass * (excess - from_left(blank(excess), excess))",
+    Mutant("wide-given-back-sign", _SHORT, "values.inverse_mass * (excess - from_left(blank(excess), excess))",
            "values.inverse_mass * (from_left(blank(excess), excess) - excess)",
            "short chains are given once more what Simpson's rule gives too much", k.SIMD_PLAIN),
-    Mutant("wide-damping-of-one-side", _WIDE, "damping_over_mass * (from_left(blank(shapes), shapes) - shapes)",
+    Mutant("wide-damping-of-one-side", _SHORT, "damping_over_mass * (from_left(blank(shapes), shapes) - shapes)",
            "damping_over_mass * (blank(shapes) - shapes)", "a bead of a short chain is damped by one of its contacts", k.SIMD_PLAIN),
-    Mutant("wide-driver-at-rest", _WIDE, "moving = with_first(du, v0)", "moving = with_first(du, 0.0 * v0)",
+    Mutant("wide-driver-at-rest", _SHORT, "moving = with_first(du, v0)", "moving = with_first(du, 0.0 * v0)",
            "short chains do not know how fast their driver comes", k.SIMD_PLAIN),
     Mutant("wide-steps-over-touch", _RUN, "(closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0",
            "(closed_after ^ closed) != 0", "a touch inside a step of a short chain is not seen", k.STEP_TOUCH),
     Mutant("wide-split-phase", _RUN, "theta + dtheta * (done + 0.5 * part), theta", "theta + dtheta * (done + part), theta",
            "the driver is ahead in the middle of a split step", k.SIMD_PLAIN),
-    Mutant("along-last-stage", _ALONG, "later_stage(simd, slots, end, simd.first", "later_stage(simd, slots, middle, simd.first",
+    Mutant("along-last-stage", _LONG, "later_stage(simd, slots, end, simd.first", "later_stage(simd, slots, middle, simd.first",
            "the driver of a long chain is half a step late", k.SIMD_LONG),
-    Mutant("along-damping-sign", _ALONG, "inverse_mass * (from_left(before, G) - G)", "inverse_mass * (G - from_left(before, G))",
+    Mutant("along-damping-sign", _LONG, "inverse_mass * (from_left(before, G) - G)", "inverse_mass * (G - from_left(before, G))",
            "damping drives a long chain", k.SIMD_LONG),
-    Mutant("along-block-borders", _ALONG, "here, e_before, G_before = ahead, e, G", "here, e_before = ahead, e",
+    Mutant("along-block-borders", _LONG, "here, e_before, G_before = ahead, e, G", "here, e_before = ahead, e",
            "a bead at the border of two blocks is damped by the wrong contact", k.SIMD_LONG, which=1, count=2),
-    Mutant("along-event-overrun", _ALONG, "return done - 1", "return done", "a step in which a contact changes is not split", k.SIMD_LONG),
-    Mutant("along-without-foundation", _ALONG, "inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)",
+    Mutant("along-event-overrun", _LONG, "return done - 1", "return done", "a step in which a contact changes is not split", k.SIMD_LONG),
+    Mutant("along-without-foundation", _LONG, "inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)",
            "inverse * (from_left(e_before, e) - e)", "long chains have no springs to the ground after a step's start",
            k.SIMD_LONG_FOUNDED, which=2, count=2),
-    Mutant("along-without-preload", _ALONG, "batch_overlap(simd.preload, here, from_right(here, ahead), b)",
+    Mutant("along-without-preload", _LONG, "batch_overlap(simd.preload, here, from_right(here, ahead), b)",
            "here - from_right(here, ahead)", "a pressed long chain is a sonic vacuum after a step's start",
            k.SIMD_LONG_PRESSED, which=2, count=2),
     Mutant("nan-hidden-in-vectors", _MATH, 'builder.select(builder.fcmp_ordered("<", args[0], zero), zero, args[0])',

@@ -167,10 +167,10 @@ def batch_steps(members, state, count):
 
 
 @kernel
-def run_batch(members, state, stop):
+def run_batch(members, state, stop, check):
     """Run until a member is due for a check; returns (status, member).
 
-    Every member that is due is returned before any of them continues.
+    Every member that is due is returned before any of them continues. `check` is the address of `check_member`.
     """
     left, due, shadow = state.left, state.due, state.shadow
     some_due, some_shadow = True, False
@@ -191,7 +191,7 @@ def run_batch(members, state, stop):
         take_steps(members, state, count)
         for member in range(BATCH_SIZE):
             left[member] -= count
-            if left[member] == 0 and end_period(state, member) and shadow[member] != IS_SHADOW:
+            if left[member] == 0 and end_period(state, member, check) and shadow[member] != IS_SHADOW:
                 due[member], some_due = 1, True
         if some_shadow:
             for member in range(BATCH_SIZE):

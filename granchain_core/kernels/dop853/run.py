@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_slot, inline_numba, kernel
+from ..compiling.jit import by_slot, inline_numba, internal, kernel
 from ..effects.balance import add_to_account, force_free_loss
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut
@@ -161,7 +161,7 @@ def accepted_step(method, trajectory, t, h, counts):
             return STEP_TOO_SMALL, h, 1.0
 
 
-@inline_numba
+@internal
 def located_step(method, trajectory, t, limit, counts):
     """One accepted step from y at local time t, at most to `limit`; the result is workspace.end.
 

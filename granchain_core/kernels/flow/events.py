@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiling.jit import inline_numba
+from ..compiling.jit import inline_numba, internal
 from ..dop853.step import growth, shrunk
 from ..dop853.tableau import STAGES
 from ..effects.preload import overlap
@@ -102,7 +102,7 @@ def step_to_release(method, course, t, goal, c, counts):
     return DONE, time, h, c if located else -1, goal
 
 
-@inline_numba
+@internal
 def flow_step(method, course, t, onset, counts):
     """One accepted step from y at local time t, at most to the period's end, with the last onset at `onset` (−∞: none).
 

@@ -13,7 +13,7 @@ from ..simd.sums import largest_of, magnitude, rough_sixteenth
 from ..simd.vector import at, splat, with_first
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .chain import ROOT, TIME, Point, powers, transform_at
-from .changes import Accepted, changes_in, first_change, size_in_xi
+from .changes import StepInXi, changes_in, first_change, size_in_xi
 from .forces import end_forces, in_xi, may_exceed
 from .step import Units, attempt, prepare_dense_rows
 
@@ -27,7 +27,7 @@ _HOPELESS = 1e-9
 ATTEMPTS = 60
 
 
-class Problem(NamedTuple):
+class RunConstants(NamedTuple):
     """What stays the same throughout a run: chain, method, workspace and counters; p of the time transform.
 
     `last` is the number of the last contact, and of beads. Points of the grid are `spacing` apart, and one that is
@@ -48,7 +48,7 @@ class Problem(NamedTuple):
     every: int
 
 
-class Here(NamedTuple):
+class StepBegin(NamedTuple):
     """The chain where a step begins: time in the period, point, rates, forces; closed contacts as bits and as 0 or 1.
 
     The forces are up to date only where they are recorded.
@@ -62,7 +62,7 @@ class Here(NamedTuple):
     closed: Any
 
 
-class Found(NamedTuple):
+class CheckedStep(NamedTuple):
     """An accepted step, the forces at its end, and the first contact that changes in it (−1: none), with the fraction.
 
     `prepared` says whether its dense output is in the workspace, `exceeds` whether the largest forces may lie inside.
@@ -83,31 +83,31 @@ def is_too_small(dt, t, beta):
 
 
 @inline_numba
-def new_units(problem, point, scale):
+def new_units(constants, point, scale):
     """Raise the scale of the tolerance to the largest values at a point; returns the `Units` of the errors."""
     for q in range(2):
         largest = largest_of(magnitude(with_first(point.u if q == 0 else point.w, 0.0)))
         scale[q] = max(scale[q], largest)
-    tolerance = problem.method.tolerance
-    return Units(1.0 / (tolerance * scale[0]), 1.0 / (tolerance * scale[1]), 2.0 * problem.last)
+    tolerance = constants.method.tolerance
+    return Units(1.0 / (tolerance * scale[0]), 1.0 / (tolerance * scale[1]), 2.0 * constants.last)
 
 
 @inline_numba
-def accepted_attempt(problem, here, chosen, dt, units):
+def accepted_attempt(constants, begin, chosen, dt, units):
     """Shrink a step until its error is tolerable, in the time next to the event of contact `chosen`, or in t (−1).
 
     Returns (status, step, its size in time as it was tried).
     """
-    counts = problem.out.counts
-    transform, q, h, limited, pace = transform_at(problem.values, here.closed, chosen), 0.0, dt, False, 1.0
+    counts = constants.out.counts
+    transform, q, h, limited, pace = transform_at(constants.values, begin.closed, chosen), 0.0, dt, False, 1.0
     if chosen >= 0:
-        q = nonnegative_root(at(here.rates.overlap, chosen), problem.power)
-        pace, _, _ = powers(problem.power, q)
-        h, limited = size_in_xi(problem.power, q, at(here.rates.rate, chosen), dt)
-    start, status = Point(here.point.u, here.point.w, with_first(splat(here.t), q)), DONE
+        q = nonnegative_root(at(begin.rates.overlap, chosen), constants.power)
+        pace, _, _ = powers(constants.power, q)
+        h, limited = size_in_xi(constants.power, q, at(begin.rates.rate, chosen), dt)
+    start, status = Point(begin.point.u, begin.point.w, with_first(splat(begin.t), q)), DONE
     while True:
-        error, end, end_rates = attempt(problem.values, problem.driver, problem.work, transform, start, here.rates, h,
-                                        units)
+        error, end, end_rates = attempt(constants.values, constants.driver, constants.work, transform, start,
+                                        begin.rates, h, units)
         counts[EVALUATIONS] += STAGES
         if error <= 1.0:
             break
@@ -119,42 +119,42 @@ def accepted_attempt(problem, here, chosen, dt, units):
             status = NOT_FINITE
             break
         h, dt = h * factor, dt * factor
-        if is_too_small(dt, here.t, problem.beta):
+        if is_too_small(dt, begin.t, constants.beta):
             status = STEP_TOO_SMALL
             break
     end_pace = 1.0
     if chosen >= 0:
-        end_pace, _, _ = powers(problem.power, at(end.clock, ROOT))
-    return status, Accepted(transform, h, start, here.rates, pace, end, end_rates, end_pace, error, limited), dt
+        end_pace, _, _ = powers(constants.power, at(end.clock, ROOT))
+    return status, StepInXi(transform, h, start, begin.rates, pace, end, end_rates, end_pace, error, limited), dt
 
 
 @inline_numba
-def accepted_step(problem, here, chosen, dt, units, g):
+def accepted_step(constants, begin, chosen, dt, units, g):
     """An accepted step past point g of the grid, in which no contact opens but the one its time transform is made for.
 
-    A release that the step did not aim at is aimed at in another attempt. Returns (status, `Found`, size in time as it
-    was tried).
+    A release that the step did not aim at is aimed at in another attempt. Returns (status, `CheckedStep`, size in time
+    as it was tried).
     """
-    slots, work, values, counts = problem.slots, problem.work, problem.values, problem.out.counts
+    slots, work, values, counts = constants.slots, constants.work, constants.values, constants.out.counts
     attempts = 1
     while True:
-        status, step, dt = accepted_attempt(problem, here, chosen, dt, units)
-        forces, contact, x, prepared, exceeds = here.forces, -1, 2.0, False, False
+        status, step, dt = accepted_attempt(constants, begin, chosen, dt, units)
+        forces, contact, x, prepared, exceeds = begin.forces, -1, 2.0, False, False
         if status == DONE:
-            crossed, turned = changes_in(step, here.bits, problem.last + 1)
+            crossed, turned = changes_in(step, begin.bits, constants.last + 1)
             changes = crossed | turned != 0
-            prepared = changes or (g + 1) * problem.spacing <= at(step.end.clock, TIME) + problem.near
-            if problem.every > 0:
-                forces = end_forces(values, problem.driver, step.end, step.end_rates, problem.last)
+            prepared = changes or (g + 1) * constants.spacing <= at(step.end.clock, TIME) + constants.near
+            if constants.every > 0:
+                forces = end_forces(values, constants.driver, step.end, step.end_rates, constants.last)
                 if not prepared:
-                    exceeds = may_exceed(in_xi(here.forces, step.pace), in_xi(forces, step.end_pace), step.h,
-                                         problem.out.log.peaks)
+                    exceeds = may_exceed(in_xi(begin.forces, step.pace), in_xi(forces, step.end_pace), step.h,
+                                         constants.out.log.peaks)
             if prepared or exceeds:
-                prepare_dense_rows(values, problem.driver, work, step.transform, step.start, step.end, step.h)
+                prepare_dense_rows(values, constants.driver, work, step.transform, step.start, step.end, step.h)
                 counts[EVALUATIONS] += DENSE_EVALUATIONS
             if changes:
-                contact, x = first_change(slots, work, step, here.bits, crossed, turned)
-        done = status != DONE or contact < 0 or contact == chosen or (here.bits >> contact) & 1 == 0 or x == 0.0
+                contact, x = first_change(slots, work, step, begin.bits, crossed, turned)
+        done = status != DONE or contact < 0 or contact == chosen or (begin.bits >> contact) & 1 == 0 or x == 0.0
         if done:
             break
         chosen = contact
@@ -162,7 +162,7 @@ def accepted_step(problem, here, chosen, dt, units, g):
         if attempts > 2:
             dt *= 0.5
         attempts += 1
-        if attempts > ATTEMPTS or is_too_small(dt, here.t, problem.beta):
+        if attempts > ATTEMPTS or is_too_small(dt, begin.t, constants.beta):
             status = STEP_TOO_SMALL
             break
-    return status, Found(step, forces, contact, min(x, 1.0), prepared, exceeds), dt
+    return status, CheckedStep(step, forces, contact, min(x, 1.0), prepared, exceeds), dt

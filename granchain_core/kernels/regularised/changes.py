@@ -27,7 +27,7 @@ _BEYOND_RELEASE = 1.3
 _RISE_MISSED = 0.25
 
 
-class Accepted(NamedTuple):
+class StepInXi(NamedTuple):
     """An accepted step in ξ: its time transform, size, start, end, the rates and dt/dξ at both, and its error's square.
 
     The error is that of `attempt` (step.py), in units of the tolerance. `limited` says whether the step was repeated,

@@ -12,7 +12,7 @@ from ..dop853.step import TURN_SECTIONS
 from ..effects.preload import overlap
 from .chain import ROOT, TIME
 
-#: A fraction of the step is found when it changes by less than this; the next change would be far smaller.
+#: A fraction of the step is checked when it changes by less than this; the next change would be far smaller.
 _FOUND = 1e-9
 
 

@@ -1,7 +1,7 @@
 """Runs along a short chain: steps with error control that go past contact events, which are roots inside them.
 
-A step is attempted from `Here` until it is accepted (accepted_step.py). It ends at the first change of a contact inside
-it, or at the last point of the grid (`ended`). The next step begins there.
+A step is attempted from `StepBegin` until it is accepted (accepted_step.py). It ends at the first change of a contact
+inside it, or at the last point of the grid (`end_of_step`). The next step begins there.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from ..status import (
     STEP_TOO_SMALL,
     STEPS,
 )
-from .accepted_step import ATTEMPTS, Here, Problem, accepted_step, is_too_small, new_units
+from .accepted_step import ATTEMPTS, RunConstants, StepBegin, accepted_step, is_too_small, new_units
 from .chain import (
     DISPLACEMENT,
     ELASTIC,
@@ -56,7 +56,7 @@ _SMALL_ERROR = 1e-3
 _SAFETY = 0.8
 
 
-class Ended(NamedTuple):
+class StepEnd(NamedTuple):
     """How far a step is gone: contact that changes there or −1, fraction, time, grid points passed, point, its rates.
 
     `cut` says whether it ends inside the step that was taken.
@@ -72,87 +72,89 @@ class Ended(NamedTuple):
 
 
 @inline_llvm
-def toggled(problem, here, contact):
-    """`Here` once a contact has opened or closed."""
-    work = problem.work
+def with_contact_toggled(constants, begin, contact):
+    """`StepBegin` once a contact has opened or closed."""
+    work = constants.work
     work.closed[0, contact] = 1.0 - work.closed[0, contact]
     closed = load_row(work.chain.width, work.closed, 0)
-    return Here(here.t, here.point, here.rates, here.forces, here.bits ^ (1 << contact), closed)
+    return StepBegin(begin.t, begin.point, begin.rates, begin.forces, begin.bits ^ (1 << contact), closed)
 
 
 @inline_numba
-def begun(problem, t, y, bodies):
-    """`Here` at the start of a run, from its state; contacts are closed where they overlap."""
-    work, values = problem.work, problem.values
+def begin_of_run(constants, t, y, bodies):
+    """`StepBegin` at the start of a run, from its state; contacts are closed where they overlap."""
+    work, values = constants.work, constants.values
     for i in range(bodies):
         work.state[DISPLACEMENT, i], work.state[W, i] = y[i], y[bodies + i]
     width = work.chain.width
     point = Point(load_row(width, work.state, DISPLACEMENT), load_row(width, work.state, W), splat(t))
-    rates = rates_at(values, problem.driver, no_transform(values, 1.0 + blank(point.u)), point)
+    rates = rates_at(values, constants.driver, no_transform(values, 1.0 + blank(point.u)), point)
     bits = positive_mask(rates.overlap) & ((1 << (bodies - 1)) - 1)
     for c in range(bodies - 1):
         work.closed[0, c] = 1.0 if (bits >> c) & 1 != 0 else 0.0
-    forces = end_forces(values, problem.driver, point, rates, problem.last)
-    return Here(t, point, rates, forces, bits, load_row(width, work.closed, 0))
+    forces = end_forces(values, constants.driver, point, rates, constants.last)
+    return StepBegin(t, point, rates, forces, bits, load_row(width, work.closed, 0))
 
 
 @inline_numba
-def renewed(problem, here):
-    """`Here` with the driver where its phase has it, and the rates there."""
-    driver, values, theta = problem.driver, problem.values, problem.beta * here.t
-    point = Point(with_first(here.point.u, driver_displacement(driver, theta)),
-                  with_first(here.point.w, driver_velocity(driver, theta)), splat(here.t))
-    rates = rates_at(values, driver, no_transform(values, here.closed), point)
-    problem.out.counts[EVALUATIONS] += 1
-    forces = here.forces
-    if problem.every > 0:
-        forces = end_forces(values, driver, point, rates, problem.last)
-    return Here(here.t, point, rates, forces, here.bits, here.closed)
+def with_driver_in_place(constants, begin):
+    """`StepBegin` with the driver where its phase has it, and the rates there."""
+    driver, values, theta = constants.driver, constants.values, constants.beta * begin.t
+    point = Point(with_first(begin.point.u, driver_displacement(driver, theta)),
+                  with_first(begin.point.w, driver_velocity(driver, theta)), splat(begin.t))
+    rates = rates_at(values, driver, no_transform(values, begin.closed), point)
+    constants.out.counts[EVALUATIONS] += 1
+    forces = begin.forces
+    if constants.every > 0:
+        forces = end_forces(values, driver, point, rates, constants.last)
+    return StepBegin(begin.t, point, rates, forces, begin.bits, begin.closed)
 
 
 @inline_numba
-def ended(problem, here, found, g, left):
+def end_of_step(constants, begin, checked, g, left):
     """The end of a step past point g of the grid: where a contact changes, or at the last of the `left` points."""
-    step, contact, x, end, end_rates = found.step, found.contact, found.x, found.step.end, found.step.end_rates
+    step, contact, x = checked.step, checked.contact, checked.x
+    end, end_rates = step.end, step.end_rates
     time, passed = at(end.clock, TIME), 0
     if contact >= 0:
-        time = time_inside(problem.work, x)
-    while passed < left and (g + passed + 1) * problem.spacing <= time + problem.near:
+        time = time_inside(constants.work, x)
+    while passed < left and (g + passed + 1) * constants.spacing <= time + constants.near:
         passed += 1
     if passed == left:
-        time = (g + passed) * problem.spacing
-        fraction = fraction_at(problem.work, time, x)
+        time = (g + passed) * constants.spacing
+        fraction = fraction_at(constants.work, time, x)
         if fraction < x:
             contact, x = -1, fraction
     cut = contact >= 0 or passed == left
     if cut:
-        end = point_inside(problem.work, step.start, x)
-        end_rates = rates_at(problem.values, problem.driver, no_transform(problem.values, here.closed), end)
-        problem.out.counts[EVALUATIONS] += 1
-    return Ended(contact, x, time, passed, cut, end, end_rates)
+        end = point_inside(constants.work, step.start, x)
+        end_rates = rates_at(constants.values, constants.driver, no_transform(constants.values, begin.closed), end)
+        constants.out.counts[EVALUATIONS] += 1
+    return StepEnd(contact, x, time, passed, cut, end, end_rates)
 
 
 @inline_numba
-def recorded(problem, here, found, end, g, row, samples):
+def record_step(constants, begin, checked, end, g, row, samples):
     """Record the forces in a step, and of the grid points past number g in it each `every`-th.
 
     Returns the forces at its end and the next free row of `samples`.
     """
-    slots, work, values, driver, out = problem.slots, problem.work, problem.values, problem.driver, problem.out
-    step, forces, end_pace, exceeds, x = found.step, found.forces, found.step.end_pace, found.exceeds, end.x
+    slots, work, out = constants.slots, constants.work, constants.out
+    values, driver = constants.values, constants.driver
+    step, forces, end_pace, exceeds, x = checked.step, checked.forces, checked.step.end_pace, checked.exceeds, end.x
     if end.cut:
-        forces = end_forces(values, driver, end.point, end.rates, problem.last)
+        forces = end_forces(values, driver, end.point, end.rates, constants.last)
         if step.transform.active != 0.0:
-            end_pace, _, _ = powers(problem.power, at(end.point.clock, ROOT))
-    first, last = in_xi(here.forces, step.pace), in_xi(forces, end_pace)
-    if found.prepared:
+            end_pace, _, _ = powers(constants.power, at(end.point.clock, ROOT))
+    first, last = in_xi(begin.forces, step.pace), in_xi(forces, end_pace)
+    if checked.prepared:
         exceeds = may_exceed(first, last, x * step.h, out.log.peaks)
     if exceeds:
         search_forces(slots, work, first, last, x, x * step.h, out)
     for number in range(g + 1, g + 1 + end.passed):
-        if number % problem.every == 0:
-            inside = point_inside(work, step.start, fraction_at(work, number * problem.spacing, x))
-            keep_state(work, inside, rates_at(values, driver, no_transform(values, here.closed), inside))
+        if number % constants.every == 0:
+            inside = point_inside(work, step.start, fraction_at(work, number * constants.spacing, x))
+            keep_state(work, inside, rates_at(values, driver, no_transform(values, begin.closed), inside))
             keep(slots, row, work.state[DISPLACEMENT], work.state[VELOCITY], work.state[ELASTIC], samples)
             row += 1
     out.log.counts[SAMPLE] = row - 1
@@ -169,11 +171,11 @@ def growth(step, end):
 
 
 @inline_numba
-def finished(problem, here, y, bodies):
+def write_beads(constants, begin, y, bodies):
     """Write the state of the beads to y."""
-    state = problem.work.state
-    store(state, DISPLACEMENT, here.point.u)
-    store(state, W, here.point.w)
+    state = constants.work.state
+    store(state, DISPLACEMENT, begin.point.u)
+    store(state, W, begin.point.w)
     for i in range(1, bodies - 1):
         y[i], y[bodies + i] = state[DISPLACEMENT, i], state[W, i]
 
@@ -184,59 +186,59 @@ def run_regularised(method, work, trajectory, stretch, samples, out):
     slots, drive, y, workspace = trajectory
     points, grid, every, counts = stretch.points, stretch.grid, stretch.every, out.counts
     bodies, period = slots.chain.inverse_mass.size, drive.period
-    problem = Problem(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
+    constants = RunConstants(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
                       smooth_power(slots.dissipation), bodies - 2, period / grid, PERIOD_END * period, every)
     g, done, row, dt, renew = stretch.first, 0, 1, workspace.next_step[0], True
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
-    here = begun(problem, g * problem.spacing, y, bodies)
+    begin = begin_of_run(constants, g * constants.spacing, y, bodies)
     if every > 0:
-        evaluate(slots, drive.beta, here.t, y, workspace.k[0], workspace.forces)
+        evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
         keep(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     while done < points:
         if out.stop[0] != 0:
             return CANCELLED, row if every > 0 else done
         if renew:
-            here = renewed(problem, here)
+            begin = with_driver_in_place(constants, begin)
         dt = min(dt, method.largest_step)
-        units = new_units(problem, here.point, workspace.scale)
-        chosen = nearest_event(here.rates, here.closed, workspace.scale[0], dt)
-        if chosen >= 0 and at(here.rates.overlap, chosen) <= 0.0 and at(here.rates.rate, chosen) < 0.0:
+        units = new_units(constants, begin.point, workspace.scale)
+        chosen = nearest_event(begin.rates, begin.closed, workspace.scale[0], dt)
+        if chosen >= 0 and at(begin.rates.overlap, chosen) <= 0.0 and at(begin.rates.rate, chosen) < 0.0:
             # opened by rounding, or by another event at the same time
-            here, renew, events = toggled(problem, here, chosen), True, events + 1
+            begin, renew, events = with_contact_toggled(constants, begin, chosen), True, events + 1
             if events > most_events:
                 return CHATTER, row if every > 0 else done
             continue
-        if is_too_small(dt, here.t, drive.beta):
+        if is_too_small(dt, begin.t, drive.beta):
             return STEP_TOO_SMALL, row if every > 0 else done
-        status, found, dt = accepted_step(problem, here, chosen, dt, units, g)
+        status, checked, dt = accepted_step(constants, begin, chosen, dt, units, g)
         if status != DONE:
             return status, row if every > 0 else done
-        end = ended(problem, here, found, g, points - done)
-        idle = idle + 1 if end.contact < 0 and end.time <= here.t else 0
+        end = end_of_step(constants, begin, checked, g, points - done)
+        idle = idle + 1 if end.contact < 0 and end.time <= begin.t else 0
         if idle > ATTEMPTS:
             return STEP_TOO_SMALL, row if every > 0 else done
-        forces = here.forces
+        forces = begin.forces
         if every > 0:
-            forces, row = recorded(problem, here, found, end, g, row, samples)
-        dt *= growth(found.step, end)
+            forces, row = record_step(constants, begin, checked, end, g, row, samples)
+        dt *= growth(checked.step, end)
         g, done, renew = g + end.passed, done + end.passed, end.contact >= 0
         counts[STEPS] += 1
-        here = Here(end.time, end.point, end.rates, forces, here.bits, here.closed)
+        begin = StepBegin(end.time, end.point, end.rates, forces, begin.bits, begin.closed)
         if end.contact >= 0:
             events += 1
             counts[EVENTS] += 1
             if events > most_events:
                 return CHATTER, row if every > 0 else done
-            here = toggled(problem, here, end.contact)
-            if (here.bits >> end.contact) & 1 != 0 and every > 0:
-                note_closing(slots.dissipation, at(here.rates.rate, end.contact), end.contact, problem.last,
-                             drive.beta * here.t, out.log)
-        if here.t >= period:
-            here = Here(here.t - period, here.point, here.rates, here.forces, here.bits, here.closed)
+            begin = with_contact_toggled(constants, begin, end.contact)
+            if (begin.bits >> end.contact) & 1 != 0 and every > 0:
+                note_closing(slots.dissipation, at(begin.rates.rate, end.contact), end.contact, constants.last,
+                             drive.beta * begin.t, out.log)
+        if begin.t >= period:
+            begin = StepBegin(begin.t - period, begin.point, begin.rates, begin.forces, begin.bits, begin.closed)
             g, events, renew = g - grid, 0, True
-    finished(problem, here, y, bodies)
+    write_beads(constants, begin, y, bodies)
     workspace.next_step[0] = dt
-    evaluate(slots, drive.beta, here.t, y, workspace.k[0], workspace.forces)
+    evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
     if first_not_finite(y, bodies) != 0:
         return NOT_FINITE, row if every > 0 else done
     return DONE, row if every > 0 else done

@@ -131,12 +131,12 @@ def _(law, w, damping_over_mass, shapes):
 
 
 @inline_llvm
-def chain_values(wide, slots):
+def chain_values(short, slots):
     """The chain's values in registers."""
-    width = wide.width
-    inverse_mass = load_row(width, wide.inverse_mass, 0)
-    return ChainValues(inverse_mass, over_masses(slots.dissipation, inverse_mass), load_row(width, wide.stiffness, 0),
-               slots.dissipation, slots.foundation, row_values(wide.preload, load_row, width))
+    width = short.width
+    inverse_mass = load_row(width, short.inverse_mass, 0)
+    return ChainValues(inverse_mass, over_masses(slots.dissipation, inverse_mass), load_row(width, short.stiffness, 0),
+               slots.dissipation, slots.foundation, row_values(short.preload, load_row, width))
 
 
 @inline_llvm
@@ -175,26 +175,26 @@ def chain_step(values, ua, ub, vb, h, x, shift, impulse):
 
 
 @inline_llvm
-def store_state(wide, end, x):
+def store_state(short, end, x):
     """Write the chain at a step's beginning or end into the workspace."""
     first = STATE_ROWS * end
-    store(wide.rows, first + U, x.u)
-    store(wide.rows, first + W, x.w)
-    store(wide.rows, first + DU, x.du)
-    store(wide.rows, first + NET_FORCE, x.net_force)
-    store(wide.rows, first + ELASTIC, x.elastic)
-    store(wide.ends, 2 * end + OVERLAP, x.overlap)
-    store(wide.ends, 2 * end + RATE, x.rate)
+    store(short.rows, first + U, x.u)
+    store(short.rows, first + W, x.w)
+    store(short.rows, first + DU, x.du)
+    store(short.rows, first + NET_FORCE, x.net_force)
+    store(short.rows, first + ELASTIC, x.elastic)
+    store(short.ends, 2 * end + OVERLAP, x.overlap)
+    store(short.ends, 2 * end + RATE, x.rate)
 
 
 @inline_llvm
-def load_state(wide, end):
+def load_state(short, end):
     """The chain at a step's beginning or end from the workspace."""
-    width, rows, first = wide.width, wide.rows, STATE_ROWS * end
+    width, rows, first = short.width, short.rows, STATE_ROWS * end
     return ChainState(
         load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
-        load_row(width, rows, first + NET_FORCE), load_row(width, wide.ends, 2 * end + OVERLAP),
-        load_row(width, wide.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
+        load_row(width, rows, first + NET_FORCE), load_row(width, short.ends, 2 * end + OVERLAP),
+        load_row(width, short.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
 
 
 @inline_llvm

@@ -42,51 +42,51 @@ from .step import tabulated_displacement, tabulated_velocity
 
 
 @inline_numba
-def split_row(wide, trajectory, j, u_end, v_end, out):
+def split_short_step(short, trajectory, j, u_end, v_end, out):
     """Repeat step j in the workspace from contact event to contact event, and overwrite its end there.
 
     The driver is at u_end, moving at v_end, at the end.
     """
     slots, drive, _, _ = trajectory
     h, dtheta, theta = drive.h, drive.dtheta, j * drive.dtheta
-    ends, values, driver, done = wide.ends, chain_values(wide, slots), slots.driver, 0.0
+    ends, values, driver, done = short.ends, chain_values(short, slots), slots.driver, 0.0
     last = slots.chain.stiffness.size - 1
     reset_corrections(ends)
     for _ in range(MOST_SPLITS):
         first, contact = first_event(ends, last + 1, h * (1.0 - done))
         if first > 1.0:
             return
-        part, start = first * (1.0 - done), load_state(wide, BEGIN)
+        part, start = first * (1.0 - done), load_state(short, BEGIN)
         for _ in range(2):
             stepped = part
             middle, there = theta + dtheta * (done + 0.5 * part), theta + dtheta * (done + part)
             event = chain_step(values, driver_displacement(driver, middle), driver_displacement(driver, there),
                              driver_velocity(driver, there), h * part, start, blank(start.u), blank(start.w))
-            store_state(wide, BEGIN, event)
+            store_state(short, BEGIN, event)
             out.counts[EVALUATIONS] += 4
             part = nearer_event(slots.dissipation, ends, contact, last, part, 1.0 - done, h)
             if part == stepped:
                 break
         done += stepped
-        add_quadrature_errors(slots.dissipation, wide.stiffness[0, contact], ends, contact, h, done)
+        add_quadrature_errors(slots.dissipation, short.stiffness[0, contact], ends, contact, h, done)
         # after add_quadrature_errors, which gives the overlap the sign that it has after the event
         watch_ends_at_event(slots, ends, contact, there, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = chain_step(values, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
-                       chain_correction(values, load_row(wide.width, ends, DISPLACEMENT_ERROR)),
-                       chain_correction(values, load_row(wide.width, ends, MOMENTUM_ERROR)))
-        store_state(wide, END, end)
+                       chain_correction(values, load_row(short.width, ends, DISPLACEMENT_ERROR)),
+                       chain_correction(values, load_row(short.width, ends, MOMENTUM_ERROR)))
+        store_state(short, END, end)
         out.counts[EVALUATIONS] += 4
         out.counts[EVENTS] += 1
 
 
 @inline_llvm
-def keep_forces(wide, values, last, k, x):
+def keep_forces(short, values, last, k, x):
     """Write input force, output force and its elastic part at step k of a block; returns them."""
     overlap, rate, elastic = at(x.overlap, last), at(x.rate, last), at(x.elastic, last)
     input_force = at(x.elastic, 0) + dashpot_force(values.dissipation, at(x.overlap, 0), at(x.rate, 0))
     output_force = elastic + dashpot_force(values.dissipation, overlap, rate)
-    wide.forces[0, k], wide.forces[1, k], wide.forces[2, k] = input_force, output_force, elastic
+    short.forces[0, k], short.forces[1, k], short.forces[2, k] = input_force, output_force, elastic
     return input_force, output_force, elastic
 
 
@@ -99,33 +99,33 @@ def watch_block(values, count, largest, peaks, first):
 
 
 @inline_numba
-def follow_block(wide, count, maxima, peaks):
+def follow_block(short, count, maxima, peaks):
     """Follow the three forces through the last `count` steps, whose largest values are `maxima`."""
-    watch_block(wide.forces[0], count, maxima[0], peaks, INPUT)
-    watch_block(wide.forces[1], count, maxima[1], peaks, OUTPUT)
-    watch_block(wide.forces[2], count, maxima[2], peaks, OUTPUT_ELASTIC)
+    watch_block(short.forces[0], count, maxima[0], peaks, INPUT)
+    watch_block(short.forces[1], count, maxima[1], peaks, OUTPUT)
+    watch_block(short.forces[2], count, maxima[2], peaks, OUTPUT_ELASTIC)
 
 
 @inline_llvm
-def start_chain(wide, values, trajectory, j):
+def start_chain(short, values, trajectory, j):
     """The chain in the trajectory's state at step j."""
     slots, drive, y, _ = trajectory
-    rows, bodies = wide.rows, slots.chain.inverse_mass.size
+    rows, bodies = short.rows, slots.chain.inverse_mass.size
     for i in range(bodies):
         rows[U, i], rows[W, i] = y[i], y[bodies + i]
     return chain_at(values, tabulated_displacement(slots, drive, 2 * j), tabulated_velocity(slots, drive, 2 * j),
-                  load_row(wide.width, rows, U), load_row(wide.width, rows, W))
+                  load_row(short.width, rows, U), load_row(short.width, rows, W))
 
 
 @inline_numba
-def end_row(wide, x, trajectory, j):
+def write_chain(short, x, trajectory, j):
     """Write the chain at step j into the trajectory: state, slope and elastic forces."""
     slots, drive, y, workspace = trajectory
-    rows, dy, e, bodies = wide.rows, workspace.k[0], workspace.forces.e, slots.chain.inverse_mass.size
-    store_state(wide, BEGIN, x)
+    rows, dy, e, bodies = short.rows, workspace.k[0], workspace.forces.e, slots.chain.inverse_mass.size
+    store_state(short, BEGIN, x)
     for i in range(1, bodies - 1):
         y[i], y[bodies + i], dy[i] = rows[U, i], rows[W, i], rows[DU, i]
-        dy[bodies + i] = wide.inverse_mass[0, i] * rows[NET_FORCE, i]
+        dy[bodies + i] = short.inverse_mass[0, i] * rows[NET_FORCE, i]
         e[i] = rows[ELASTIC, i]
     e[0] = rows[ELASTIC, 0]
     y[0] = tabulated_displacement(slots, drive, 2 * j)
@@ -133,14 +133,14 @@ def end_row(wide, x, trajectory, j):
 
 
 @inline_numba
-def run_short_chain(wide, trajectory, j, count, out):
+def run_short_chain(short, trajectory, j, count, out):
     """Take `count` steps from step index j of the period, slope and forces at the end included.
 
     The stop flag leaves them incomplete.
     """
     slots, drive, _, _ = trajectory
-    values, before, last = chain_values(wide, slots), flush_subnormals(), slots.chain.stiffness.size - 1
-    x = start_chain(wide, values, trajectory, j)
+    values, before, last = chain_values(short, slots), flush_subnormals(), slots.chain.stiffness.size - 1
+    x = start_chain(short, values, trajectory, j)
     closed, rising, nothing = positive_mask(x.overlap), positive_mask(x.rate), blank(x.w)
     taken = count
     for first in range(j, j + count, STEPS_IN_BLOCK):
@@ -154,20 +154,20 @@ def run_short_chain(wide, trajectory, j, count, out):
             closed_after, rising_after = positive_mask(end.overlap), positive_mask(end.rate)
             # the test of `may_change` (step.py) in bits: another sign, or towards zero at first and away at last
             if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
-                store_state(wide, BEGIN, x)
-                store_state(wide, END, end)
-                split_row(wide, trajectory, first + k, ub, vb, out)
-                end = load_state(wide, END)
+                store_state(short, BEGIN, x)
+                store_state(short, END, end)
+                split_short_step(short, trajectory, first + k, ub, vb, out)
+                end = load_state(short, END)
                 closed_after, rising_after = positive_mask(end.overlap), positive_mask(end.rate)
             x, closed, rising = end, closed_after, rising_after
-            input_force, output_force, elastic = keep_forces(wide, values, last, k, x)
+            input_force, output_force, elastic = keep_forces(short, values, last, k, x)
             top_in, top_out = larger(top_in, input_force), larger(top_out, output_force)
             top_elastic = larger(top_elastic, elastic)
-        follow_block(wide, block, (top_in, top_out, top_elastic), out.log.peaks)
+        follow_block(short, block, (top_in, top_out, top_elastic), out.log.peaks)
         if out.stop[0] != 0:
             taken = first + block - j
             break
     restore_subnormals(before)
     out.counts[STEPS] += taken
     out.counts[EVALUATIONS] += 4 * taken
-    end_row(wide, x, trajectory, j + taken)
+    write_chain(short, x, trajectory, j + taken)

@@ -38,16 +38,16 @@ _WORTH_EXTRAPOLATING = 1e-2
 class Detected(NamedTuple):
     """What a record of strobes shows: an orbit, or the approach to one.
 
-    If `period` > 0 the motion has that period: `rate` is its decay per orbit, −1 where none was seen, and `distance`
+    If `period` > 0 the motion has that period: `decay` is its decay per orbit, −1 where none was seen, and `distance`
     bounds the distance left to the orbit. Else `period` is 0, `approached` is the first period over which changes decay
-    (0 for none), `approach_rate` their factor per `approached` drive periods, `approach_change` the latest of them.
+    (0 for none), `approach_decay` their factor per `approached` drive periods, `approach_change` the latest of them.
     """
 
     period: int
-    rate: float
+    decay: float
     distance: float
     approached: int
-    approach_rate: float
+    approach_decay: float
     approach_change: float
 
 
@@ -106,8 +106,8 @@ def decay_rate(change, count, n):
         return 0.0, True
     power = 2.0 * n / (count - n)
     early, late = (middle / first) ** power, (last / middle) ** power
-    rate = max(early, late)
-    return rate, abs(early - late) < 0.2 * rate
+    decay = max(early, late)
+    return decay, abs(early - late) < 0.2 * decay
 
 
 @internal
@@ -130,7 +130,7 @@ def shortest(strobes, scale, n, nothing):
 
 
 @internal
-def earlier_rate(strobes, scale, n, rounding, change):
+def earlier_decay(strobes, scale, n, rounding, change):
     """The decay rate over n periods from the last part of the record that is well above rounding; −1 if none is."""
     end, count = strobes.shape[0] - 1, window_of(n)
     while end >= n and change_between(strobes, scale, end, end - n) <= 1e3 * rounding:
@@ -138,22 +138,22 @@ def earlier_rate(strobes, scale, n, rounding, change):
     if end < count + n - 1:
         return -1.0
     changes_before(strobes, scale, n, end, change[:count])
-    rate, _ = decay_rate(change, count, n)
-    return rate if 0.0 < rate < 1.0 else -1.0
+    decay, _ = decay_rate(change, count, n)
+    return decay if 0.0 < decay < 1.0 else -1.0
 
 
 @kernel
 def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
     """The shortest period of a record of strobes and the decay towards it, as `Detected`.
 
-    That period is the smallest whose distance bound change·rate/(1 − rate) is at most `settled`; changes below
-    `rounding` count as none. `slowest` is a rate per drive period that is known to occur, whether these states show it
+    That period is the smallest whose distance bound change·decay/(1 − decay) is at most `settled`; changes below
+    `rounding` count as none. `slowest` is a decay per drive period that is known to occur, whether these states show it
     or not.
     `scale` (2,) and `change` (3·longest or more,) are workspaces.
     """
     run = strobes.shape[0] - 1
     largest_of(strobes, scale)
-    approaching, approached, approach_rate, approach_change = 0, 0, 0.0, 0.0
+    approaching, approached, approach_decay, approach_change = 0, 0, 0.0, 0.0
     for n in range(1, longest + 1):
         count = window_of(n)
         if run < count + n:
@@ -167,23 +167,23 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
             q = shortest(strobes, scale, n, max(10.0 * rounding, 3.0 * settled))
-            return Detected(q, earlier_rate(strobes, scale, q, rounding, change), rounding, 0, 0.0, 0.0)
-        rate, even = decay_rate(change, count, n)
+            return Detected(q, earlier_decay(strobes, scale, q, rounding, change), rounding, 0, 0.0, 0.0)
+        decay, even = decay_rate(change, count, n)
         recent = largest_change(change, count - n, n)
-        if rate >= 1.0:
+        if decay >= 1.0:
             continue
         if approached == 0:
-            approached, approach_rate, approach_change = n, rate, recent
+            approached, approach_decay, approach_change = n, decay, recent
         if now > _NOT_SETTLED:
             continue
-        if rate < _APPROACHING:
+        if decay < _APPROACHING:
             approaching |= 1 << n
-        rate = max(rate, slowest**n)
-        distance = recent * rate / (1.0 - rate)
+        decay = max(decay, slowest**n)
+        distance = recent * decay / (1.0 - decay)
         if distance <= settled and (even or recent <= _DEEP * settled):
             q = shortest(strobes, scale, n, max(10.0 * distance, 3.0 * settled))
-            return Detected(q, rate ** (q / n), distance, 0, 0.0, 0.0)
-    return Detected(0, 0.0, 0.0, approached, approach_rate, approach_change)
+            return Detected(q, decay ** (q / n), distance, 0, 0.0, 0.0)
+    return Detected(0, 0.0, 0.0, approached, approach_decay, approach_change)
 
 
 @kernel

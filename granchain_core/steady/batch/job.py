@@ -11,7 +11,7 @@ from ...integrate import Engine, fixed_step_setting
 from ...integrate.batch import Batch
 from ...integrate.methods import AT_A_JUMP, typical_error
 from ...integrate.stated import relative_changes
-from ...kernels.batch.period_end import CHECK_DISTANCE, CHECK_PERIOD
+from ...kernels.batch.checks import CHECK_DISTANCE, CHECK_PERIOD
 from ...regime import Regime
 from ...scaling import ScaledChain
 from ...scene import Scene

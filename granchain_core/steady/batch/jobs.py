@@ -2,7 +2,7 @@
 
 Every scene becomes a member of a batch, with coarse steps. Once its regime is decided, the next takes its place.
 
-Coarse run: `check_coarse` (kernels/batch/period_end.py) bounds the distance to the orbit; an orbit that was reached by
+Coarse run: `check_coarse` (kernels/batch/checks.py) bounds the distance to the orbit; an orbit that was reached by
 extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run, a third of the step:
 `check_fine`, until that bound is small or six extrapolations are spent; what is left goes into the stated error, with
 the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, measured twice

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...kernels.batch.period_end import FARTHEST_EXTRAPOLATION
+from ...kernels.batch.checks import FARTHEST_EXTRAPOLATION
 from ...kernels.strobes import extrapolation
 
 

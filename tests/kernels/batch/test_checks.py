@@ -1,4 +1,4 @@
-"""What a batch believes at the end of a period, from states made by hand; and what it takes back beside events."""
+"""What the checks of a batch believe, from states made by hand; and what it takes back beside events."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate.batch import Batch
-from granchain_core.kernels.batch import contact_correction, period_end
+from granchain_core.kernels.batch import checks, contact_correction, record
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
 from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.stop import Stop
@@ -27,13 +27,13 @@ def seen(record: np.ndarray) -> Batch:
 def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() -> None:
     """States that repeat are periodic where the chain came there by itself; where it was put there they are tried."""
     batch = seen(np.ones(60))
-    assert period_end.check_coarse.py_func(batch.state, MEMBER)
+    assert checks.check_coarse.py_func(batch.state, MEMBER)
     batch = seen(np.ones(60))
     batch.state.slowest[MEMBER] = 0.9
-    assert not period_end.check_coarse.py_func(batch.state, MEMBER)
+    assert not checks.check_coarse.py_func(batch.state, MEMBER)
     assert batch.state.testing[MEMBER] == 1
     moved = np.abs(batch.state.y[[1, 2, ROW + 1, ROW + 2], MEMBER] - 1.0)
-    assert moved == pytest.approx(period_end._DISTURBANCE, rel=1e-9)
+    assert moved == pytest.approx(checks._DISTURBANCE, rel=1e-9)
 
 
 @pytest.mark.parametrize(("rate", "stable"), [(0.8, True), (1.2, False)])
@@ -42,15 +42,15 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 
     The scale of displacements and velocities is the member's own: others have used the workspace meanwhile.
     """
-    batch = seen(1.0 + 1e-4 * rate ** np.arange(period_end._TEST_ORBITS + 1))
+    batch = seen(1.0 + 1e-4 * rate ** np.arange(checks._TEST_ORBITS + 1))
     state = batch.state
-    state.testing[MEMBER], state.slowest[MEMBER], state.last_check[MEMBER, period_end.CHECK_PERIOD] = 1, 0.9, 1.0
+    state.testing[MEMBER], state.slowest[MEMBER], state.last_check[MEMBER, checks.CHECK_PERIOD] = 1, 0.9, 1.0
     state.scale[:] = 1e-12, 1e12
     state.before[MEMBER, :, 1:-1] = 1.0
-    assert period_end.decayed.py_func(state, MEMBER) == stable
+    assert checks.decayed.py_func(state, MEMBER) == stable
     assert state.testing[MEMBER] == 0 and (state.slowest[MEMBER] > 0.0) == stable
     assert (state.y[1, MEMBER] == 1.0) == stable
-    assert (state.last_check[MEMBER, period_end.CHECK_PERIOD] == 1.0) == stable, "what was no orbit has no period"
+    assert (state.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was no orbit has no period"
     assert state.scale == pytest.approx(1.0, rel=1e-2)
 
 
@@ -60,7 +60,7 @@ def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before:
     batch = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
     state = batch.state
     state.change_before_extrapolation[MEMBER], state.before[MEMBER, :, 1:-1], state.extrapolate_from[MEMBER], state.pause[MEMBER] = before, 0.25, 10_000, 16
-    assert not period_end.check_coarse.py_func(state, MEMBER)
+    assert not checks.check_coarse.py_func(state, MEMBER)
     assert state.change_before_extrapolation[MEMBER] == 0.0
     assert (state.y[1, MEMBER] != 0.25) == kept and (state.pause[MEMBER] == 16) == kept
 
@@ -73,25 +73,25 @@ def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None
     state.periods[MEMBER] = 59
     state.before[MEMBER, :, 1:-1] = before[-1]
     limit = np.full((2, 4), 2.0)
-    period_end.move_member.py_func(state, MEMBER, limit)
+    record.move_member.py_func(state, MEMBER, limit)
     assert len(batch.strobes(MEMBER)) == 1 and batch.strobes(MEMBER)[0] == pytest.approx(2.0)
     for _ in range(12):
         state.periods[MEMBER] += 1
-        period_end.keep_member_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
+        record.keep_member_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
     assert len(batch.strobes(MEMBER)) == 13
-    period_end.undo_extrapolation.py_func(state, MEMBER)
+    record.undo_extrapolation.py_func(state, MEMBER)
     assert batch.strobes(MEMBER)[:, 0, 0] == pytest.approx(before, abs=0.0)
     assert state.periods[MEMBER] == 59 and state.y[1, MEMBER] == before[-1]
 
 
 def test_a_full_record_drops_its_older_half_and_keeps_its_beginning_right() -> None:
     """Strobes from before the last move leave first; those since then stay, up to STROBES_KEPT of them."""
-    batch = seen(np.arange(1.0, 2.0 * period_end.STROBES_KEPT))  # one place is left
+    batch = seen(np.arange(1.0, 2.0 * record.STROBES_KEPT))  # one place is left
     state = batch.state
-    period_end.move_member.py_func(state, MEMBER, np.full((2, 4), -1.0))
+    record.move_member.py_func(state, MEMBER, np.full((2, 4), -1.0))
     for k in range(3):
         state.y[1, MEMBER] = -2.0 - k
-        period_end.keep_member_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
+        record.keep_member_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
     assert batch.strobes(MEMBER)[:, 0, 0].tolist() == [-1.0, -2.0, -3.0, -4.0]
 
 

@@ -1,0 +1,234 @@
+"""Checks of a batch member's regime, between its periods: is its motion periodic, may its transient be extrapolated?
+
+A coarse member is extrapolated to at most three times the distance that its decay predicts (`FARTHEST_EXTRAPOLATION`).
+The extrapolation is undone, with the periods run since, if the change per orbit is not smaller after it than before:
+the record goes on as if it had not been made. A chain may approach an unstable orbit before it leaves it, and an
+extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the disturbance
+decays; if it decays slowly, multipliers decide (steady/batch/jobs.py). A fine member starts on the coarse orbit and is
+extrapolated to its own, each extrapolation checked in the same way.
+
+`check_member` is the same for every structure. It takes longer to compile than the steps of a batch, so it is a kernel
+of its own, which `run_batch` calls by its address.
+"""
+
+from __future__ import annotations
+
+from math import log
+
+import numpy as np
+
+from ..compiling.jit import inline_numba, internal, kernel
+from ..equations.motion import copy
+from ..strobes.extrapolation import ORBITS, reduced_rank
+from ..strobes.periodicity import (
+    LONGEST_PERIOD,
+    ROUNDING,
+    SETTLED_DISTANCE,
+    change_between,
+    detect_period,
+    largest_of,
+    window_of,
+)
+from .record import STROBES_KEPT, move_member, undo_extrapolation
+
+#: Most strobes on which a member's regime is decided.
+CHECKED = 4 * LONGEST_PERIOD + 1
+#: Fewest orbits still to run that justify an extrapolation.
+_FEWEST_ORBITS_LEFT = 4.0
+#: Fewest drive periods between two extrapolations.
+_PERIODS_BETWEEN = 8
+#: How far an extrapolation may go, in units of change/(1 − decay), the distance that the decay predicts.
+FARTHEST_EXTRAPOLATION = 3.0
+#: Largest part of the coarse orbit's error that may remain in the fine run.
+COARSE_ERROR_LEFT = 0.02
+#: Most extrapolations of a fine member.
+_MOST_EXTRAPOLATIONS = 6
+#: Disturbance that tests an extrapolated orbit, relative to the motion.
+_DISTURBANCE = 1e-4
+#: Orbits that the test takes.
+_TEST_ORBITS = 16
+#: Largest part of the disturbance that may be left at the end of the test, relative to its first quarter.
+_PART_LEFT = 0.97
+#: Drive periods without extrapolation after a disturbance that did not decay.
+_PAUSE_AFTER_FAILED_TEST = 400
+#: Slowest decay reported for a disturbance that shrank: multipliers are then computed.
+_NEARLY_ONE = 0.9999
+#: Decay rates above this are too uncertain to extrapolate.
+_SLOWEST_REMOVED = 0.98
+#: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
+CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
+#: Columns of `fine_record`: the orbit's period and decay, the coarse run's three largest forces (from FINE_FORCES on),
+#: orbits between two extrapolations, extrapolations so far; and their number.
+FINE_PERIOD, FINE_DECAY, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_COLUMNS = 0, 1, 2, 5, 6, 7
+
+
+@internal
+def extrapolate_member(state, member, n, decay, change):
+    """Move a member to the limit of its last strobes, n periods apart; returns whether that was within reach."""
+    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
+    count = record.shape[0]
+    if count < ORBITS * n + 1 or not 0.0 < decay < 1.0:
+        return False
+    limit, record = state.limit, record[count - 1 - ORBITS * n :]
+    reduced_rank(record[::n], state.basis, state.triangle, limit)
+    largest_of(record, state.scale)
+    reach = FARTHEST_EXTRAPOLATION * change / (1.0 - decay)
+    for q in range(2):
+        for i in range(limit.shape[1]):
+            if not abs(limit[q, i] - record[ORBITS * n, q, i]) <= reach * state.scale[q]:
+                return False
+    move_member(state, member, limit)
+    return True
+
+
+@internal
+def check_coarse(state, member):
+    """Whether a member's last strobes are periodic; if they only approach an orbit, the transient is extrapolated."""
+    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
+    periods = state.periods[member]
+    count = record.shape[0]
+    period, decay, distance, n, approach_decay, change = detect_period(  # an int64, as from Python: one version serves
+        record[max(0, count - CHECKED) :], np.int64(LONGEST_PERIOD), ROUNDING, SETTLED_DISTANCE,
+        state.slowest[member], state.scale, state.change)
+    last_check = state.last_check[member]
+    last_check[CHECK_PERIOD], last_check[CHECK_DECAY], last_check[CHECK_DISTANCE] = period, decay, distance
+    if period > 0 and state.slowest[member] > 0.0:
+        disturb(state, member, period)
+        return False
+    if period > 0:
+        return True
+    if state.change_before_extrapolation[member] > 0.0:
+        proved = n > 0 and change < state.change_before_extrapolation[member]
+        state.change_before_extrapolation[member] = 0.0
+        if not proved:
+            undo_extrapolation(state, member)
+            periods = state.periods[member]
+            state.pause[member] *= 2
+            state.extrapolate_from[member] = periods + state.pause[member]
+            state.earliest[member] = periods + periods_to_next_check(state, member)
+            return False
+    left = change * approach_decay / (1.0 - approach_decay) if n > 0 else 0.0
+    if periods < state.extrapolate_from[member] or left <= SETTLED_DISTANCE:
+        return False
+    if log(SETTLED_DISTANCE / left) > _FEWEST_ORBITS_LEFT * log(approach_decay):
+        return False  # it settles sooner without extrapolation
+    copy(record[count - 1, 0], state.before[member, 0])
+    copy(record[count - 1, 1], state.before[member, 1])
+    if extrapolate_member(state, member, n, approach_decay, change):
+        state.change_before_extrapolation[member] = change
+        state.slowest[member] = min(_SLOWEST_REMOVED, max(state.slowest[member], approach_decay ** (1.0 / n)))
+        state.earliest[member] = periods + window_of(n) + n + 1
+        state.extrapolate_from[member] = periods + ORBITS * n
+    else:
+        state.extrapolate_from[member] = periods + max(_PERIODS_BETWEEN, count // 4)
+    return False
+
+
+@inline_numba
+def disturb(state, member, period):
+    """Disturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
+    bodies, last = state.limit.shape[1], state.strobe_count[member] - 1
+    for q in range(2):
+        copy(state.strobes[member, last, q], state.before[member, q])
+        for i in range(bodies):
+            state.limit[q, i] = state.before[member, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
+    for q in range(3):
+        state.fine_record[member, FINE_FORCES + q] = largest_top(state, member, period, q)
+    move_member(state, member, state.limit)
+    state.testing[member] = period
+    state.earliest[member] = state.periods[member] + _TEST_ORBITS * period
+
+
+@inline_numba
+def decayed(state, member):
+    """Whether a member's disturbance has decayed; it is then moved back to its orbit, and the decay is recorded."""
+    n, bodies = state.testing[member], state.limit.shape[1]
+    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
+    state.testing[member] = 0
+    largest_of(record[: _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
+    first, middle, late, last = 0.0, 0.0, 0.0, 0.0
+    for k in range(_TEST_ORBITS + 1):
+        there, whole = 0.0, 0.0
+        for q in range(2):
+            for i in range(bodies):
+                offset = (record[k * n, q, i] - state.before[member, q, i]) / state.scale[q]
+                there, whole = max(there, abs(offset)), whole + offset**2
+        quarter = 4 * k // (_TEST_ORBITS + 1)
+        first = max(first, there) if quarter == 0 else first
+        middle += whole if quarter == 1 else 0.0
+        late += whole if quarter == 3 else 0.0
+        last = there
+    if last <= _PART_LEFT * first:
+        move_member(state, member, state.before[member])
+        decay = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
+        state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], min(decay, _NEARLY_ONE))
+        return True
+    state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
+    state.last_check[member, CHECK_PERIOD] = 0.0  # this member does not stay on the orbit that was found
+    state.extrapolate_from[member] = state.periods[member] + _PAUSE_AFTER_FAILED_TEST
+    return False
+
+
+@internal
+def largest_top(state, member, n, q):
+    """The largest force of kind q in a member's last n periods."""
+    largest = 0.0
+    for p in range(n):
+        largest = max(largest, state.maxima[member, (state.periods[member] - p) % STROBES_KEPT, q])
+    return largest
+
+
+@inline_numba
+def check_fine(state, member):
+    """Whether the coarse orbit's error has decayed in a fine member; if not, its transient is extrapolated.
+
+    If changes are not smaller after an extrapolation, it is undone, and the member is not extrapolated again.
+    """
+    fine, count, last_check = state.fine_record[member], state.strobe_count[member], state.last_check[member]
+    n, decay = int(fine[FINE_PERIOD]), fine[FINE_DECAY]
+    record = state.strobes[member, count - 1 - n : count]
+    largest_of(record, state.scale)
+    change = change_between(record, state.scale, n, 0)
+    last_check[CHECK_PERIOD], last_check[CHECK_DECAY] = n, decay
+    last_check[CHECK_DISTANCE] = change * decay / (1.0 - decay)
+    proved = change < state.change_before_extrapolation[member] or state.change_before_extrapolation[member] == 0.0
+    state.change_before_extrapolation[member] = 0.0
+    if not proved:
+        undo_extrapolation(state, member)
+        state.earliest[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
+        fine[FINE_EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
+        return False
+    moved = 0.0
+    for q in range(1, 3):
+        largest = largest_top(state, member, n, q)
+        moved = max(moved, abs(largest - fine[FINE_FORCES + q]) / largest if largest > 0.0 else 0.0)
+    close = last_check[CHECK_DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)
+    if close or fine[FINE_EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:
+        return True
+    fine[FINE_EXTRAPOLATIONS] += 1.0
+    copy(state.strobes[member, count - 1, 0], state.before[member, 0])
+    copy(state.strobes[member, count - 1, 1], state.before[member, 1])
+    if extrapolate_member(state, member, n, decay, change):
+        state.change_before_extrapolation[member] = change
+    state.earliest[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
+    return False
+
+
+@internal
+def periods_to_next_check(state, member):
+    """Periods until a member's record is checked again: about a sixth of its length."""
+    return max(3, (state.strobe_count[member] - state.first_strobe[0, member]) // 6)
+
+
+@kernel
+def check_member(state, member):
+    """Check a member's regime, or what is left of its disturbance; returns whether the member is due.
+
+    If it is not, the next check is set.
+    """
+    state.earliest[member] = state.periods[member] + periods_to_next_check(state, member)
+    if state.testing[member] > 0:
+        return decayed(state, member)
+    if state.fine_record[member, FINE_PERIOD] > 0.0:
+        return check_fine(state, member)
+    return check_coarse(state, member)

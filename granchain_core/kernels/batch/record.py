@@ -1,0 +1,61 @@
+"""The record of a batch member: its strobes, and its moves to another state, after which the record begins anew."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..compiling.jit import internal
+from ..equations.motion import copy
+
+#: At least this many of a member's last strobes are kept, once there are as many.
+STROBES_KEPT = 432
+
+
+@internal
+def keep_member_strobe(strobes, strobe_count, first_strobe, y, member):
+    """Append the state to the strobes, dropping their older half if they are full; returns whether it is finite."""
+    bodies = y.shape[0] // 2
+    if strobe_count[member] == strobes.shape[1]:
+        half = strobes.shape[1] // 2
+        for p in range(half):
+            copy(strobes[member, half + p, 0], strobes[member, p, 0])
+            copy(strobes[member, half + p, 1], strobes[member, p, 1])
+        strobe_count[member] = half
+        for q in range(2):
+            first_strobe[q, member] = max(0, first_strobe[q, member] - half)
+    finite, row = True, strobe_count[member]
+    for i in range(bodies):
+        strobes[member, row, 0, i], strobes[member, row, 1, i] = y[i, member], y[bodies + i, member]
+        finite = finite and np.isfinite(y[i, member]) and np.isfinite(y[bodies + i, member])
+    strobe_count[member] += 1
+    return finite
+
+
+@internal
+def set_state(state, member, there):
+    """Set the state of a member at phase 0 to `there` (2, bodies)."""
+    bodies = there.shape[1]
+    for i in range(1, bodies - 1):
+        state.y[i, member], state.y[bodies + i, member] = there[0, i], there[1, i]
+    for c in range(bodies - 1):
+        state.overlaps[c, member] = 0.0
+    for row in range(4):
+        state.ends[row, member] = 1.0  # counts as closed, so that no closing is recorded here
+
+
+@internal
+def move_member(state, member, there):
+    """Move a member to the state `there` (2, bodies), where its record begins anew."""
+    set_state(state, member, there)
+    state.first_strobe[1, member] = state.first_strobe[0, member]
+    state.first_strobe[0, member] = state.strobe_count[member]
+    keep_member_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
+
+
+@internal
+def undo_extrapolation(state, member):
+    """Move a member back to its state before the last extrapolation; its record and its periods go on from there."""
+    set_state(state, member, state.before[member])
+    state.periods[member] -= state.strobe_count[member] - state.first_strobe[0, member] - 1
+    state.strobe_count[member] = state.first_strobe[0, member]
+    state.first_strobe[0, member] = state.first_strobe[1, member]

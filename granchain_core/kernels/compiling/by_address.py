@@ -1,0 +1,38 @@
+"""A kernel that calls another one by its address, so that the other's code is compiled once and not in every caller.
+
+Numba links the code of what a kernel calls into that kernel, and optimises and translates it there again. That pays for
+what is called at each step. It does not for what is called rarely, is long and is the same for every structure.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import types
+from numba.extending import intrinsic
+
+
+def address_of(kernel: Any, *arguments: Any) -> int:
+    """Address of a kernel's version for arguments of these types, compiled first where it is not there yet."""
+    signature = tuple(kernel.typeof_pyval(argument) for argument in arguments)
+    if signature not in kernel.overloads:
+        kernel.compile(signature)
+    version = kernel.overloads[signature]
+    return int(version.library.get_pointer_to_function(version.fndesc.llvm_func_name))
+
+
+@intrinsic
+def call_at(typing_context, address, arguments):
+    """Call the kernel at an address of `address_of`, for arguments of these very types; it returns a Boolean."""
+    signature = types.boolean(address, arguments)
+
+    def generate(context, builder, signature, values):
+        where, packed = values
+        kinds = tuple(signature.args[1])
+        passed = [builder.extract_value(packed, i) for i in range(len(kinds))]
+        function = context.call_conv.get_function_type(types.boolean, kinds)
+        target = builder.inttoptr(where, function.as_pointer())
+        _, result = context.call_conv.call_function(builder, target, types.boolean, kinds, passed)
+        return result
+
+    return signature, generate
