@@ -21,41 +21,16 @@ settings.register_profile("granchain", deadline=None, derandomize=True, max_exam
 settings.load_profile("granchain")
 
 HERE = Path(__file__).parent
-#: Folders and files of the inner loop, `python -m pytest -m quick`; CONTRIBUTING.md says how long it may take.
-#: Most parts of the core have one that fails where that part is wrong; orders, random scenes and browsers are for the
-#: whole suite.
+#: Folders of the inner loop, `python -m pytest -m quick`; files elsewhere are marked `quick` themselves.
+#: CONTRIBUTING.md says how long it may take. Most parts of the core have a test in it that fails where that part is
+#: wrong; orders, random scenes and browsers are for the whole suite.
 QUICK = (
-    "architecture", "public", "scene", "experiment", "store/test_files.py", "store/test_hdf5_border.py", "dashboard",
-    "session", "integrate", "run/test_peaks.py", "kernels/equations", "kernels/effects", "kernels/rk4",
-    "kernels/dop853", "kernels/test_absent_effects.py", "kernels/simd/test_vector_nan.py",
-    "kernels/batch/test_checks.py", "kernels/batch/test_refill.py", "physics/test_impact.py",
-    "physics/test_work_on_the_way.py", "steady/test_claims.py", "steady/test_places.py", "orbits/test_orbits.py",
-    "orbits/test_orbit_claims.py", "diagram/test_boundary.py", "observe/test_force_files.py",
-    "accuracy/test_effect_cost.py", "parts", "pages/test_hard_words.py", "cli/test_borders.py", "test_format.py",
-)
-
-#: The tests that take longest, the longest first; the browser's among them begin its rows.
-LONG = (
-    "test_axe::test_axe_finds_nothing", "test_site::test_every_page_and_notebook_is_there",
-    "test_first_visit::test_cold_kernels_are_announced_and_the_picture_follows",
-    "test_effects_panel::test_what_is_computed_is_what_is_asked_for",
-    "test_accuracy_page::test_points_appear_and_the_cheapest_way_is_told",
-    "test_resume::test_a_command_goes_on_after_two_signals",
-    "test_branches_page::test_a_branch_grows_is_stopped_and_goes_on",
-    "test_room::test_what_the_paper_states_is_named_at_its_frequency",
-    "test_room::test_no_control_and_no_word_is_cut_hidden_or_covered", "test_stories::test_a_story_shows_what_it_tells",
-    "test_force_errors::test_largest_forces_are_within_what_is_stated_of_them",
-    "test_map::test_a_killed_map_resumes_and_computes_nothing_again", "test_fuzz::test_everything_holds_in_every_scene",
-    "test_work_precision::test_what_fails_is_named_and_kept",
-    "test_chapters::test_the_peaks_of_section_2_and_what_lies_between",
-    "test_regime_labels::test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit",
-    "test_stated_errors::test_the_stated_error_bounds_the_true_one",
-    "test_add_a_page::test_the_new_page_fits_into_the_dashboard",
-    "test_add_an_effect::test_the_tests_that_know_every_scene_and_knob_know_the_new_ones",
+    "architecture", "public", "scene", "experiment", "dashboard", "session", "integrate", "kernels/equations",
+    "kernels/effects", "kernels/rk4", "kernels/dop853", "parts",
 )
 #: Folders whose tests may have a server in another thread, with documents of its own.
 SERVERS = ("serve", "public", "browser")
-#: How many other tests of the browser take as long as a long one.
+#: How many other tests of the browser take as long as one that is marked `long`.
 _LONG_IS = 5
 
 
@@ -108,8 +83,10 @@ def pytest_collection() -> Iterator[None]:
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Iterator[None]:
     """Mark the quick tests; once the chosen ones are known, order them for the workers."""
-    paths = {item.path for item in items}
-    quick = {path for path in paths if any(path.is_relative_to(HERE / one) for one in QUICK)}
+    missing = [folder for folder in QUICK if not (HERE / folder).is_dir()]
+    if missing:
+        raise pytest.UsageError(f"tests/conftest.py: QUICK names folders that are not there: {', '.join(missing)}")
+    quick = {path for path in {item.path for item in items} if any(path.is_relative_to(HERE / one) for one in QUICK)}
     for item in items:
         if item.path in quick:
             item.add_marker(pytest.mark.quick)
@@ -124,20 +101,18 @@ def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
 
     Each worker begins with an equal number of tests in a row, and who has ended takes the last half of the longest row.
     So two rows begin with the browser's tests, for which a worker needs a server and a browser of its own, the others
-    with long tests, and what is left at the end is short. The files of both are not divided: their tests share what a
-    fixture made, and those of one page ask for the same curves, which a server computes once.
+    with tests that are marked `long`, and what is left at the end is short. The files of both are not divided: their
+    tests share what a fixture made, and those of one page ask for the same curves, which a server computes once.
     """
-    place = {name: number for number, name in enumerate(LONG)}
     files: dict[Path, list[pytest.Item]] = {}
     for item in items:
         files.setdefault(item.path, []).append(item)
-    first = {path: min(place.get(_name(item), len(place)) for item in group) for path, group in files.items()}
     rows: list[list[pytest.Item]] = [[] for _ in range(workers)]
     number = 0
-    for path in sorted(files, key=lambda path: first[path]):  # others stay in their order
+    for path in sorted(files, key=lambda path: not any(map(_is_long, files[path]))):  # others stay in their order
         if path.is_relative_to(HERE / "browser"):
-            min(rows[:2], key=lambda row: sum(_LONG_IS if _name(item) in place else 1 for item in row)).extend(files[path])
-        elif first[path] < len(place):
+            min(rows[:2], key=lambda row: sum(_LONG_IS if _is_long(item) else 1 for item in row)).extend(files[path])
+        elif any(map(_is_long, files[path])):
             rows[-1 - number % max(1, workers - 2)].extend(files[path])
             number += 1
     begun = {item for row in rows for item in row}
@@ -148,6 +123,5 @@ def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
     return [item for row in rows for item in row] + list(others)
 
 
-def _name(item: pytest.Item) -> str:
-    """File and function of a test, without its parameters."""
-    return f"{item.path.stem}::{getattr(item, 'originalname', item.name)}"
+def _is_long(item: pytest.Item) -> bool:
+    return item.get_closest_marker("long") is not None

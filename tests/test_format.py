@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 
 from app.format import duration, prefixed
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize(("value", "words"), [(999.4e-3, "999 m"), (999.6e-3, "1 "), (0.9995, "1 "), (1e3, "1 k")])
 def test_the_largest_of_a_prefix_rounds_up_into_the_next(value: float, words: str) -> None:

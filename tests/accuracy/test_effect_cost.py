@@ -11,6 +11,8 @@ from granchain_core.pieces import ACCURACY_KERNELS, COST_KERNELS
 from granchain_core.stop import Stop
 from granchain_core.warm import compile_piece, is_warm
 
+pytestmark = pytest.mark.quick
+
 CHAIN = scene("sec2")
 
 

@@ -86,6 +86,7 @@ def test_progress_reaches_the_end_while_rows_are_added(monkeypatch: pytest.Monke
     assert grown == sorted(grown) and grown[-1] == len(list(measured_settings()))
 
 
+@pytest.mark.long
 def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """A solver that gives up and one that is too slow: rows with their sentences, and the others go on."""
     module = __import__("sys").modules["granchain_core.accuracy.work_precision"]

@@ -132,3 +132,9 @@ def _how(playwright: Playwright) -> dict[str, Any]:
         raise RuntimeError("The browser tests need Chromium: install the system's chromium package, "
                            "or run `playwright install chromium`.")
     return {"executable_path": system, "args": CHROMIUM_OPTIONS, "headless": not headed}
+
+
+def resize(page: Page, width: int, height: int) -> None:
+    """Give the window a size, and wait until the page is as wide: figures follow a little later."""
+    page.set_viewport_size({"width": width, "height": height})
+    page.wait_for_function("(width) => document.documentElement.scrollWidth === width", arg=width)

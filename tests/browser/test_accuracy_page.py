@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from typing import Any
 
+import pytest
 from bokeh_figures import source
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Locator, Page, expect
-from server import at_rest, until
+from server import at_rest, resize, until
 from test_axe import violations
 
 #: The figure of the page, and how many points each method has in it.
@@ -57,6 +58,7 @@ def says_asked_reached_and_how_long(page: Page) -> None:
     expect(line).to_contain_text("asked 1e-6 · reached")
 
 
+@pytest.mark.long
 def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     page = visit()
     says_asked_reached_and_how_long(page)
@@ -117,8 +119,7 @@ def naive_force_lies_over_the_accurate_one(page: Page, sheet: Locator) -> None:
 def fits(page: Page, sheet: Locator) -> None:
     """At every size the figure is inside the window."""
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
-        page.set_viewport_size({"width": width, "height": height})
-        page.wait_for_function("(width) => document.documentElement.scrollWidth === width", arg=width)  # figures follow
+        resize(page, width, height)
         box = sheet.locator(".work .picture").bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
 

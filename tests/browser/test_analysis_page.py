@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from knobs import type_into
 from playwright.sync_api import Page, expect
-from server import until
+from server import resize, until
 
 from granchain_core import lyapunov_spectrum, scene, settle, spectrum
 
@@ -83,5 +83,4 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
     expect(sheet.get_by_role("button", name="Which start leads where?")).to_have_attribute("aria-pressed", "true")
     expect(sheet.get_by_label("starts along each")).to_have_value("40")
     for width, height in ((390, 844), (1280, 800)):
-        page.set_viewport_size({"width": width, "height": height})
-        assert page.evaluate("document.documentElement.scrollWidth") == width
+        resize(page, width, height)

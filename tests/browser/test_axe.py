@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from axe_playwright_python.sync_playwright import Axe
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Page, expect
@@ -64,6 +65,7 @@ def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
     return {look: what for look, what in found.items() if what}
 
 
+@pytest.mark.long
 def test_axe_finds_nothing(visit: Visit) -> None:
     page = visit("?v=1&look=light")
     page.wait_for_selector(".chapters button", timeout=COMPILED)

@@ -9,7 +9,7 @@ import pytest
 from bokeh_figures import place, source, tooltips
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
-from server import at_rest, until
+from server import at_rest, resize, until
 
 #: A short chain whose branch is followed in seconds.
 SHORT = "?v=1&scene=sec2&f=2000&N=3"
@@ -56,6 +56,7 @@ def grows_without_being_made_anew(page: Page) -> None:
     page.wait_for_function(grown % (before + 5), polling=100)
 
 
+@pytest.mark.long
 def test_a_branch_grows_is_stopped_and_goes_on(visit: Visit) -> None:
     page = visit()
     expect(page.get_by_role("button", name="asked")).to_contain_text("reached")
@@ -163,8 +164,7 @@ def test_the_page_fits_and_moved_knobs_grey_the_branch(visit: Visit) -> None:
     sheet = followed(page)
     assert source(page, "branches", "stable")["x"]
     for width, height in ((390, 844), (1280, 800)):
-        page.set_viewport_size({"width": width, "height": height})
-        assert page.evaluate("document.documentElement.scrollWidth") == width
+        resize(page, width, height)
         box = sheet.locator(".work .picture").bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200
     stop(sheet)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+import pytest
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 
@@ -69,6 +70,7 @@ def test_switches_change_equation_slots_and_cost(visit: Visit) -> None:
     expect(activity(tab, "energy account")).to_contain_text("closes to")
 
 
+@pytest.mark.long
 def test_what_is_computed_is_what_is_asked_for(visit: Visit) -> None:
     """With three beads: a whole sweep of eleven took four minutes on a busy machine."""
     page = visit("?v=1&scene=sec2&N=3")

@@ -6,6 +6,7 @@ import os
 import shutil
 from pathlib import Path
 
+import pytest
 from knobs import COMPILED, Visit, field, settled
 from playwright.sync_api import Browser, expect
 from server import dashboard
@@ -66,6 +67,7 @@ def test_before_the_first_picture_every_part_says_what_is_coming(chromium: Brows
     page.close()
 
 
+@pytest.mark.long
 def test_cold_kernels_are_announced_and_the_picture_follows(visit: Visit, chromium: Browser,
                                                             tmp_path: Path) -> None:
     """All kernels are there but those of one file: to compile the others as well tells nothing more."""

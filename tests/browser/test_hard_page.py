@@ -6,6 +6,7 @@ import re
 
 from knobs import COMPILED, Visit
 from playwright.sync_api import Locator, Page, expect
+from server import resize
 
 #: A case that has a picture and, once its kernels are compiled, takes a second.
 QUICK = "solitary wave, Hertz collision, cradle, a bead on a chain"
@@ -75,8 +76,7 @@ def test_run_all_is_stopped_at_once_and_all_cases_fit(visit: Visit) -> None:
     expect(card(sheet, LONG)).to_contain_text("stopped")
     expect(sheet.get_by_role("button", name="run all (quick)")).to_be_visible()
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
-        page.set_viewport_size({"width": width, "height": height})
-        assert page.evaluate("document.documentElement.scrollWidth") == width
+        resize(page, width, height)
         for one in sheet.locator("article").all():
             box = one.bounding_box()
             assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width

@@ -92,7 +92,7 @@ def test_wrong_values_get_their_sentence(at: Visit) -> None:
 def test_a_phone_has_f_at_hand_and_the_pictures_in_view_while_a_knob_moves(visit: Visit) -> None:
     page = visit(viewport={"width": 390, "height": 844}, has_touch=True)
     settled(page)
-    assert page.evaluate("document.documentElement.scrollWidth") == 390
+    page.wait_for_function("document.documentElement.scrollWidth === 390")
     height = "(id) => document.getElementById(id).getBoundingClientRect().height / innerHeight"
     assert page.evaluate(height, "bar") + page.evaluate(height, "foot") < 0.15
     first, second = (page.locator(f'[data-knob="{name}"] input[type="range"]') for name in ("f", "A0"))

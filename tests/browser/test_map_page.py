@@ -90,7 +90,8 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
 def test_the_tab_fits_a_phone_attractors_are_listed_and_one_is_loaded(visit: Visit) -> None:
     page = visit("?v=1&scene=sec2&f=893", viewport={"width": 390, "height": 844})
     box = opened(page).bounding_box()
-    assert page.evaluate("document.documentElement.scrollWidth") == 390 and overflow(page) <= 0
+    page.wait_for_function("document.documentElement.scrollWidth === 390")
+    assert overflow(page) <= 0
     assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["height"] >= 150
     page.set_viewport_size({"width": 1280, "height": 800})
     page.evaluate("shown()")

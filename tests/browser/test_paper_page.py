@@ -8,7 +8,7 @@ import re
 from collections.abc import Callable
 
 from playwright.sync_api import Locator, Page, expect
-from server import until
+from server import resize, until
 
 Visit = Callable[..., Page]
 #: Long enough for a first visit that has to compile kernels, on a machine that runs tests.
@@ -63,7 +63,6 @@ def test_a_figure_is_given_up_when_the_page_is_left_and_others_fit(visit: Visit)
     picture = sheet.get_by_role("img", name="Figure 4")
     expect(picture.locator("canvas").first).to_be_visible()
     for width, height in ((390, 844), (1280, 800)):
-        page.set_viewport_size({"width": width, "height": height})
-        assert page.evaluate("document.documentElement.scrollWidth") == width
+        resize(page, width, height)
         box = picture.bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200

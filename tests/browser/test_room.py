@@ -85,6 +85,7 @@ def test_dark_differs_from_light_in_colours_only() -> None:
     assert sheets == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("scene", ["sec2", "fig11-founded"])
 def test_no_control_and_no_word_is_cut_hidden_or_covered(at: Visit, scene: str) -> None:
     page = at(f"?v=1&scene={scene}&look=light")
@@ -148,6 +149,7 @@ def test_a_moved_knob_moves_no_picture(at: Visit, look: str) -> None:
     until(page, lambda: len(line.inner_text()) > few)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("look", ["light", "projector"])
 def test_what_the_paper_states_is_named_at_its_frequency(at: Visit, look: str) -> None:
     page = at(f"?v=1&scene=rig&look={look}")

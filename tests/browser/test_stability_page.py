@@ -5,7 +5,7 @@ from __future__ import annotations
 from bokeh_figures import place, source, tooltips
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Locator, Page, expect
-from server import until
+from server import resize, until
 
 
 def opened(page: Page, words: str = "Stable") -> Locator:
@@ -163,8 +163,7 @@ def section_follows_bead_and_phase(page: Page, sheet: Locator) -> None:
 def fits(page: Page, sheet: Locator) -> None:
     """At every size the pictures are inside the window, and on a large one the search too."""
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
-        page.set_viewport_size({"width": width, "height": height})
-        assert page.evaluate("document.documentElement.scrollWidth") == width
+        resize(page, width, height)
         for name, least in ((".plane .picture", 200), (".motion .picture", 130), (".poincare .picture", 130)):
             box = sheet.locator(name).bounding_box()
             assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > least

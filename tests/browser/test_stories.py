@@ -57,6 +57,7 @@ def tells(page: Page, story: Story, number: int, revealed: bool) -> None:
         expect(page.locator(f"#{story.steps[number - 1].look}.looked-at")).to_have_count(1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("story", stories()[0], ids=lambda story: story.name)
 def test_a_story_shows_what_it_tells(at: Visit, story: Story) -> None:
     """On a laptop and on a phone: a step that is reached on the one is looked at on the other too, and left there."""

@@ -19,6 +19,8 @@ from granchain_core.hdf5 import seal
 from granchain_core.kernels.width import machine
 from granchain_core.store import load, save
 
+pytestmark = pytest.mark.quick
+
 SHORT = ["--set", "N=2", "--periods", "0", "--record", "1", "--samples", "4", "--set", "f=3000"]
 
 

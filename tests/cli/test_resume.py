@@ -49,6 +49,7 @@ def interrupted(name: str, number: signal.Signals, out: Path, *more: str) -> set
     return there
 
 
+@pytest.mark.long
 @linux
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_command_goes_on_after_two_signals(name: str, tmp_path: Path) -> None:

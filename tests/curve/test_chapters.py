@@ -19,6 +19,7 @@ def curve() -> list[CurvePoint]:
     return list(resonance_curve(SEC2, np.linspace(30.0, 3000.0, 150)).points)
 
 
+@pytest.mark.long
 def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -> None:
     """The paper has 1:1 to 1:5; the 1:5 peak is narrower than this grid's step, so what is asked for is the others."""
     shown: list[list[dict]] = []

@@ -11,6 +11,8 @@ from granchain_core.diagram import boundaries, diagram
 from granchain_core.diagram.boundary import BoundaryPoint, boundary_curves, boundary_point
 from granchain_core.orbits import periodic_orbit
 
+pytestmark = pytest.mark.quick
+
 #: Near a period doubling and a Neimark–Sacker point of sec2's period-1 orbit, and the fold of its 1:5 resonance.
 NEAR = {"period_doubling": (508.0, 1), "neimark_sacker": (1226.0, 1), "fold": (1951.0, 5)}
 

@@ -137,6 +137,7 @@ def words(out: Path, *more: str) -> list[str]:
     return ["map", "sec2", "--x", "f=200:3000:20", "--y", "A0=2e-7:1e-5:20:log", "--out", str(out), "--json", *more]
 
 
+@pytest.mark.long
 def test_a_killed_map_resumes_and_computes_nothing_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "map.h5"
     running = subprocess.Popen([sys.executable, "-m", "app.cli", *words(out)], cwd=ROOT, stdout=subprocess.DEVNULL,

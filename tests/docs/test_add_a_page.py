@@ -85,6 +85,7 @@ print(shown["status"])
     assert found.startswith("done The largest share arrives at ") and found.endswith(" Hz.")
 
 
+@pytest.mark.long
 def test_the_new_page_fits_into_the_dashboard(tree: Path) -> None:
     """Layers, private attributes, docstrings, the map of docs/design.md, the table of messages of docs/dashboard.md,
     and the pages that a story may open.

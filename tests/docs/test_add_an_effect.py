@@ -50,6 +50,7 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
     assert "4 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics/test_drag.py")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("made", ["tree", "whole"])
 def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
     """README, model page, share links, scales and the gallery, whose tests fail until step 5, or 6, is done."""

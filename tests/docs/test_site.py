@@ -45,6 +45,7 @@ class Loaded(HTMLParser):
         self.found += [value or "" for name, value in attrs if LOADS.get(tag) == name]
 
 
+@pytest.mark.long
 def test_every_page_and_notebook_is_there(site: Path) -> None:
     for page in [*PAGES, *NOTEBOOKS]:
         assert site.joinpath(page.relative_to(ROOT)).with_suffix(".html").exists(), page.name

@@ -45,6 +45,7 @@ def found() -> list[Verdict]:
             for i in range(COUNT)]
 
 
+@pytest.mark.long
 def test_everything_holds_in_every_scene() -> None:
     """Not one is let through: two computations that agree by chance state too little in one scene of a thousand."""
     print(table(found()))

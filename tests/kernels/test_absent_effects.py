@@ -9,6 +9,8 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.scaling import scale_chain
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize("absent", ["dissipation", "tension", "foundation", "preload", "balance"])
 def test_absent_effect_has_an_empty_slot(absent):

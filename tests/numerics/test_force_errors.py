@@ -90,6 +90,7 @@ def slice_of(kind: str, count: int) -> list[Verdict]:
     return [v for v in verdicts(kind, count, SEED, FEW if kind == "run" else FEW[:1], longest=LONGEST) if isinstance(v, Verdict)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("kind", "count"), [("run", 24), ("curve", 3), ("map", 3)])
 def test_largest_forces_are_within_what_is_stated_of_them(kind, count):
     """In 99.5 % of all (`python -m tests.numerics.forces`), which is one of these forces at most; and none is

@@ -81,6 +81,7 @@ def test_a_slow_orbit_is_approached_and_an_unstable_one_is_not() -> None:
     assert NearbyOrbit(left.stroboscopic_map, left.point, beyond, left.modulus).amplified_departure() is None
 
 
+@pytest.mark.long
 def test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit() -> None:
     """146.42 Hz, swept up: |μ| = 0.9993, and yet the chain stays on a closed curve 0.008 away, to 16,000 periods."""
     swept = resonance_curve(scene("sec2"), np.arange(145.92, 146.5, 0.25), "up")

@@ -31,6 +31,7 @@ def excess(found: list) -> np.ndarray:
     return np.array([v.error / (v.stated + 3.0 * v.known) for v in found])
 
 
+@pytest.mark.long
 def test_the_stated_error_bounds_the_true_one():
     """At any accuracy from 1e-3 to 1e-9: in 99 % of a thousand scenes (`python -m tests.numerics.stated_errors`), which
     is one of these forty at most; two computations that agree by chance are then wrong by a small factor only.

@@ -18,6 +18,8 @@ from granchain_core.experiment import Unclear, answers_of
 from granchain_core.observe import ForceRecord, force_record, read_force, read_force_csv
 from granchain_core.store import save, save_observation
 
+pytestmark = pytest.mark.quick
+
 CHAIN = scene("fig11-founded").evolve(f=340.0)
 STEP = 1e-5
 

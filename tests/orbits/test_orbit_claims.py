@@ -11,6 +11,8 @@ from granchain_core.orbits import orbit
 from granchain_core.orbits.stroboscopic_map import Flow
 from granchain_core.steady.returns import relative_change
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize("place", [0, 3])
 def test_displacements_and_w_have_to_come_back(place: int) -> None:

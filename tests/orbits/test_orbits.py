@@ -10,6 +10,8 @@ from granchain_core import BadInput, NumbersFailed, scene
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: float, period: int) -> None:

@@ -8,6 +8,8 @@ import pytest
 from granchain_core.hard.chains import Bench
 from granchain_core.kernels.effects.dissipation import LinearDashpot, Tsuji
 
+pytestmark = pytest.mark.quick
+
 #: Duration 3.2180655 (m*/K)^{2/5} v^{-1/5} and peak force 1.1432626 K^{2/5} m*^{3/5} v^{6/5}; both constants are
 #: known to eight digits, which is the tolerance 1e-7 below.
 DURATION, PEAK = 3.2180655, 1.1432626

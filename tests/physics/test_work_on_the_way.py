@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
+
+pytestmark = pytest.mark.quick
 
 SAMPLES = 4096
 

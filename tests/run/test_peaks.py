@@ -8,6 +8,8 @@ import pytest
 
 from granchain_core import run, scene
 
+pytestmark = pytest.mark.quick
+
 SCENES = {
     "sec2 340 Hz": scene("sec2"), "sec2 1130 Hz": scene("fig3b"), "rig 60 Hz": scene("rig"),
     "Tsuji": scene("sec2").evolve(dissipation="tsuji"),

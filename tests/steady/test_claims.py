@@ -15,6 +15,8 @@ from granchain_core.steady.settling import recording, refine_orbit, single_chain
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.settling.regime_decisions import Decisions
 
+pytestmark = pytest.mark.quick
+
 
 def turning(rate: float, count: int = 420) -> np.ndarray:
     """States (count + 1, 2, 2) of a rotation by the golden angle that shrinks by `rate` a period."""

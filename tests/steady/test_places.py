@@ -7,6 +7,8 @@ import pytest
 
 from granchain_core.steady.curve.resonance import Place, extrema, place_of, place_words
 
+pytestmark = pytest.mark.quick
+
 #: A curve as of section 2 [Hz, N]: peaks at 340 and 1130 Hz with a deep valley between, and little beyond.
 F = np.array([30.0, 340.0, 600.0, 870.0, 900.0, 950.0, 1000.0, 1130.0, 1300.0, 1320.0, 1500.0, 2000.0, 3000.0])
 FORCE = np.array([0.1, 0.62, 0.4, 0.23, 0.46, 0.5, 0.55, 1.12, 0.12, 0.13, 0.1, 0.08, 0.06])

@@ -13,6 +13,8 @@ import xarray
 from granchain_core import BadInput, resonance_curve, run, scene, settle
 from granchain_core.store import load, save, save_curve
 
+pytestmark = pytest.mark.quick
+
 
 @pytest.fixture(scope="module")
 def result():  # type: ignore[no-untyped-def]

@@ -23,6 +23,8 @@ from granchain_core.store import load
 from tools.damage.harms import FORGERIES, LEADING
 from tools.damage.kinds import KINDS, made, told
 
+pytestmark = pytest.mark.quick
+
 #: A dataset that each reader needs.
 NEEDED = {"run": "run/displacement", "start of orbit": "run/velocity", "force of a run": "run/input_force", "branch": "branch/state", "curve": "curve/period",
           "map": "map/regime", "observation": "observation/displacement"}

@@ -12,6 +12,8 @@ from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashp
 from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.stop import Stop
 
+pytestmark = pytest.mark.quick
+
 MEMBER, ROW = BATCH_SIZE - 2, 4
 
 

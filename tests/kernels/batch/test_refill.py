@@ -16,6 +16,8 @@ from granchain_core.steady.batch.jobs import batch_results
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 
+pytestmark = pytest.mark.quick
+
 COUNT = 2 * BATCH_SIZE + 3
 
 

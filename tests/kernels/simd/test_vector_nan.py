@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.effects.contact import positive_part
 from granchain_core.kernels.simd.functions import above_zero, gate
 from granchain_core.kernels.simd.vector import aligned, load, store
+
+pytestmark = pytest.mark.quick
 
 VALUES = np.array([-1.0, 0.0, 2.0, np.nan, np.inf, -np.inf, 3.0, np.nan])
 
