@@ -11,10 +11,11 @@ from contextlib import contextmanager
 
 from granchain_core import Scene
 from granchain_core.child_processes import end_with_parent, starting
+from granchain_core.pieces import BRANCH_KERNELS, COMPILE_SECONDS, FIXED_STEP_KERNELS, MOTION_KERNELS
 
-#: From the kernels of one method to those of a branch with the motions that it needs: single pieces and their sum in
-#: `COMPILE_SECONDS` of app/serve/compiler.py.
-WORDS = ("Compiling the kernels for this set of effects: 10 to 60 s, once per machine. "
+#: From the kernels of one method to those of a branch with the motions that it needs.
+WORDS = (f"Compiling the kernels for this set of effects: {COMPILE_SECONDS[FIXED_STEP_KERNELS]} to "
+         f"{sum(COMPILE_SECONDS[piece] for piece in (*MOTION_KERNELS, BRANCH_KERNELS))} s, once per machine. "
          "`granchain warm` does it ahead of time.")
 
 

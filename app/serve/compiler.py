@@ -16,16 +16,7 @@ from concurrent.futures import Future, wait
 from pathlib import Path
 
 from granchain_core import Scene
-from granchain_core.pieces import (
-    ACCURACY_KERNELS,
-    ADAPTIVE_KERNELS,
-    BRANCH_KERNELS,
-    CURVE_KERNELS,
-    FIXED_STEP_KERNELS,
-    MOTION_KERNELS,
-    OBSERVER_KERNELS,
-    ORBIT_KERNELS,
-)
+from granchain_core.pieces import COMPILE_SECONDS, CURVE_KERNELS, MOTION_KERNELS
 from granchain_core.stop import Stop
 from granchain_core.warm import compile_piece, is_warm, structure
 
@@ -36,11 +27,6 @@ log = logging.getLogger("granchain")
 
 #: The kernels of the main picture and its curve.
 PICTURE_PIECES = (*MOTION_KERNELS, CURVE_KERNELS)
-#: Roughly how long a visitor waits for each piece on two cores [s]. `granchain` says the range: app/cli/compiling.py.
-COMPILE_SECONDS = {
-    FIXED_STEP_KERNELS: 10, ADAPTIVE_KERNELS: 10, CURVE_KERNELS: 10, ORBIT_KERNELS: 20, BRANCH_KERNELS: 40,
-    OBSERVER_KERNELS: 10, ACCURACY_KERNELS: 20,
-}
 _ROOT = Path(__file__).resolve().parents[2]
 
 
