@@ -84,7 +84,7 @@ def _checks(short: Scene) -> None:
     """Checks of a batch, and of the records that it leaves undecided."""
     record = np.zeros((SLOW_RECORD, 2, short.N))
     if can_share_batch(short):
-        Batch(short, Stop()).compile_checks()
+        Batch(short, Stop()).checks_address()
     converging(record)
     return_distance(record)
 

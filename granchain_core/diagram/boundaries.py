@@ -22,9 +22,9 @@ from .cells import CELL_REGIMES, Diagram
 #: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
 #: A point this many cells outside the pair of cells between which it was sought belongs to another boundary.
-_OUTSIDE = 1.0
+_CELLS_OUTSIDE = 1.0
 #: Curves closer than this many cells are the same.
-_SAME = 0.5
+_CELLS_APART = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +117,7 @@ def _between(found: Diagram, pair: _Pair, stop: Stop | None) -> BoundaryPoint | 
         point = boundary_point(best.scene, pair.kind, best.state, pair.period, grid.x.knob, grid.y.knob, stop)
     except (BadInput, NumbersFailed):
         return None
-    low, high = min(a, b) - _OUTSIDE * abs(b - a), max(a, b) + _OUTSIDE * abs(b - a)
+    low, high = min(a, b) - _CELLS_OUTSIDE * abs(b - a), max(a, b) + _CELLS_OUTSIDE * abs(b - a)
     return point if low <= point.x <= high else None
 
 
@@ -136,4 +136,4 @@ def _lies_on(found: Diagram, point: BoundaryPoint, pair: _Pair, curve: BoundaryC
     values = found.grid.x.values
     cell = (values[-1] - values[0]) / (len(values) - 1)
     there = np.interp(point.y, [one.y for one in curve.points], [one.x for one in curve.points])
-    return bool(abs(there - point.x) <= _SAME * cell)
+    return bool(abs(there - point.x) <= _CELLS_APART * cell)

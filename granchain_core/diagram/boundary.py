@@ -31,25 +31,25 @@ from ..stop import Stop
 from .grid import KNOBS
 
 #: How exactly the critical multiplier meets its condition; the map's own tangents are good to about 1e-7.
-_MET = 1e-6
+_CONDITION_ERROR = 1e-6
 #: Residual at which an orbit is found.
-_CONVERGED = 1e-10
+_ORBIT_RESIDUAL = 1e-10
 #: Newton's iterations at most.
-_ITERATIONS = 8
+_MOST_ITERATIONS = 8
 #: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
 _DIFFERENCE = 1e-6
 #: First step along a branch, relative to the state and the knob.
-_STEP = 1e-3
+_FIRST_STEP = 1e-3
 #: Longest secant step, in units of the last step.
-_FARTHEST = 6.0
+_LONGEST_SECANT = 6.0
 #: Secant steps at most.
-_SECANTS = 14
+_MOST_SECANTS = 14
 #: Halvings of a step at most, where the branch is lost.
-_HALVINGS = 3
+_MOST_HALVINGS = 3
 #: Smallest part of the way to the next y that is tried as one step.
-_LEAST = 1.0 / 32.0
+_LEAST_PART = 1.0 / 32.0
 #: Angle from +1 or −1 below which a critical pair is not distinguished from a real multiplier [rad].
-_REAL = 1e-7
+_REAL_ANGLE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,10 +97,10 @@ class _Branch:
         `slope` may be that of a point near by: it only steers the iterations.
         """
         X = guess.copy()
-        for _ in range(_ITERATIONS):
+        for _ in range(_MOST_ITERATIONS):
             end, derivative = self.map(X)
             off = np.append(end - X[:-1], direction @ (X - guess))
-            if np.abs(off).max() <= _CONVERGED * max(1.0, float(np.abs(X[:-1]).max())):
+            if np.abs(off).max() <= _ORBIT_RESIDUAL * max(1.0, float(np.abs(X[:-1]).max())):
                 return X, derivative
             matrix = np.block([[derivative - np.eye(len(end)), slope[:, None]], [direction[None, :]]])
             X = X - np.linalg.solve(matrix, off)
@@ -127,7 +127,7 @@ def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> 
         target = 1.0 if kind == "fold" else -1.0
         nearest = int(np.argmin(np.abs(multipliers - target)))
         return float(np.prod(multipliers - target).real), complex(multipliers[nearest])
-    pairs = multipliers[np.abs(multipliers.imag) > _REAL]
+    pairs = multipliers[np.abs(multipliers.imag) > _REAL_ANGLE]
     if len(pairs) == 0:
         raise NumbersFailed("The orbit has no complex multipliers, which a Neimark–Sacker point needs.", "no-point")
     away = np.abs(np.abs(pairs) - 1.0) if near is None else np.abs(pairs - complex(near.real, abs(near.imag)))
@@ -138,7 +138,7 @@ def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> 
 def _met(multiplier: complex, kind: str) -> bool:
     """Whether a critical multiplier is where it has to be."""
     away = abs(multiplier) - 1.0 if kind == "neimark_sacker" else multiplier - (1.0 if kind == "fold" else -1.0)
-    return abs(away) <= _MET
+    return abs(away) <= _CONDITION_ERROR
 
 
 def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: int = 1, x: str = "f", y: str = "A0",
@@ -175,14 +175,14 @@ def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y
         slope = branch.slope(guess)
         before, derivative = branch.solve(guess, along, slope)
         condition, mu = critical(derivative, kind, branch.near)
-        step = _STEP * float(np.linalg.norm(before)) * branch.tangent(derivative, slope, along)
-        for _ in range(_SECANTS):
+        step = _FIRST_STEP * float(np.linalg.norm(before)) * branch.tangent(derivative, slope, along)
+        for _ in range(_MOST_SECANTS):
             if _met(mu, kind):
                 return BoundaryPoint(float(before[-1]) * branch.unit, float(branch.scene.knobs[y]), mu, before[:-1])
             X, there, mu = _advanced(branch, kind, before, step, slope)
             gain = condition - there
-            factor = there / gain if gain != 0.0 else _FARTHEST
-            step = (X - before) * float(np.clip(factor, -_FARTHEST, _FARTHEST))
+            factor = there / gain if gain != 0.0 else _LONGEST_SECANT
+            step = (X - before) * float(np.clip(factor, -_LONGEST_SECANT, _LONGEST_SECANT))
             before, condition = X, there
     except (np.linalg.LinAlgError, BadInput) as problem:
         raise NumbersFailed(f"The branch could not be followed: {problem}.", "no-convergence") from None
@@ -194,7 +194,7 @@ def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,
               slope: np.ndarray) -> tuple[np.ndarray, float, complex]:
     """The point of the branch a step further, or half of it, …, with its condition."""
     shorter = step
-    for _ in range(_HALVINGS):
+    for _ in range(_MOST_HALVINGS):
         try:
             X, derivative = branch.solve(before + shorter, shorter / np.linalg.norm(shorter), slope)
             return X, *critical(derivative, kind, branch.near)
@@ -244,7 +244,7 @@ def _follow(scene: Scene, kind: str, points: list[BoundaryPoint], value: float, 
             way = [way[-1], following]
             continue
         part *= 0.5
-        if part < _LEAST:
+        if part < _LEAST_PART:
             return None
     return way[-1]
 

@@ -3,8 +3,8 @@
 Periodic results are the same if all their stroboscopic states agree for some shift by whole periods, so that the n
 copies of a period-n orbit count once; first within the errors stated for them, then, when each has been brought onto
 its orbit by Newton's method, within the error of that. Motions that are not periodic are the same if their sections
-lie in each other: the median distance of the states of one to the nearest of the other is no larger than `_APART`
-times that within each.
+lie in each other: the median distance of the states of one to the nearest of the other is no larger than
+`_SECTION_FACTOR` times that within each.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from ..state import State
 from ..steady.steady_state import SteadyState
 
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are the same.
-_SAME = 1e-7
+_ORBIT_DIFFERENCE = 1e-7
 #: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
-_APART = 3.0
+_SECTION_FACTOR = 3.0
 #: States in the section of a motion that is not periodic, taken after as many further periods.
-_SECTION = 400
+_STATES_OF_SECTION = 400
 #: Method by which a motion's section is taken, and the tolerance for that of an orbit.
 SECTION_SETTING = fixed_step_setting()
 _ADAPTIVE_SETTING = adaptive_setting(1e-11)
@@ -45,7 +45,7 @@ class Found:
     def tolerance(self) -> float:
         """How far its section may be from the true one, relative to the largest displacement or w."""
         if self.orbit is not None:
-            return _SAME / max(1e-3, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
+            return _ORBIT_DIFFERENCE / max(1e-3, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
         return self.result.error_estimate or 0.0
 
     @property
@@ -64,8 +64,8 @@ def _section(result: SteadyState) -> np.ndarray:
     """Stroboscopic states of displacement and velocity of a motion that is not periodic, scaled, (P, 2, N)."""
     engine = Engine(result.scene, SECTION_SETTING, 1)
     engine.start(result.state)
-    engine.periods(_SECTION)
-    return engine.periods(_SECTION)[0][1:]
+    engine.periods(_STATES_OF_SECTION)
+    return engine.periods(_STATES_OF_SECTION)[0][1:]
 
 
 def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.ndarray:
@@ -124,7 +124,7 @@ def _same(a: Found, b: Found) -> bool:
         return _distance(a.section, b.section) <= a.tolerance + b.tolerance
     scale = _scale(a.section, b.section)
     apart = max(_to_nearest(a.section, b.section, scale), _to_nearest(b.section, a.section, scale))
-    return apart <= _APART * max(_own(a.section, scale), _own(b.section, scale))
+    return apart <= _SECTION_FACTOR * max(_own(a.section, scale), _own(b.section, scale))
 
 
 def _scale(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -28,9 +28,9 @@ from ..stop import Stop
 #: A period that no member reaches.
 NEVER = int(np.iinfo(np.int64).max)
 #: Drive periods until the next extrapolation after a failed one, at the start.
-_PAUSE = 16
+_FIRST_PAUSE = 16
 #: Fewest orbits in one round of a finer run.
-_FEWEST = 2
+_FEWEST_ORBITS = 2
 
 
 def can_share_batch(scene: Scene) -> bool:
@@ -92,7 +92,7 @@ class Batch:
             earliest: int = 0) -> None:
         """Make a scene a member, from the scaled state y at phase 0, with `refine` times the fixed-step method's steps.
 
-        It is checked after `return_at` periods, or from `earliest` on once it may have settled.
+        It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked.
         """
         slots, members, state = scaled.slots, self.members, self.state
         steps = math.ceil(refine * scaled.steps_per_period())
@@ -115,7 +115,7 @@ class Batch:
         state.strobes[member, 0], state.strobe_count[member] = y.reshape(2, -1), 1
         state.first_strobe[:, member] = 0
         state.periods[member], state.return_at[member], state.earliest[member] = 0, return_at, earliest
-        state.extrapolate_from[member], state.pause[member] = 0, _PAUSE
+        state.extrapolate_from[member], state.pause[member] = 0, _FIRST_PAUSE
         state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
         state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0
         state.shadow[member] = kernels.NO_SHADOW
@@ -126,7 +126,7 @@ class Batch:
 
         It is checked once the difference from that orbit has decayed.
         """
-        orbits = min(ORBITS, max(_FEWEST, math.ceil(math.log(COARSE_ERROR_LEFT) / math.log(contraction))))
+        orbits = min(ORBITS, max(_FEWEST_ORBITS, math.ceil(math.log(COARSE_ERROR_LEFT) / math.log(contraction))))
         self.put(member, scaled, y, refine, NEVER, orbits * period)
         self.state.fine_record[member] = period, contraction, *maxima, orbits, 0.0
 
@@ -142,7 +142,7 @@ class Batch:
         state = self.state
         state.shadow[member], state.shadow[shadow], state.distance[member] = shadow, kernels.IS_SHADOW, distance
 
-    def compile_checks(self) -> int:
+    def checks_address(self) -> int:
         """Address of the kernel that checks a member's regime, compiled first where it is not there yet."""
         return address_of(check_member, self.state, 0)
 
@@ -151,10 +151,10 @@ class Batch:
         return self.state.growth[member, : int(self.state.periods[member])]
 
     def run(self) -> tuple[int, bool]:
-        """Run until a member is due for a check; its number, and whether it is finite."""
+        """Run until a member is due; its number, and whether it is finite."""
         if self._run is None:
             self._run = entry(kernels.run_batch, self.members, self.state, self.stop.flag, 0)
-            self._check = self.compile_checks()
+            self._check = self.checks_address()
         arguments = self.members, self.state, self.stop.flag, self._check
         status, member = self._run(*arguments)
         if status == CANCELLED:

@@ -21,7 +21,7 @@ from .methods import METHODS, Setting
 from .stepper import Start, empty_samples
 
 #: Places for closings of a contact in one period; bounces beyond that are ever weaker.
-_CLOSINGS = 4
+_MOST_CLOSINGS = 4
 
 
 class Engine:
@@ -112,7 +112,7 @@ class Engine:
         self._remember()
         stepper, periods = self.stepper, count / self.samples
         samples = empty_samples(stepper.scaled, count + 1)
-        out = self._output(round(_CLOSINGS * (1.0 + periods) * stepper.scaled.bodies))
+        out = self._output(round(_MOST_CLOSINGS * (1.0 + periods) * stepper.scaled.bodies))
         status, rows = stepper.samples(self.y, self.grid_index, samples, out)
         self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid
         if status != DONE:

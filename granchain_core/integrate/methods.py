@@ -29,11 +29,11 @@ FIXED_STEP_IS_CHEAPER = 1e-10
 _FIXED_STEP_ERROR = 7e-6
 #: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
 #: tests.numerics.stated_errors`).
-_SPREAD = 8.0
+_ERROR_SPREAD = 8.0
 #: The adaptive method's first tolerance per step: this part of the accuracy asked for, and at most so large.
 _TOLERANCE_PER_ACCURACY, _LARGEST_TOLERANCE = 0.1, 1e-3
 #: Smallest tolerance of a step that is still followed by a finer one.
-_SMALLEST = 1e-15
+_SMALLEST_TOLERANCE = 1e-15
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Setting:
         unchanged, so the next tolerance is a sixty-fourth.
         """
         if METHODS[self.method].adaptive:
-            return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST), self.tolerance / 8.0))
+            return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0))
         return Setting(self.method, 2 * self.refine)
 
     def finer_than(self, scaled: ScaledChain, samples: int) -> Setting:
@@ -209,9 +209,9 @@ METHODS: dict[str, Method] = {
 AT_A_JUMP = 0.95
 #: Quadrature error of ∫ s^{3/2} in units of h^{5/2}: 0.0024 over the step after an onset, with room for several
 #: contacts.
-_JUMP = 0.01
+_JUMP_ERROR = 0.01
 #: Smallest refinement: steps twice as long as the fixed-step method's own.
-_COARSEST = 0.5
+_COARSEST_REFINEMENT = 0.5
 
 
 def fixed_step_setting(refine: float = 1) -> Setting:
@@ -227,7 +227,7 @@ def adaptive_setting(tolerance: float = 0.0) -> Setting:
 def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
     if accuracy >= FIXED_STEP_IS_CHEAPER and not tension_cut:  # where tension is cut the fixed-step method has order 1
-        return fixed_step_setting(max(_COARSEST, (_FIXED_STEP_ERROR / accuracy) ** 0.25))
+        return fixed_step_setting(max(_COARSEST_REFINEMENT, (_FIXED_STEP_ERROR / accuracy) ** 0.25))
     return adaptive_setting(min(_LARGEST_TOLERANCE, _TOLERANCE_PER_ACCURACY * accuracy))
 
 
@@ -235,8 +235,8 @@ def typical_error(setting: Setting) -> float:
     """The relative error that few scenes exceed with this setting; 0 for methods of which none is known."""
     method = METHODS[setting.method]
     if method.adaptive:
-        return _SPREAD * method.usual_error * setting.tolerance
-    return _SPREAD * method.usual_error / setting.refine**method.order_smooth
+        return _ERROR_SPREAD * method.usual_error * setting.tolerance
+    return _ERROR_SPREAD * method.usual_error / setting.refine**method.order_smooth
 
 
 def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.ndarray,
@@ -255,7 +255,7 @@ def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.nd
         chain = scaled.slots.chain
         root_speeds = np.sqrt(jumps / scaled.slots.dissipation.coefficient)
         at_jump = jumps > AT_A_JUMP * maxima[:2]
-        least[:2] = at_jump * _JUMP * step**2.5 * root_speeds * chain.stiffness.max() * chain.inverse_mass.max()
+        least[:2] = at_jump * _JUMP_ERROR * step**2.5 * root_speeds * chain.stiffness.max() * chain.inverse_mass.max()
     return least
 
 

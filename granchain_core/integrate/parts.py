@@ -19,7 +19,7 @@ from ..scaling import ScaledChain
 from .stepper import empty_samples
 
 #: Steps times bodies in one call of a kernel: 5 to 40 ms.
-_WORK = 1 << 19
+_WORK_OF_CALL = 1 << 19
 
 
 class InParts(Protocol):
@@ -36,7 +36,7 @@ class InParts(Protocol):
 
 def steps_in_part(bodies: int) -> int:
     """Most steps in one call of the kernel."""
-    return max(1, _WORK // bodies)
+    return max(1, _WORK_OF_CALL // bodies)
 
 
 def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,

@@ -12,13 +12,13 @@ from .safety_factors import IRREGULAR, REGULAR, RUN_FORCES, RUN_FORCES_THAT_JUMP
 
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
 #: the rounding usually seen, which few random scenes exceed.
-_ROUNDINGS = 32.0
+_ROUNDING_FACTOR = 32.0
 #: If the typical error of the steps is above this, rounding contributes nothing to the difference.
-_SMOOTH = 1e-10
+_LARGEST_SMOOTH_ERROR = 1e-10
 #: Stated relative error above which the result is worth nothing.
-_WORTHLESS = 0.05
+_LARGEST_USEFUL_ERROR = 0.05
 #: What is stated then, relative to the largest displacement: two motions that have parted differ by at most twice it.
-_ALL = 2.0
+_WHOLE_MOTION = 2.0
 
 
 def relative_difference(one: np.ndarray, other: np.ndarray) -> float:
@@ -79,7 +79,7 @@ class Computations:
         """Add a finer computation of `steps` steps: its relative differences from the last one, and least errors."""
         coarser = self.settings[-1]
         self._see_growth(coarser, float(differences[0]))
-        self.rounding = _ROUNDINGS * self._growth * np.finfo(float).eps * float(np.sqrt(steps))
+        self.rounding = _ROUNDING_FACTOR * self._growth * np.finfo(float).eps * float(np.sqrt(steps))
         seen = differences
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
@@ -95,13 +95,13 @@ class Computations:
 
     def final(self, done: bool) -> np.ndarray:
         """What is stated where no finer computation follows."""
-        if done or self.stated[0] <= _WORTHLESS:
+        if done or self.stated[0] <= _LARGEST_USEFUL_ERROR:
             return self.stated
-        return np.maximum(self.stated, _ALL)
+        return np.maximum(self.stated, _WHOLE_MOTION)
 
     def _see_growth(self, coarser: Setting, difference: float) -> None:
         typical = typical_error(coarser)
-        if typical > _SMOOTH:
+        if typical > _LARGEST_SMOOTH_ERROR:
             self._growth = max(self._growth, difference / typical)
 
     def _falls(self, coarser: Setting, finer: Setting) -> float:

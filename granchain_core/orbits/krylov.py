@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 #: Multipliers computed for a long chain.
 LEADING = 24
 #: Their error, relative to the largest.
-_EXACT = 1e-9
+_EIGENVALUE_ERROR = 1e-9
 #: Relative tolerance of GMRES; the error of Newton's step is this times the residual.
-_SOLVED = 1e-6
+_GMRES_TOLERANCE = 1e-6
 #: Products with the derivative after which GMRES restarts.
-_RESTART = 80
+_PRODUCTS_TO_RESTART = 80
 #: Restarts at most.
-_ROUNDS = 5
+_MOST_RESTARTS = 5
 
 
 def derivative_at(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bool = False) -> LinearOperator:
@@ -49,10 +49,11 @@ def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarra
 
     derivative = derivative_at(stroboscopic_map, x)
     system = LinearOperator(derivative.shape, matvec=lambda d: derivative @ d - d, dtype=float)
-    step, status = gmres(system, x - end, rtol=_SOLVED, restart=_RESTART, maxiter=_ROUNDS)
+    step, status = gmres(system, x - end, rtol=_GMRES_TOLERANCE, restart=_PRODUCTS_TO_RESTART, maxiter=_MOST_RESTARTS)
     if status != 0:
-        raise NumbersFailed(f"Newton's step was not found in {_RESTART * _ROUNDS} products with the derivative: a "
-                            f"multiplier is close to 1; move the knob a little.", "no-convergence")
+        products = _PRODUCTS_TO_RESTART * _MOST_RESTARTS
+        raise NumbersFailed(f"Newton's step was not found in {products} products with the derivative: a multiplier is "
+                            "close to 1; move the knob a little.", "no-convergence")
     return np.asarray(step)
 
 
@@ -79,7 +80,7 @@ def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observ
     # the start is fixed, so that the same chain gives the same digits
     start = np.random.default_rng(0).standard_normal(len(x))
     try:
-        return eigs(derivative_at(stroboscopic_map, x, observer), k=count, which="LM", v0=start, tol=_EXACT,
+        return eigs(derivative_at(stroboscopic_map, x, observer), k=count, which="LM", v0=start, tol=_EIGENVALUE_ERROR,
                     return_eigenvectors=vectors)
     except ArpackNoConvergence as problem:
         raise NumbersFailed(f"Only {len(problem.eigenvalues)} of {count} leading multipliers converged; the others are "

@@ -25,9 +25,9 @@ from .orbit import Orbit
 from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
 #: Size of the carried disturbance relative to the motion.
-_SMALL = 1e-5
+_DISTURBANCE = 1e-5
 #: Fewest eigenpairs that Arnoldi iteration computes.
-_FEWEST = 6
+_FEWEST_EIGENPAIRS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +58,7 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
         value, vector = value.conjugate(), vector.conj()
     beads = len(x) // 2
     vector = vector / vector[np.argmax(np.abs(vector))]
-    size = _SMALL * max(1e-300, float(np.abs(x[:beads]).max()))
+    size = _DISTURBANCE * max(1e-300, float(np.abs(x[:beads]).max()))
     moved, end = _carried(orbit, x, vector.real, size, samples, stop)
     if value.imag != 0.0:
         other, other_end = _carried(orbit, x, vector.imag, size, samples, stop)
@@ -76,7 +76,7 @@ def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
     if len(x) <= 2 * MOST_BEADS_WITH_MULTIPLIERS:
         values, vectors = np.linalg.eig(stroboscopic_map(x, observer=observer).derivative)
     else:
-        values, vectors = arnoldi(stroboscopic_map, x, max(rank + 2, _FEWEST), observer, vectors=True)
+        values, vectors = arnoldi(stroboscopic_map, x, max(rank + 2, _FEWEST_EIGENPAIRS), observer, vectors=True)
     place = np.argsort(-np.abs(values), kind="stable")[rank]
     return complex(values[place]), vectors[:, place]
 

@@ -20,10 +20,10 @@ from ..stop import Stop
 from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
 #: Tolerance of the coarser map over that of the map.
-_COARSER = 10.0
+_COARSER_FACTOR = 10.0
 #: Factor of caution on the change that is seen, and the part of the bound that is stated at least: the bound was 15 to
 #: 80 times the change in the scenes that were looked at (tests/orbits/test_multiplier_errors.py).
-_CAUTION, _LEAST_PART = 2.0, 0.25
+_CAUTION_FACTOR, _LEAST_PART = 2.0, 0.25
 
 
 def derivative_change(scene: Scene, period: int, state: State, derivative: np.ndarray,
@@ -33,7 +33,7 @@ def derivative_change(scene: Scene, period: int, state: State, derivative: np.nd
 
     Infinite where the fixed point is not isolated, as at a fold.
     """
-    coarse = StroboscopicMap(scene, period, stop, _COARSER * tolerance)
+    coarse = StroboscopicMap(scene, period, stop, _COARSER_FACTOR * tolerance)
     x = coarse.inner(coarse.engine.scaled.from_si(state))
     try:
         there = x + np.linalg.solve(np.eye(len(x)) - derivative, coarse.end(x) - x)
@@ -52,7 +52,7 @@ def errors_of(multipliers: np.ndarray, derivative: np.ndarray, change: np.ndarra
         bound = _between(left, change, right)
         rounding = np.finfo(float).eps * _between(left, derivative, right)
         overlap = np.abs((left.conj() * right).sum(axis=0))
-        errors = (np.maximum(_CAUTION * seen, _LEAST_PART * bound) + rounding) / overlap
+        errors = (np.maximum(_CAUTION_FACTOR * seen, _LEAST_PART * bound) + rounding) / overlap
     errors[np.isnan(errors)] = np.inf
     return np.asarray(errors[np.abs(multipliers[:, None] - values[None, :]).argmin(axis=1)])
 

@@ -24,9 +24,9 @@ from .stroboscopic_map import BACK, StroboscopicMap
 #: Closest returns from which Newton's method is started.
 _STARTS = 4
 #: Fewest periods between two of them.
-_APART = 5
+_PERIODS_BETWEEN_STARTS = 5
 #: States of the section whose mean is its middle: a multiple of all short periods.
-_MIDDLE = 120
+_STATES_OF_MIDDLE = 120
 
 
 def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
@@ -54,7 +54,7 @@ def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
 
 def _middle(strobes: np.ndarray, period: int) -> Iterator[State]:
     """The mean of every n-th late state."""
-    late = strobes[-_MIDDLE:][::period]
+    late = strobes[-_STATES_OF_MIDDLE:][::period]
     if len(late) > 1:
         yield State(*np.asarray(late, dtype=float).mean(axis=0))
 
@@ -67,7 +67,7 @@ def _close_returns(strobes: np.ndarray, period: int) -> Iterator[State]:
     missed = (np.abs(strobes[period:] - strobes[:-period]) / size).max(axis=(1, 2))
     taken: list[int] = []
     for place in np.argsort(missed):
-        if all(abs(int(place) - other) >= _APART for other in taken):
+        if all(abs(int(place) - other) >= _PERIODS_BETWEEN_STARTS for other in taken):
             taken.append(int(place))
             yield State(*np.asarray(strobes[place], dtype=float))
         if len(taken) == _STARTS:

@@ -2,7 +2,7 @@
 
 A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by r per
 orbit, the distance left is change·r/(1 − r). A motion whose bound is small enough is a candidate for a periodic one;
-settling/regime_decisions.py and batch/jobs.py confirm it.
+settling/regime_decisions.py and batch/results.py confirm it.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ from ..regime import Regime
 STANDARD_ERRORS = 3.0
 #: Mean exponents per period above which a motion may be chaotic, and within which it may be quasi-periodic, however
 #: small the standard error: the error that a finite record leaves falls as 1/periods.
-_CHAOTIC, _NEUTRAL = 0.01, 5e-4
+_LEAST_CHAOTIC_EXPONENT, _LARGEST_NEUTRAL_EXPONENT = 0.01, 5e-4
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
-_SLOW_WINDOW, _SHRINKS = 100, 0.98
+_SLOW_WINDOW, _SHRINK_FACTOR = 100, 0.98
 #: Largest changes of a departure that is still small, relative to the largest displacement and velocity.
-_SMALL = 0.1
+_LARGEST_DEPARTURE = 0.1
 #: Lyapunov exponent per period that no departure from an orbit sustains over the periods in which a motion may settle.
 CLEAR_GROWTH = 0.05
 #: Difference of two mean exponents per period below which they agree, however small their standard errors.
-_SAME_EXPONENT = 1e-3
+_EXPONENT_DIFFERENCE = 1e-3
 #: Largest median distance between neighbours of a section that returns near itself, in units of their distance on a
 #: curve that is filled evenly.
-_RETURNS_NEAR = 5.0
+_RETURN_FACTOR = 5.0
 #: Strobes needed for the three windows.
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
@@ -61,7 +61,7 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: fl
 
 def grows(mean: float, error: float) -> bool:
     """Whether neighbours part, by a mean exponent per period and its standard error."""
-    return mean > max(STANDARD_ERRORS * error, _CHAOTIC)
+    return mean > max(STANDARD_ERRORS * error, _LEAST_CHAOTIC_EXPONENT)
 
 
 def is_neutral(mean: float, error: float) -> bool:
@@ -71,7 +71,8 @@ def is_neutral(mean: float, error: float) -> bool:
     above the limit of chaos is never neutral. Otherwise the measurement is undecided.
     """
     uncertain = STANDARD_ERRORS * error
-    return abs(mean) <= max(uncertain, _NEUTRAL) and uncertain < CLEAR_GROWTH and mean <= _CHAOTIC
+    neutral = abs(mean) <= max(uncertain, _LARGEST_NEUTRAL_EXPONENT)
+    return neutral and uncertain < CLEAR_GROWTH and mean <= _LEAST_CHAOTIC_EXPONENT
 
 
 def _mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
@@ -120,12 +121,12 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
 def agree(one: Regime, other: Regime) -> bool:
     """Whether two Lyapunov measurements give the same regime, and means within the larger of two limits.
 
-    These are `STANDARD_ERRORS` combined standard errors and `_SAME_EXPONENT`.
+    These are `STANDARD_ERRORS` combined standard errors and `_EXPONENT_DIFFERENCE`.
     """
     if one.name != other.name or one.name == "unsettled" or one.lyapunov is None or other.lyapunov is None:
         return False
     (a, error_a), (b, error_b) = one.lyapunov, other.lyapunov
-    return abs(a - b) <= max(STANDARD_ERRORS * math.hypot(error_a, error_b), _SAME_EXPONENT)
+    return abs(a - b) <= max(STANDARD_ERRORS * math.hypot(error_a, error_b), _EXPONENT_DIFFERENCE)
 
 
 def _windows(strobes: np.ndarray) -> np.ndarray:
@@ -153,7 +154,7 @@ def departing(strobes: np.ndarray) -> bool:
 def _converging(seen: np.ndarray) -> bool:
     some = False
     for a, b, c in seen:
-        if b < _SHRINKS * c:
+        if b < _SHRINK_FACTOR * c:
             return False
         some = some or _shrinks(a, b, c)
     return some
@@ -162,14 +163,14 @@ def _converging(seen: np.ndarray) -> bool:
 def _departing(seen: np.ndarray) -> bool:
     some = False
     for a, b, c in seen:
-        if c < _SHRINKS * b:
+        if c < _SHRINK_FACTOR * b:
             return False
-        some = some or (_shrinks(c, b, a) and c < _SMALL)
+        some = some or (_shrinks(c, b, a) and c < _LARGEST_DEPARTURE)
     return some
 
 
 def _shrinks(first: float, second: float, third: float) -> bool:
-    return second < _SHRINKS * first and third < _SHRINKS * second
+    return second < _SHRINK_FACTOR * first and third < _SHRINK_FACTOR * second
 
 
 def _neither_converges_nor_departs(seen: np.ndarray) -> bool:
@@ -199,7 +200,7 @@ def return_limit(strobes: np.ndarray) -> float:
     """The distance below which late states of the section count as returning near early ones.
 
     A coarse test: it excludes drift and spreading, but does not prove a closed curve, and a torus of three frequencies
-    may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is `_RETURNS_NEAR` times
+    may pass. On a curve filled evenly by P points neighbours lie about 2π/P apart. The limit is `_RETURN_FACTOR` times
     that, with P the number of early states.
     """
-    return _RETURNS_NEAR * 2.0 * math.pi / (len(strobes) // 2)
+    return _RETURN_FACTOR * 2.0 * math.pi / (len(strobes) // 2)

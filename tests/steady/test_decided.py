@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from granchain_core.regime import Regime
-from granchain_core.steady.batch.jobs import decided
+from granchain_core.steady.batch.results import decided
 
 
 def measured(name: str, exponent: float) -> Regime:

@@ -19,7 +19,7 @@ FORCE_FREE = (
            k.UNLIKE),
     Mutant("no-contact-is-force-free", _KINKS, "if d > 0.0 and scaled_force(", "if d < 0.0 and scaled_force(",
            "a step that begins without force ends with a jump at δ = 0", k.FORCE_FREE_ENERGY),
-    Mutant("later-kink-first", _KINKS, "if x < first and x * step.h < until * step.h - _NEAR:", "if x < 0.5 * first:",
+    Mutant("later-kink-first", _KINKS, "if x < first and x * step.h < until * step.h - _LEAST_DISTANCE:", "if x < 0.5 * first:",
            "the later of two kinks in a step is taken for the first", k.FORCE_FREE_ENERGY),
     Mutant("wrong-side-kept", _KINKS, "            turned = True", "            turned = False",
            "a contact that rounding put on the wrong side of its kink stays there", k.FORCE_FREE),

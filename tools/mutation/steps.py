@@ -77,7 +77,7 @@ ADAPTIVE = (
     Mutant("event-not-landed-on", _DOP853_RUN,
            "h = locate_event(method, step, limit, aimed, counts)", "pass",
            "the moment of a contact is as inexact as the dense output", k.TOUCHES),
-    Mutant("event-tolerance-loose", _DOP853_RUN, "_PAST = 1e-15", "_PAST = 1e-12",
+    Mutant("event-tolerance-loose", _DOP853_RUN, "_OVERLAP_AIM = 1e-15", "_OVERLAP_AIM = 1e-12",
            "steps end a thousand times as far behind their events", k.TOUCHES),
     Mutant("driver-from-dense-output", _DOP853, "(step.t + x * step.h)", "(step.t + step.h)",
            "the driver stands still while its contact is looked for", k.TOUCHES),

@@ -40,7 +40,7 @@ FLOW = (
            "a touch inside a step of the flow is not seen, nor is its share of the derivative", k.FLOW_TOUCH),
     Mutant("flow-driver-stands", _STEP, "beta * time_at(step.time, x * step.h)", "beta * time_at(step.time, step.h)",
            "the driver stands still while its contact is looked for", k.MONODROMY),
-    Mutant("flow-event-tolerance-loose", _EVENTS, "_LOCATED = 1e-14", "_LOCATED = 1e-7",
+    Mutant("flow-event-tolerance-loose", _EVENTS, "_LARGEST_EVENT_OVERLAP = 1e-14", "_LARGEST_EVENT_OVERLAP = 1e-7",
            "the flow's events are located to 1e-7", k.MONODROMY),
     Mutant("onset-of-last-period-kept", _FLOW, "onset -= period", "onset -= 0.0",
            "time behind an onset is counted from the wrong period", k.TWO_PERIODS),

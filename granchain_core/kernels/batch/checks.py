@@ -4,8 +4,8 @@ A coarse member is extrapolated to at most three times the distance that its dec
 The extrapolation is undone, with the periods run since, if the change per orbit is not smaller after it than before:
 the record goes on as if it had not been made. A chain may approach an unstable orbit before it leaves it, and an
 extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the disturbance
-decays; if it decays slowly, multipliers decide (steady/batch/jobs.py). A fine member starts on the coarse orbit and is
-extrapolated to its own, each extrapolation checked in the same way.
+decays; if it decays slowly, multipliers decide (steady/batch/results.py). A fine member starts on the coarse orbit and
+is extrapolated to its own, each extrapolation checked in the same way.
 
 `check_member` is the same for every structure. It takes longer to compile than the steps of a batch, so it is a kernel
 of its own, which `run_batch` calls by its address.
@@ -35,8 +35,8 @@ from .record import STROBES_KEPT, move_member, undo_extrapolation
 CHECKED = 4 * LONGEST_PERIOD + 1
 #: Fewest orbits still to run that justify an extrapolation.
 _FEWEST_ORBITS_LEFT = 4.0
-#: Fewest drive periods between two extrapolations.
-_PERIODS_BETWEEN = 8
+#: Fewest drive periods from an extrapolation that was out of reach to the next one.
+_PERIODS_AFTER_FAILURE = 8
 #: How far an extrapolation may go, in units of change/(1 − decay), the distance that the decay predicts.
 FARTHEST_EXTRAPOLATION = 3.0
 #: Largest part of the coarse orbit's error that may remain in the fine run.
@@ -52,9 +52,10 @@ _PART_LEFT = 0.97
 #: Drive periods without extrapolation after a disturbance that did not decay.
 _PAUSE_AFTER_FAILED_TEST = 400
 #: Slowest decay reported for a disturbance that shrank: multipliers are then computed.
-_NEARLY_ONE = 0.9999
-#: Decay rates above this are too uncertain to extrapolate.
-_SLOWEST_REMOVED = 0.98
+_SLOWEST_DECAY = 0.9999
+#: Largest decay per drive period that is assumed to remain after an extrapolation: slower ones are not measured well
+#: enough.
+_SLOWEST_ASSUMED_DECAY = 0.98
 #: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
 CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
 #: Columns of `fine_record`: the orbit's period and decay, the coarse run's three largest forces (from FINE_FORCES on),
@@ -116,11 +117,11 @@ def check_coarse(state, member):
     copy(record[count - 1, 1], state.before[member, 1])
     if extrapolate_member(state, member, n, approach_decay, change):
         state.change_before_extrapolation[member] = change
-        state.slowest[member] = min(_SLOWEST_REMOVED, max(state.slowest[member], approach_decay ** (1.0 / n)))
+        state.slowest[member] = min(_SLOWEST_ASSUMED_DECAY, max(state.slowest[member], approach_decay ** (1.0 / n)))
         state.earliest[member] = periods + window_of(n) + n + 1
         state.extrapolate_from[member] = periods + ORBITS * n
     else:
-        state.extrapolate_from[member] = periods + max(_PERIODS_BETWEEN, count // 4)
+        state.extrapolate_from[member] = periods + max(_PERIODS_AFTER_FAILURE, count // 4)
     return False
 
 
@@ -140,8 +141,11 @@ def disturb(state, member, period):
 
 
 @inline_numba
-def decayed(state, member):
-    """Whether a member's disturbance has decayed; it is then moved back to its orbit, and the decay is recorded."""
+def judge_disturbance(state, member):
+    """Whether a member's disturbance has decayed, at the end of the test.
+
+    The member then goes back to its orbit, and the decay is recorded; else extrapolation pauses.
+    """
     n, bodies = state.testing[member], state.limit.shape[1]
     record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
     state.testing[member] = 0
@@ -161,7 +165,7 @@ def decayed(state, member):
     if last <= _PART_LEFT * first:
         move_member(state, member, state.before[member])
         decay = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
-        state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], min(decay, _NEARLY_ONE))
+        state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], min(decay, _SLOWEST_DECAY))
         return True
     state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
     state.last_check[member, CHECK_PERIOD] = 0.0  # this member does not stay on the orbit that was found
@@ -222,13 +226,13 @@ def periods_to_next_check(state, member):
 
 @kernel
 def check_member(state, member):
-    """Check a member's regime, or what is left of its disturbance; returns whether the member is due.
+    """Check a member's regime, or what is left of its disturbance; returns whether that decides it.
 
-    If it is not, the next check is set.
+    If it does not, the next check is set.
     """
     state.earliest[member] = state.periods[member] + periods_to_next_check(state, member)
     if state.testing[member] > 0:
-        return decayed(state, member)
+        return judge_disturbance(state, member)
     if state.fine_record[member, FINE_PERIOD] > 0.0:
         return check_fine(state, member)
     return check_coarse(state, member)

@@ -61,7 +61,7 @@ class BatchState(NamedTuple):
     earliest (L,)            next period at which the strobes are checked
     extrapolate_from (L,)    period from which a transient may be extrapolated
     pause (L,)               periods without extrapolation after the next one that is undone
-    due (L,)                 1 where a check is due, else 0
+    due (L,)                 1 where the member is to be returned to the caller, else 0
     shadow (L,)              lane of the member's shadow, a neighbouring trajectory; NO_SHADOW, or IS_SHADOW
     distance (L,)            distance to which the shadow is brought back after each period
     growth (L, R)            logarithm of the factor by which that distance has grown in each period; NaN if lost
@@ -72,14 +72,14 @@ class BatchState(NamedTuple):
     change_before_extrapolation (L,)  change per orbit before an extrapolation that is not confirmed yet, else 0
     testing (L,)             period of an orbit that is being disturbed, else 0
     before (L, 2, N+2)       state before the last extrapolation
-    fine_record (L, FINE_COLUMNS)  record of a fine member (period_end.py)
+    fine_record (L, FINE_COLUMNS)  record of a fine member (checks.py)
     strobes (L, 2R, 2, N+2)  states at the ends of periods
     maxima (L, R, 5)         of the last R periods, a ring: three largest forces (input, output, elastic output) and two
                              largest jumps (input, output)
-    last_check (L, CHECK_COLUMNS)  result of the last check (period_end.py)
+    last_check (L, CHECK_COLUMNS)  result of the last check (checks.py)
     stages                   three states, (2(N+2), L) each, of the stages of a step (step.py)
 
-    The others are workspaces of period_end.py.
+    The others are workspaces of checks.py.
     """
 
     y: np.ndarray
@@ -168,9 +168,10 @@ def batch_steps(members, state, count):
 
 @kernel
 def run_batch(members, state, stop, check):
-    """Run until a member is due for a check; returns (status, member).
+    """Run until a member is due: its regime is decided, its periods are over, or it is not finite.
 
-    Every member that is due is returned before any of them continues. `check` is the address of `check_member`.
+    Returns (status, member). Every member that is due is returned before any of them continues. `check` is the address
+    of `check_member`.
     """
     left, due, shadow = state.left, state.due, state.shadow
     some_due, some_shadow = True, False

@@ -24,9 +24,9 @@ from .step import evaluate, interpolate, prepare_dense
 from .tableau import DENSE_EVALUATIONS, STAGES
 
 #: A kink nearer to an end of the step than this changes the motion by less than rounding: by its square.
-_NEAR = 1e-8
+_LEAST_DISTANCE = 1e-8
 #: A contact whose F/g is less than this part of the largest velocity is at rest ahead of a wave: its sign is rounding.
-_STILL = 1e-15
+_REST_PART = 1e-15
 
 
 class ScaledForce(NamedTuple):
@@ -70,7 +70,7 @@ def _(tension, trajectory, t):
     found = False
     for c in range(tension.force_free.size):
         d, rate = overlap(slots.preload, y, c), workspace.k[0, c] - workspace.k[0, c + 1]
-        stiffness, still = slots.chain.stiffness[c], _STILL * workspace.scale[1]
+        stiffness, still = slots.chain.stiffness[c], _REST_PART * workspace.scale[1]
         if d > 0.0 and scaled_force(slots.dissipation, stiffness, d, rate) < -still:
             hold_force_free(tension, slots, y, c)
             found = True
@@ -120,7 +120,7 @@ def first_kink(tension, step, until, counts, again):
 @first_kink.of(TensionCut)
 def _(tension, step, until, counts, again):
     slots, drive, y, workspace = step.trajectory
-    first, ready, turned, k, still = 2.0, False, False, workspace.k, _STILL * workspace.scale[1]
+    first, ready, turned, k, still = 2.0, False, False, workspace.k, _REST_PART * workspace.scale[1]
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)
         if not d0 > 0.0:
@@ -142,9 +142,9 @@ def _(tension, step, until, counts, again):
                 continue
         x = 0.0
         if f0 * f1 < 0.0:  # else F is rounding at the start
-            x = root_inside(force, step, Bracket(0.0, until, f0, f1, 0), 0.1 * _NEAR)
-        if x * step.h > _NEAR:
-            if x < first and x * step.h < until * step.h - _NEAR:
+            x = root_inside(force, step, Bracket(0.0, until, f0, f1, 0), 0.1 * _LEAST_DISTANCE)
+        if x * step.h > _LEAST_DISTANCE:
+            if x < first and x * step.h < until * step.h - _LEAST_DISTANCE:
                 first = x
         elif not again:
             if free:

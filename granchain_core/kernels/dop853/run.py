@@ -51,14 +51,14 @@ from .step import (
 from .tableau import DENSE_EVALUATIONS, STAGES
 
 #: Overlap aimed at just past an event, in units of the largest displacement: a few roundings.
-_PAST = 1e-15
+_OVERLAP_AIM = 1e-15
 #: The overlap reached may be this many times larger. The event's time is then as exact as the approach speed allows.
-_NEAR = 4.0
+_ACCEPTED_FACTOR = 4.0
 #: The same two where tension is cut: a force-free contact may linger at δ = 0 and would chatter with smaller ones.
-_PAST_CUT = 1e-14
-_NEAR_CUT = 100.0
+_OVERLAP_AIM_CUT = 1e-14
+_ACCEPTED_FACTOR_CUT = 100.0
 #: A step that is to end at an event may become longer by this factor.
-_LONGER = 1.01
+_EVENT_STRETCH = 1.01
 
 
 class Stretch(NamedTuple):
@@ -109,12 +109,12 @@ def first_crossing(step, counts):
 @by_slot
 def event_tolerance(tension):
     """Target overlap past an event and the accepted factor. Absent: the smallest that rounding allows."""
-    return _PAST, _NEAR
+    return _OVERLAP_AIM, _ACCEPTED_FACTOR
 
 
 @event_tolerance.of(TensionCut)
 def _(tension):
-    return _PAST_CUT, _NEAR_CUT
+    return _OVERLAP_AIM_CUT, _ACCEPTED_FACTOR_CUT
 
 
 @inline_numba
@@ -125,7 +125,7 @@ def locate_event(method, step, limit, c, counts):
     the step would become long enough to pass other events.
     """
     slots, _, y, workspace = step.trajectory
-    h, longest = step.h, min(limit - step.t, _LONGER * step.h)
+    h, longest = step.h, min(limit - step.t, _EVENT_STRETCH * step.h)
     before = overlap(slots.preload, y, c) > 0.0
     past, near = event_tolerance(slots.tension)
     past *= max(1.0, workspace.scale[0])

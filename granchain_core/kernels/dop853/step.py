@@ -17,7 +17,7 @@ from .tableau import ALL_STAGES, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 #: Golden sections around a turning point of an overlap.
 TURN_SECTIONS = 40
 #: An overlap's root is found when its fraction of the step changes by less than this.
-_FOUND = 1e-15
+_ROOT_CHANGE = 1e-15
 #: Bounds on the factor between two steps, and the safety factor.
 _GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
 
@@ -221,7 +221,7 @@ def turning_point(signed_overlap, step):
 def crossing(signed_overlap, step, low, high):
     """Fraction between `low` and `high` at which an overlap changes sign."""
     f_low, f_high = value_at(signed_overlap, step, low), value_at(signed_overlap, step, high)
-    return root_inside(signed_overlap, step, Bracket(low, high, f_low, f_high, 0), _FOUND)
+    return root_inside(signed_overlap, step, Bracket(low, high, f_low, f_high, 0), _ROOT_CHANGE)
 
 
 @internal

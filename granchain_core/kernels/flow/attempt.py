@@ -119,14 +119,14 @@ def prepare_dense_in_time(step):
 
 
 @inline_numba
-def first_change(course, time, h, but, counts):
-    """(contact, fraction) of the first change inside the step of any contact but one; (−1, 2) if there is none."""
+def first_change(course, time, h, excluded, counts):
+    """(contact, fraction) of the first change inside the step, of any contact except `excluded`; (−1, 2): none."""
     trajectory, contacts, _ = course
     slots, _, y, workspace = trajectory
     step, contact, first, ready = FlowStep(trajectory, time, h), -1, 2.0, False
     dt = time_at(time, h) - time.start
     for c in range(contacts.closed.size):
-        if c == but:
+        if c == excluded:
             continue
         was = contacts.closed[c] != 0
         sign = -1.0 if was else 1.0  # the change looked for makes sign·δ positive

@@ -16,15 +16,15 @@ from .attempt import accepted_in_time, attempt_in_time, first_change
 from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.
-_LOCATED = 1e-14
+_LARGEST_EVENT_OVERLAP = 1e-14
 #: A step aims at the next release if that is at most this many step sizes away.
-_AIM = 1.5
+_RELEASE_STEPS = 1.5
 #: Attempts to locate one event, and to take one step.
 _TRIALS, _ATTEMPTS = 8, 60
 #: Shortest next step to try, in t. Two events that rounding puts at nearly the same time do not make it smaller.
-_LEAST = 1e-9
+_SHORTEST_STEP = 1e-9
 #: A first step after an onset covers at most this part of the time to the next release.
-_PART = 0.5
+_FIRST_STEP_PART = 0.5
 
 
 @inline_numba
@@ -49,7 +49,8 @@ def locate_change(method, course, time, h, c, counts):
     for _ in range(_TRIALS):
         d = overlap(slots.preload, workspace.end, c)
         speed = (workspace.slope[c] - workspace.slope[c + 1]) * rate_at(time, h)
-        if abs(d) <= _LOCATED * max(1.0, workspace.scale[0]) or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
+        located = abs(d) <= _LARGEST_EVENT_OVERLAP * max(1.0, workspace.scale[0])
+        if located or speed == 0.0 or abs(d) > 0.5 * h * abs(speed):
             break
         if h - d / speed == h:
             break
@@ -77,7 +78,7 @@ def step_to_release(method, course, t, goal, c, counts):
         d, speed = overlap(slots.preload, workspace.end, c), workspace.slope[c] - workspace.slope[c + 1]
         if not speed < 0.0:
             return LOST, time, 0.0, -1, goal
-        located = abs(d) <= _LOCATED * max(1.0, workspace.scale[0]) or goal - d / speed == goal
+        located = abs(d) <= _LARGEST_EVENT_OVERLAP * max(1.0, workspace.scale[0]) or goal - d / speed == goal
         if located:
             break
         goal -= d / speed
@@ -115,7 +116,7 @@ def flow_step(method, course, t, onset, counts):
     dt = min(next_step[0], method.largest_step, limit - t)
     target, wait = next_release(slots, y, contacts)
     goal = t + wait
-    aiming, lost = target >= 0 and wait < _AIM * dt and t > onset, False
+    aiming, lost = target >= 0 and wait < _RELEASE_STEPS * dt and t > onset, False
     usual = time_from(AFTER if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
     time, h = usual, size_of(usual, dt)
     for _ in range(_ATTEMPTS):
@@ -142,7 +143,7 @@ def flow_step(method, course, t, onset, counts):
             if t > onset:
                 aiming, target, goal = True, contact, time_at(time, x * h)
             else:
-                h *= _PART * x
+                h *= _FIRST_STEP_PART * x
                 dt = time_at(time, h) - t
             continue
         return DONE, time, locate_change(method, course, time, h * x, contact, counts), contact
@@ -154,4 +155,4 @@ def next_dt(time, h, error, before, limit):
     """The next step in t after an accepted one of size h in x; not less than before where only the limit cut it."""
     end = time_at(time, h)
     dt = time_at(time, h + h * growth(error)) - end
-    return max(dt, before, _LEAST) if end >= limit else max(dt, _LEAST)
+    return max(dt, before, _SHORTEST_STEP) if end >= limit else max(dt, _SHORTEST_STEP)

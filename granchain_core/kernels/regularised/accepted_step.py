@@ -22,7 +22,7 @@ _SHRINK = 0.1
 #: Safety factor of a step that is repeated.
 _SAFETY_AGAIN = 0.9
 #: Numbers that overflow in a shorter step than this will do so in any.
-_HOPELESS = 1e-9
+_OVERFLOW_STEP = 1e-9
 #: Most attempts to begin a step, and most steps in a row in which no time passes.
 ATTEMPTS = 60
 
@@ -115,7 +115,7 @@ def accepted_attempt(constants, begin, chosen, dt, units):
         factor, limited = _SHRINK, True  # an overflow: ξ covers far more time than it should
         if isfinite(error):
             factor = max(_SHRINK, _SAFETY_AGAIN * rough_sixteenth(error))
-        elif dt < _HOPELESS:
+        elif dt < _OVERFLOW_STEP:
             status = NOT_FINITE
             break
         h, dt = h * factor, dt * factor

@@ -14,17 +14,17 @@ from .chain import ROOT
 from .inside import change_before, take_distance, turn_of
 
 #: Time is transformed if the contact's nearest event, at its present speed, is at most this many steps away.
-_NEAREST_EVENT = 1.5
+_MOST_STEPS_AWAY = 1.5
 #: A contact that moves less than this part of the largest displacement in a step is at rest: it transforms no time.
-_AT_REST = 1e-9
+_REST_PART = 1e-9
 #: Length of the first step after an onset, and of the last before a release, as a part of the step in t.
 _FIRST_STEP = 0.12
 #: A step that would reach this part of the way to a release goes beyond it.
-_NEARLY_RELEASED = 0.8
+_RELEASE_PART = 0.8
 #: Length of such a step, as a factor of the way to the release.
-_BEYOND_RELEASE = 1.3
+_RELEASE_FACTOR = 1.3
 #: A distance between two values of a step is searched if the cubic's rise above both, enlarged by this part, reaches 0.
-_RISE_MISSED = 0.25
+_MISSED_PART = 0.25
 
 
 class StepInXi(NamedTuple):
@@ -56,8 +56,8 @@ def size_in_xi(power, q, speed, dt):
     if reach > 0.0:
         end = nonnegative_root(reach, power)
         h = 2.0 * dt / (q + end) if power == 2 else 4.0 * dt / ((q + end) * (q * q + end * end))
-    if speed < 0.0 and -speed * h > _NEARLY_RELEASED * power * q:
-        h = _BEYOND_RELEASE * power * q / -speed
+    if speed < 0.0 and -speed * h > _RELEASE_PART * power * q:
+        h = _RELEASE_FACTOR * power * q / -speed
     most = power * nonnegative_root(_FIRST_STEP * dt * abs(speed), power) / abs(speed)
     return min(h, most), h > most
 
@@ -65,11 +65,11 @@ def size_in_xi(power, q, speed, dt):
 @inline_llvm
 def nearest_event(rates, closed, scale, dt):
     """The closed contact whose onset or release is nearest in time, at most 1.5 steps of dt away; −1 if none is."""
-    speed, still = magnitude(rates.rate), _AT_REST * scale
+    speed, still = magnitude(rates.rate), _REST_PART * scale
     away = (magnitude(rates.overlap) + still) / (speed + 1e-300) + 1e30 * (1.0 - closed)
     least = 0.0 - largest_of(0.0 - away)
     contact = lowest_bit(~positive_mask(away - least))
-    return contact if least < _NEAREST_EVENT * dt and at(speed, contact) * dt > still else -1
+    return contact if least < _MOST_STEPS_AWAY * dt and at(speed, contact) * dt > still else -1
 
 
 @internal
@@ -82,7 +82,7 @@ def may_touch(d0, s0, d1, s1):
         return False
     x = hermite_turn(d0, s0, d1, s1)
     top = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
-    return top + _RISE_MISSED * (top - max(d0, d1)) > 0.0
+    return top + _MISSED_PART * (top - max(d0, d1)) > 0.0
 
 
 @inline_llvm

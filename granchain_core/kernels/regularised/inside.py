@@ -13,7 +13,7 @@ from ..effects.preload import overlap
 from .chain import ROOT, TIME
 
 #: A fraction of the step is checked when it changes by less than this; the next change would be far smaller.
-_FOUND = 1e-9
+_ROOT_CHANGE = 1e-9
 
 
 class Polynomial(NamedTuple):
@@ -79,7 +79,7 @@ def zero_between(p, low, high):
             high = x
         else:
             low = x
-        if f == f_last or abs(x - last) < _FOUND:
+        if f == f_last or abs(x - last) < _ROOT_CHANGE:
             break
     return x
 

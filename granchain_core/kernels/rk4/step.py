@@ -230,7 +230,6 @@ def split(trajectory, j, u_end, v_end, out):
         done += stepped
         copy(end, y)
         copy(k[3], k[0])
-        # before add_quadrature_errors, which overwrites the overlap with a sign
         watch_event(slots, y, k[0], workspace.forces.e, h * stepped, contact, there, out.log)
         add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)

@@ -22,7 +22,7 @@ from .vector import VECTOR_WIDTH, VectorType, as_vector, vector
 _HAS_RSQRT14 = has_avx512()
 #: Smallest number whose root is computed; smaller ones are replaced by it. Its power 3/2, the force of such an overlap,
 #: is negligible.
-_LEAST = 1e-280
+_LEAST_ARGUMENT = 1e-280
 
 
 def _llvm_root(builder, kind, value):
@@ -75,10 +75,10 @@ def root_by_series(typingctx, value):
 
 @intrinsic
 def above_zero(typingctx, value):
-    """The vector with every lane raised to `_LEAST`; a NaN stays a NaN."""
+    """The vector with every lane raised to `_LEAST_ARGUMENT`; a NaN stays a NaN."""
 
     def codegen(context, builder, sig, args):
-        least = ir.Constant(args[0].type, [_LEAST] * args[0].type.count)
+        least = ir.Constant(args[0].type, [_LEAST_ARGUMENT] * args[0].type.count)
         return builder.select(builder.fcmp_ordered("<", args[0], least), least, args[0])
 
     return value(value), codegen

@@ -15,7 +15,7 @@ from ..compiling.jit import internal, kernel
 ORBITS = 8
 #: A second difference counts as linearly dependent on the earlier ones if its part orthogonal to them is below this
 #: fraction of it.
-_DEPENDENT = 1e-9
+_DEPENDENT_PART = 1e-9
 
 
 @internal
@@ -50,8 +50,8 @@ def reduced_rank(states, basis, triangle, limit):
             triangle[k, j] = dot(basis[k], basis[j])
             subtract(basis[j], triangle[k, j], basis[k])
         left = sqrt(dot(basis[j], basis[j]))
-        triangle[j, j] = left if left > _DEPENDENT * size else 0.0
-        scale = 1.0 / left if left > _DEPENDENT * size else 0.0
+        triangle[j, j] = left if left > _DEPENDENT_PART * size else 0.0
+        scale = 1.0 / left if left > _DEPENDENT_PART * size else 0.0
         for i in range(2 * bodies):
             basis[j, i] *= scale
         weights[j] = dot(basis[j], residual)

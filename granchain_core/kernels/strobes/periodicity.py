@@ -24,15 +24,15 @@ SETTLED_DISTANCE = 1e-6
 #: Changes of a fixed-step map below this are rounding.
 ROUNDING = 1e-12
 #: A state with a larger change is not settled, because nothing decays a thousandfold in one period.
-_NOT_SETTLED = 1e-3
+_LARGEST_SETTLED_CHANGE = 1e-3
 #: A change below this part of the required distance is accepted even if its rate is not steady: a slow mode hidden in
 #: it would have to decay a hundred times more slowly than what is observed.
-_DEEP = 1e-2
+_UNEVEN_PART = 1e-2
 #: Changes over q periods that decay faster than this, per q periods, go to zero; else they may be those of a longer
 #: orbit.
-_APPROACHING = 0.97
+_SLOWEST_APPROACH = 0.97
 #: Changes below this may be extrapolated (kernels/strobes/extrapolation.py).
-_WORTH_EXTRAPOLATING = 1e-2
+_LARGEST_EXTRAPOLATED_CHANGE = 1e-2
 
 
 class Detected(NamedTuple):
@@ -162,7 +162,7 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
         for q in range(1, n):
             nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
         now = change_between(strobes, scale, run, run - n)
-        if nearer or now > _WORTH_EXTRAPOLATING:
+        if nearer or now > _LARGEST_EXTRAPOLATED_CHANGE:
             continue  # a shorter period is being approached, which is why the change over this one is small
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
@@ -174,13 +174,13 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
             continue
         if approached == 0:
             approached, approach_decay, approach_change = n, decay, recent
-        if now > _NOT_SETTLED:
+        if now > _LARGEST_SETTLED_CHANGE:
             continue
-        if decay < _APPROACHING:
+        if decay < _SLOWEST_APPROACH:
             approaching |= 1 << n
         decay = max(decay, slowest**n)
         distance = recent * decay / (1.0 - decay)
-        if distance <= settled and (even or recent <= _DEEP * settled):
+        if distance <= settled and (even or recent <= _UNEVEN_PART * settled):
             q = shortest(strobes, scale, n, max(10.0 * distance, 3.0 * settled))
             return Detected(q, decay ** (q / n), distance, 0, 0.0, 0.0)
     return Detected(0, 0.0, 0.0, approached, approach_decay, approach_change)

@@ -17,9 +17,9 @@ from ...scene import Amplitude, Scene
 #: Knobs that change a chain continuously; N and the laws are discrete, `accuracy` does not change the chain.
 CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
 #: Length of a factor e in a logarithmic knob: the state changes by about its own size where f changes by a tenth.
-_LOGARITHMIC = 10.0
+_LENGTH_OF_FACTOR_E = 10.0
 #: Length of the whole range of a linear knob.
-_LINEAR = 20.0
+_LENGTH_OF_RANGE = 20.0
 
 
 @dataclass(frozen=True)
@@ -76,21 +76,21 @@ class KnobAxis:
     def coordinate(self, value: float) -> float:
         """p of a knob value."""
         if self.logarithmic:
-            return _LOGARITHMIC * math.log(value / self.low)
-        return _LINEAR * (value - self.low) / (self.high - self.low)
+            return _LENGTH_OF_FACTOR_E * math.log(value / self.low)
+        return _LENGTH_OF_RANGE * (value - self.low) / (self.high - self.low)
 
     def value(self, p: float) -> float:
         """Knob value at p, limited to the knob's allowed range."""
         if self.logarithmic:
-            value = self.low * math.exp(p / _LOGARITHMIC)
+            value = self.low * math.exp(p / _LENGTH_OF_FACTOR_E)
         else:
-            value = self.low + p / _LINEAR * (self.high - self.low)
+            value = self.low + p / _LENGTH_OF_RANGE * (self.high - self.low)
         quantity = QUANTITIES[self.knob]
         return min(max(value, quantity.low), quantity.high)
 
     def slope(self, value: float) -> float:
         """Change of the knob with p."""
-        return value / _LOGARITHMIC if self.logarithmic else (self.high - self.low) / _LINEAR
+        return value / _LENGTH_OF_FACTOR_E if self.logarithmic else (self.high - self.low) / _LENGTH_OF_RANGE
 
     def scene_at(self, value: float) -> Scene:
         """The scene with the knob at `value`."""

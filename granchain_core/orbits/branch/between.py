@@ -40,7 +40,7 @@ class Between:
         guess, normal, way = self._guess(a, b, fraction)
         arclength, newton = self._arclength(a, b, fraction), Newton(self.equations, guess, normal, way)
         near = self._near(arclength)
-        newton.approach(near)
+        newton.solve_quick(near)
         slope, multipliers, tangent = near.slope, a.multipliers, a.tangent
         if a.turning != b.turning:
             slope = self.equations.quick_slope(newton.z, newton.steps)

@@ -11,12 +11,12 @@ from .steps import LONGEST
 from .walk import Arm
 
 #: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
-_APART = 1.2
+_DISTANCE_FACTOR = 1.2
 #: Error of the tangents relative to the largest entry of the monodromy matrix. Where the smallest multiplier is below
 #: that error, Liouville's sum of logarithms says nothing.
-_TANGENTS = 1e-11
+_TANGENT_ERROR = 1e-11
 #: Error of Liouville's sum that is allowed beyond that of the tangents.
-_LIOUVILLE = 1e-5
+_LIOUVILLE_ERROR = 1e-5
 
 
 def check_branch(branch: Branch) -> list[str]:
@@ -40,8 +40,8 @@ def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
     if not point.residual <= ACCEPTED:
         found.append(f"residual {point.residual:.1e} at {where}")
     smallest, largest = np.abs(point.multipliers[-1]), max(1.0, float(np.abs(point.multipliers[0])))
-    unsure = len(point.multipliers) * _TANGENTS * largest / smallest if smallest > 0.0 else np.inf
-    if unsure < 0.1 and point.liouville > _LIOUVILLE + unsure:
+    unsure = len(point.multipliers) * _TANGENT_ERROR * largest / smallest if smallest > 0.0 else np.inf
+    if unsure < 0.1 and point.liouville > _LIOUVILLE_ERROR + unsure:
         found.append(f"Liouville is off by {point.liouville:.1e} at {where}")
     return found
 
@@ -50,7 +50,7 @@ def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
     a, b, found = arm.points[i - 1], arm.points[i], []
     where = f"between {branch.axis.text(a.knob)} and {branch.axis.text(b.knob)}"
     moved = np.append((b.x - a.x) / np.sqrt(len(a.x)), branch.axis.coordinate(b.knob) - branch.axis.coordinate(a.knob))
-    if np.linalg.norm(moved) > _APART * LONGEST or not b.arclength > a.arclength:
+    if np.linalg.norm(moved) > _DISTANCE_FACTOR * LONGEST or not b.arclength > a.arclength:
         found.append(f"neighbours are {np.linalg.norm(moved):.2g} apart {where}")
     between = [s for s in arm.special if a.arclength <= s.before.arclength and s.after.arclength <= b.arclength
                and s.before.arclength < b.arclength]

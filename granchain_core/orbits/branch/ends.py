@@ -13,9 +13,9 @@ from .point import BranchPoint, branch_point
 from .special import SpecialPoint
 
 #: A step passes the seed if the seed lies this near to it, relative to its length.
-_PASSES = 0.2
+_PASSING_DISTANCE = 0.2
 #: The branch has closed if the corrected point is this near to the seed.
-_CLOSED = 1e-7
+_CLOSING_DISTANCE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,10 +88,10 @@ class Ends:
         length = float(np.linalg.norm(way))
         for seed in self._seeds:
             along = float((seed - za) @ way) / length**2
-            if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSES * length:
+            if 0.0 < along <= 1.0 and np.linalg.norm(seed - za - along * way) < _PASSING_DISTANCE * length:
                 between = Between(self.equations, last.point, beyond.point, (last.near, beyond.near))
                 found = between.careful(last.point, beyond.point, along)
-                if np.linalg.norm(self._z(found) - seed) < _CLOSED:
+                if np.linalg.norm(self._z(found) - seed) < _CLOSING_DISTANCE:
                     return found
         return None
 

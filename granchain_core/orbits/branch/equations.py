@@ -109,14 +109,14 @@ class BranchEquations:
         not converge.
         """
         newton = Newton(self, z, normal, farthest)
-        flow = newton.follow(slope)
+        flow = newton.solve_with_derivatives(slope)
         return Solved(newton.z, flow, self.knob_slope(newton.z, flow.end, TOLERANCE), tuple(newton.residuals))
 
     def solve_near(self, z: np.ndarray, normal: np.ndarray, near: Near, farthest: float = np.inf) -> Solved:
         """Like `solve`, where P_x and P_p are known nearby, so that few further derivatives are needed."""
         newton = Newton(self, z, normal, farthest)
-        newton.approach(near)
-        flow = newton.finish()
+        newton.solve_quick(near)
+        flow = newton.solve_exact()
         return Solved(newton.z, flow, self.quick_slope(newton.z, newton.steps), tuple(newton.residuals))
 
     def tangent(self, solved: Solved, towards: np.ndarray) -> np.ndarray:

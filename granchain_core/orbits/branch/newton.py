@@ -24,33 +24,35 @@ from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
 #: Tolerance of the rough map, the flow where exactness is not needed.
 ROUGH = 1e-10
-#: Its tolerance while residuals are above `_COARSE`: it is then good to 1e-6 (measured: 7e-7 on sec2's branch over f).
-_ROUGHEST, _COARSE = 1e-7, 1e-3
+#: Residual above which the rough map is computed with the tolerance `_ROUGHEST`.
+_COARSE = 1e-3
+#: That tolerance; the map is then good to 1e-6 (measured: 7e-7 on the branch of sec2 over f).
+_ROUGHEST = 1e-7
 #: Relative residual at which Newton's method stops.
 GOOD = 1e-11
 #: Largest residual that is accepted where rounding does not let it fall that far.
 ACCEPTED = 1e-10
 #: The quick map is left at this residual: its own error is as large.
 ENOUGH = 1e-8
-#: A derivative from nearby is used up to this residual.
-_FAR = 3e-3
+#: Largest residual at which a derivative from nearby is used.
+_LARGEST_WITH_REUSED = 3e-3
 #: A step that does not lower the residual to this part of it is followed by a derivative.
-_SLOW = 0.4
+_SLOW_DECREASE = 0.4
 #: A step with its own derivative that does not lower the residual to this part of it fails: a shorter step along the
 #: branch is safer than a way that may lead to another branch (Deuflhard 2004, Newton Methods for Nonlinear Problems).
-_FAILED = 0.5
+_FAILED_DECREASE = 0.5
 #: The exact map with its derivative is computed where its residual should be below this part of `GOOD`.
-_SURE = 0.3
+_SAFETY = 0.3
 #: Most derivatives of the rough and of the exact map each.
-_MOST = 6
-#: A step of `follow` that began above this residual may be followed by one that reuses its derivative.
-_LAST = 1e-6
-#: The step that reuses the derivative is taken if it begins below this residual.
-_REUSED_BELOW = 1e-4
-#: Most steps of `follow`.
-_MOST_FOLLOWED = 8
+_MOST_DERIVATIVES = 6
+#: Least residual before a step of `solve_with_derivatives` that may be followed by one that reuses its derivative.
+_LEAST_BEFORE_REUSE = 1e-6
+#: Largest residual before a step that reuses the derivative of the step before it.
+_LARGEST_REUSE = 1e-4
+#: Most steps of `solve_with_derivatives`.
+_MOST_STEPS = 8
 #: Most steps by the corrected map.
-_MOST_CORRECTED = 6
+_MOST_CORRECTED_STEPS = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,81 +100,85 @@ class Newton:
         self.matrix, self.steps = np.empty(0), equations.quick_steps(z)
         self._known: np.ndarray | None = None
 
-    def approach(self, near: Near) -> None:
-        """Come so near the orbit by the quick map that it is no nearer to the exact one."""
-        if self._borrowed(near):
+    def solve_quick(self, near: Near) -> None:
+        """Solve for the orbit of the quick map, up to the error of that map."""
+        if self._reuse_derivative(near):
             return
-        for _ in range(_MOST):
+        for _ in range(_MOST_DERIVATIVES):
             coarse = not self.residuals or self.residuals[-1] > _COARSE
             flow = self.flow(_ROUGHEST if coarse else ROUGH)
             before = self.residuals[-1]
             self.matrix = self.equations.matrix(flow.derivative, near.slope, self.normal)
-            if before <= ENOUGH or self._steps(flow.end):
+            if before <= ENOUGH or self._steps_without_derivative(flow.end):
                 return
-            if not self.residuals[-1] <= _FAILED * before:
+            if not self.residuals[-1] <= _FAILED_DECREASE * before:
                 break
         raise self._failure()
 
-    def finish(self) -> Flow:
-        """Go on to the orbit itself; returns the exact map with its derivative there."""
-        quick = self._quick() if self._known is None else self._known
-        end, ratio = self._end(TOLERANCE), 1.0
+    def solve_exact(self) -> Flow:
+        """Solve for the orbit itself, from that of the quick map; returns the exact map with its derivative there."""
+        quick = self._quick_map() if self._known is None else self._known
+        end, ratio = self._exact_end(TOLERANCE), 1.0
         defect = end - quick
-        for _ in range(_MOST_CORRECTED):
+        for _ in range(_MOST_CORRECTED_STEPS):
             before = self.residuals[-1]
-            if before <= _SURE * GOOD:
+            if before <= _SAFETY * GOOD:
                 break
-            moved = self.step(end)
-            if before * ratio <= _SURE * GOOD:
+            moved = self._checked_step(end)
+            if before * ratio <= _SAFETY * GOOD:
                 break
             end = self._quick_end(defect)
             ratio = self.residuals[-1] / before
-            if not ratio <= _SLOW:
+            if not ratio <= _SLOW_DECREASE:
                 break
-            self._update(end, moved)
-        for number in range(_MOST):
+            self._broyden_update(end, moved)
+        for number in range(_MOST_DERIVATIVES):
             flow = self.flow(TOLERANCE)
             if self.residuals[-1] <= GOOD or (number and self.residuals[-1] > 0.3 * self.residuals[-2]):
                 break
             self.matrix = self.equations.matrix(flow.derivative, self.matrix[:-1, -1], self.normal)
-            self.step(flow.end)
+            self._checked_step(flow.end)
         if not self.residuals[-1] <= ACCEPTED:
             raise self._failure()
         return flow
 
-    def follow(self, slope: np.ndarray | None = None) -> Flow:
+    def solve_with_derivatives(self, slope: np.ndarray | None = None) -> Flow:
         """The orbit itself by steps with derivatives; `residuals` has one for each. `slope` is P_p nearby.
 
         For orbits near which no derivative is known, and where the way with few derivatives has failed. Each step but
-        the last is followed by one that reuses its derivative. The first map is a rough one, the last never.
+        the last is followed by one that reuses its derivative. With `slope` the first map is computed at the rough
+        tolerance; the accepted one never is.
         """
         rough = slope is not None
-        for _ in range(_MOST_FOLLOWED):
+        for _ in range(_MOST_STEPS):
             flow = self.flow(ROUGH if rough else TOLERANCE)
             residual = self.residuals[-1]
             if not rough and (residual <= GOOD or (len(self.residuals) > 2 and residual > 0.3 * self.residuals[-2])):
                 break
             slope = self.equations.knob_slope(self.z, flow.end, TOLERANCE) if slope is None else slope
             self.matrix = self.equations.matrix(flow.derivative, slope, self.normal)
-            self.step(flow.end)
-            if rough or residual > _LAST:
-                again = self._end(TOLERANCE)
-                if self.residuals.pop() < _REUSED_BELOW:
-                    self._move(again)
+            self._checked_step(flow.end)
+            if rough or residual > _LEAST_BEFORE_REUSE:
+                again = self._exact_end(TOLERANCE)
+                if self.residuals.pop() < _LARGEST_REUSE:
+                    self._step(again)
             rough = False
         if not self.residuals[-1] <= ACCEPTED:
             raise self._failure()
         return flow
 
-    def _borrowed(self, near: Near) -> bool:
-        """Whether the steps with a derivative from nearby lead there; if they lead away, z is the start again."""
+    def _reuse_derivative(self, near: Near) -> bool:
+        """Try steps with a derivative from nearby; returns whether they lead to the orbit.
+
+        If they lead away, z is the start again.
+        """
         try:
             end = self._quick_end()
             first = self.residuals[-1]
-            if first > _FAR:
+            if first > _LARGEST_WITH_REUSED:
                 return False
             self.matrix = self.equations.matrix(near.derivative, near.slope, self.normal)
-            found = first <= ENOUGH or self._steps(end)
+            found = first <= ENOUGH or self._steps_without_derivative(end)
             if not found and not self.residuals[-1] < first:
                 self.z, self._known = self.start, None
             return found
@@ -180,47 +186,47 @@ class Newton:
             self.z, self._known = self.start, None
             return False
 
-    def _steps(self, end: np.ndarray) -> bool:
-        """Steps without a derivative, from a map that led to `end`; whether they come near enough."""
+    def _steps_without_derivative(self, end: np.ndarray) -> bool:
+        """Take steps without a derivative, from a map that led to `end`; returns whether they come near enough."""
         while True:
             before = self.residuals[-1]
-            moved = self.step(end)
+            moved = self._checked_step(end)
             end = self._quick_end()
             residual = self.residuals[-1]
-            if residual > ENOUGH and not residual <= _SLOW * before:
+            if residual > ENOUGH and not residual <= _SLOW_DECREASE * before:
                 return False
-            self._update(end, moved)
+            self._broyden_update(end, moved)
             if residual <= ENOUGH:
                 return True
 
-    def _update(self, end: np.ndarray, moved: np.ndarray) -> None:
+    def _broyden_update(self, end: np.ndarray, moved: np.ndarray) -> None:
         """Broyden's update of J after a step."""
         self.matrix[:-1] += np.outer(end - self.equations.state(self.z), moved) / (moved @ moved)
 
-    def step(self, end: np.ndarray) -> np.ndarray:
+    def _checked_step(self, end: np.ndarray) -> np.ndarray:
         """Newton's step with the present matrix, where the map leads to `end`; it is refused if it goes too far."""
-        moved = self._move(end)
+        moved = self._step(end)
         far = float(np.linalg.norm(self.z - self.start))
         if not far <= self.farthest:
             raise NumbersFailed(f"Newton's method went {far:.1e} away after residuals {formatted(self.residuals)}.",
                                 "no-convergence")
         return moved
 
-    def _move(self, end: np.ndarray) -> np.ndarray:
+    def _step(self, end: np.ndarray) -> np.ndarray:
         change = np.append(end - self.equations.state(self.z), (self.z - self.start) @ self.normal)
         moved = -np.linalg.solve(self.matrix, change)
         self.z, self._known = self.z + moved, None
         return moved
 
-    def _end(self, tolerance: float) -> np.ndarray:
+    def _exact_end(self, tolerance: float) -> np.ndarray:
         x = self.equations.state(self.z)
         return self._residual(x, self.equations.reused_map(self.equations.value(self.z), tolerance).end(x))
 
-    def _quick(self) -> np.ndarray:
+    def _quick_map(self) -> np.ndarray:
         return self.equations.quick_end(self.equations.state(self.z), self.equations.value(self.z), self.steps)
 
     def _quick_end(self, defect: np.ndarray | float = 0.0) -> np.ndarray:
-        self._known = self._quick()
+        self._known = self._quick_map()
         return self._residual(self.equations.state(self.z), self._known + defect)
 
     def _residual(self, x: np.ndarray, end: np.ndarray) -> np.ndarray:

@@ -20,9 +20,9 @@ from .equations import BranchEquations, Solved
 #: Tolerance of one step of the run that records forces and contacts: they are then good to about 1e-9.
 _TOLERANCE = 1e-11
 #: The same of an orbit that only helps to find others: overlaps are then good to about 1e-7.
-_ROUGH = 1e-9
+_ROUGH_TOLERANCE = 1e-9
 #: Room for turning points of overlaps at first, for each contact and period.
-_ROOM = 32
+_FIRST_ROOM = 32
 #: Count of the closings of a contact that is always open.
 _OPEN = 0
 #: The same of one that is always closed.
@@ -116,7 +116,7 @@ def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, 
                 multipliers: np.ndarray, residuals: list[float], arclength: float) -> BranchPoint:
     """A point near the branch with its contacts, to find others by; it has no forces and no Liouville."""
     x, value = equations.state(z), equations.value(z)
-    _, record = record_along(equations, x, value, _ROUGH)
+    _, record = record_along(equations, x, value, _ROUGH_TOLERANCE)
     return BranchPoint(
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
         max_input_force=np.nan, max_output_force=np.nan, max_output_force_elastic=np.nan,
@@ -128,7 +128,7 @@ def record_along(equations: BranchEquations, x: np.ndarray, value: float,
                  tolerance: float = _TOLERANCE) -> tuple[Engine, OrbitRecord]:
     """Largest forces and turning points of all overlaps along the way from the scaled state x."""
     engine = Engine(equations.axis.scene_at(value), adaptive_setting(tolerance), 1, stop=equations.stop)
-    stepper, room = engine.stepper, _ROOM * (equations.size // 2 + 1) * equations.period
+    stepper, room = engine.stepper, _FIRST_ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)
         record = OrbitRecord(np.zeros((room, 4)), np.zeros(PEAKS))

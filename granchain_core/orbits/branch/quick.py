@@ -17,11 +17,11 @@ from ...scene import Scene
 from ...stop import Stop
 
 #: Steps in place of one default step.
-_REFINE = 8.0
+_REFINEMENT = 8.0
 #: Where a period takes more steps the flow is faster, since its steps are long while contacts are open.
 _MOST_QUICK_STEPS = 30_000
 #: Numbers of steps have this many binary digits, so that orbits nearby share the table of the driver's motion.
-_DIGITS = 4
+_BINARY_DIGITS = 4
 
 
 class QuickMap:
@@ -55,8 +55,8 @@ def quick_steps(scaled: ScaledChain) -> int:
 
     The map would jump if they changed with the knob, so those of one scene serve for all that are compared.
     """
-    least = int(_REFINE * max(16.0, scaled.period / scaled.step)) + 1
+    least = int(_REFINEMENT * max(16.0, scaled.period / scaled.step)) + 1
     if least > _MOST_QUICK_STEPS or unknown_slots(scaled.slots, "rk4"):
         return 0
-    unit = 2 ** max(0, least.bit_length() - _DIGITS)
+    unit = 2 ** max(0, least.bit_length() - _BINARY_DIGITS)
     return -(-least // unit) * unit

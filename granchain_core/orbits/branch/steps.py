@@ -18,9 +18,9 @@ LONGEST = 0.2
 #: Shortest step.
 SHORTEST = 1e-7
 #: Angle by which the branch turns in a step of the length aimed at.
-_TURN = np.radians(8.0)
+_TURN_OF_STEP = np.radians(8.0)
 #: Distance of its orbit from the predicted one, as a fraction of the step.
-_MISS = 0.02
+_MISS_OF_STEP = 0.02
 #: Largest factors by which a step grows and shrinks.
 _GROW, _SHRINK = 2.0, 0.5
 #: Cosine of the turn beyond which a step is rejected.
@@ -49,5 +49,5 @@ def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
     from there had failed.
     """
     angle = max(float(np.arccos(min(1.0, cosine))), 1e-9)
-    wanted = min(_TURN / angle, np.sqrt(_MISS * step / max(off, 1e-9 * step)), 1.0 if failed else _GROW)
+    wanted = min(_TURN_OF_STEP / angle, np.sqrt(_MISS_OF_STEP * step / max(off, 1e-9 * step)), 1.0 if failed else _GROW)
     return min(LONGEST, max(_SHRINK, float(wanted)) * step)

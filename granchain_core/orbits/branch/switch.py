@@ -19,9 +19,9 @@ from .walk import Arm
 #: Distances ε along the eigenvector that are tried, in arclength.
 _DISTANCES = (0.02, 0.005, 0.05, 0.001)
 #: Largest change of the knob's coordinate: of order ε², but possibly with a large factor.
-_FARTHEST = 0.3
+_LARGEST_KNOB_CHANGE = 0.3
 #: Smallest difference of the orbit's halves, relative to the one expected from ε.
-_DOUBLED = 0.5
+_LEAST_DOUBLING = 0.5
 
 
 def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None = None) -> Branch:
@@ -42,13 +42,13 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
     tried = []
     for distance in _DISTANCES:
         try:
-            solved = twice.solve(z + distance * direction, direction, farthest=_FARTHEST)
+            solved = twice.solve(z + distance * direction, direction, farthest=_LARGEST_KNOB_CHANGE)
         except NumbersFailed as problem:
             tried.append(problem.sentence)
             continue
         x = twice.state(solved.z)
         halves = once.stroboscopic_map(twice.value(solved.z)).end(x) - x
-        if np.linalg.norm(halves) / once.weight > _DOUBLED * 2.0 * distance:
+        if np.linalg.norm(halves) / once.weight > _LEAST_DOUBLING * 2.0 * distance:
             return Branch(branch.axis, 2 * branch.period, (_arm(twice, solved, direction),))
         tried.append("the orbit found repeats after half of its period.")
     raise NumbersFailed(f"No orbit of {2 * branch.period} drive periods was found beside the period doubling at "

@@ -27,12 +27,12 @@ from .special import SpecialPoint, special_between
 from .steps import BENT, FIRST, OFF, SHORTEST, next_step, predicted
 
 #: Points from the seed on before the branch may close on itself.
-_AWAY = 4
+_POINTS_BEFORE_CLOSING = 4
 #: An orbit that is back within this, relatively, after a part of its period is refused: where the branches of both
 #: periods meet, an orbit of the shorter one is found with an error far above its residual.
-_ALIKE = 1e-6
+_SHORTER_PERIOD_DISTANCE = 1e-6
 #: Orbits that the walk is ahead of the search for special points, and threads that search.
-_AHEAD, _THREADS = 4, 2
+_ORBITS_AHEAD, _THREADS = 4, 2
 
 
 @dataclass
@@ -82,7 +82,7 @@ class Walk(Iterator[BranchPoint]):
         arm = self.arm
         while not arm.ended:
             try:
-                while len(self._ahead) < _AHEAD and self._goes_on:
+                while len(self._ahead) < _ORBITS_AHEAD and self._goes_on:
                     self._advance()
                 if not self._ahead:
                     self._lose()
@@ -162,7 +162,8 @@ class Walk(Iterator[BranchPoint]):
                                 "no-convergence")
         chord = float(np.linalg.norm(solved.z - self._z(here)))
         beyond = Ending(unrecorded(equations, solved, tangent, here.arclength + chord), solved.near)
-        ending = self._ends.of_step(last, beyond, solved.z, len(self.arm.points) + len(self._ahead) >= _AWAY)
+        may_close = len(self.arm.points) + len(self._ahead) >= _POINTS_BEFORE_CLOSING
+        ending = self._ends.of_step(last, beyond, solved.z, may_close)
         off = float(np.linalg.norm(solved.z - guess))
         self._step, self._failure = next_step(step, off, cosine, self._failure is not None), None
         return ending, solved.flow.changes if ending is beyond else None
@@ -206,7 +207,7 @@ class Walk(Iterator[BranchPoint]):
         """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
         n = self.equations.period
         x, value = self.equations.state(solved.z), self.equations.value(solved.z)
-        least = self.equations.least_period(x, value, _ALIKE)
+        least = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)
         if least < n:
             raise NumbersFailed(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
                                 "no-convergence")

@@ -1,4 +1,4 @@
-"""A member of a batch: when its regime is checked, and what follows."""
+"""A scene that is being settled in a batch: when its regime is checked, and what follows."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from ..steady_state import IRREGULAR_PERIODS, SteadyState
 #: Steps of the finer run of a batch for one of the coarse run.
 FINER = 3
 #: Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
-_LOCATED = fixed_step_setting(8)
+_LOCATED_SETTING = fixed_step_setting(8)
 #: Typical relative error of the finer run.
 _FINER_ERROR = typical_error(fixed_step_setting(FINER))
 
@@ -90,8 +90,8 @@ class Job:
                                     least=_FINER_ERROR / (1.0 - regime.contraction))
         if jumps.any() and (jumps > AT_A_JUMP * maxima[:2]).any():
             at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
-            located, apart = self._located_maxima(y, regime, farther, batch.stop)
-            maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, apart, errors)
+            located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
+            maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, located_errors, errors)
         maxima = maxima * self.scaled.scales.force
         return SteadyState(self.scene, maxima, replace(regime, distance=distance), errors, self.scaled.to_si(y),
                           number=self.number)
@@ -105,10 +105,10 @@ class Job:
         much they depend on the step at a jump, where the order is uneven.
         """
         assert regime.period is not None
-        engine = Engine(self.scene, _LOCATED, 1, stop=stop, scaled=self.scaled)
+        engine = Engine(self.scene, _LOCATED_SETTING, 1, stop=stop, scaled=self.scaled)
         engine.start_scaled(self.scaled.beads_of(y))
         first = engine.largest_forces(regime.period)
-        finer = Engine(self.scene, _LOCATED.finer(), 1, stop=stop, scaled=self.scaled)
+        finer = Engine(self.scene, _LOCATED_SETTING.finer(), 1, stop=stop, scaled=self.scaled)
         finer.start(engine.state)
         return finer.largest_forces(regime.period), errors_between(finer, first, regime.contraction, distance)
 

@@ -15,7 +15,7 @@ from ...errors import Cancelled
 from ...stop import Stop
 
 #: Time between two checks whether the computation is still wanted [s].
-_LOOK = 0.05
+_INTERVAL = 0.05
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -58,7 +58,7 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
             if stop:
                 return
             try:
-                item = found.get(timeout=_LOOK)
+                item = found.get(timeout=_INTERVAL)
             except queue.Empty:
                 continue
             if isinstance(item, Exception):

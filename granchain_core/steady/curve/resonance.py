@@ -24,12 +24,12 @@ ENDED = 0.05
 #: 20 % below both neighbouring peaks.
 PROMINENCE = 0.2
 #: A state is on a peak if its force is below the peak by at most this fraction of the height above the next valley.
-_ON_TOP = 0.2
+_PEAK_PART = 0.2
 #: A state is in a valley if its force is above the valley by less than this fraction of that height; states in between
 #: are on a flank.
-_AT_BOTTOM = 0.1
+_VALLEY_PART = 0.1
 #: A state whose force differs by this part from the curve's at its frequency is not on the curve.
-_OFF = 0.1
+_CURVE_DIFFERENCE = 0.1
 #: Less than this part of the input force at the wall: nothing travels through the chain.
 STOPS = 0.15
 
@@ -78,7 +78,7 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     if len(f) < 5 or not f[0] <= at <= f[-1]:
         return Place("")
     here = float(np.interp(at, f, F))
-    if abs(here - output) > _OFF * max(here, output):
+    if abs(here - output) > _CURVE_DIFFERENCE * max(here, output):
         return Place("")
     turns, peaks, valleys = _shape(tuple(F.tolist()))
     if transmission < STOPS:
@@ -88,9 +88,9 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
         return Place("")
     low, high = sorted((before[-1], after[0]), key=lambda i: F[i])
     way = (output - F[low]) / (F[high] - F[low])
-    if high in peaks and way > 1.0 - _ON_TOP:
+    if high in peaks and way > 1.0 - _PEAK_PART:
         return Place("peak", float(f[high]), periods[high])
-    if low in valleys and way < _AT_BOTTOM:
+    if low in valleys and way < _VALLEY_PART:
         return Place("valley")
     return Place("flank", float(f[high]), periods[high]) if high in peaks else Place("")
 

@@ -18,20 +18,20 @@ from ...stop import Stop
 from ..returns import sizes
 
 #: Steps in place of one default step: multipliers then differ from those of a tangent flow by about 1e-6.
-_REFINE = 4.0
+_REFINEMENT = 4.0
 #: Tolerance of the adaptive method, which scenes that cut tension need.
 _TOLERANCE = 1e-11
 #: Half the distance of the two states of a central difference, relative to the largest displacement or w. The error is
 #: its square times the map's third derivative, plus the method's noise, about 1e-10, divided by it.
 _DIFFERENCE = 1e-5
 #: The same for a one-sided difference, whose error is the difference times the map's second derivative.
-_TO_ONE_SIDE = 1e-6
+_ONE_SIDED_DIFFERENCE = 1e-6
 #: Relative residual at which a fixed point is found.
-_FOUND = 1e-9
+_FIXED_POINT_RESIDUAL = 1e-9
 #: Newton's iterations at most.
 _MOST_ITERATIONS = 10
 #: The derivative is renewed if an iteration leaves more than this part of the residual.
-_ENOUGH = 0.1
+_RENEWAL_PART = 0.1
 #: Most halvings of a step of Newton's method.
 _HALVINGS = 5
 
@@ -39,7 +39,7 @@ _HALVINGS = 5
 class FiniteDifferenceMap:
     """x → the state n drive periods later by the fixed-step method, for scaled x = (u, w) (2N,) at phase 0."""
 
-    def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, refine: float = _REFINE) -> None:
+    def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, refine: float = _REFINEMENT) -> None:
         setting = adaptive_setting(_TOLERANCE) if scene.cuts_tension else fixed_step_setting(refine)
         self.engine = Engine(scene, setting, 1, stop=stop)
         self.periods = periods
@@ -70,7 +70,7 @@ class FiniteDifferenceMap:
 
     def derivative(self, x: np.ndarray, central: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) by differences; one-sided ones take half the time and are good to about 1e-4."""
-        matrix, width = np.zeros((len(x), len(x))), (_DIFFERENCE if central else _TO_ONE_SIDE) * sizes(x)
+        matrix, width = np.zeros((len(x), len(x))), (_DIFFERENCE if central else _ONE_SIDED_DIFFERENCE) * sizes(x)
         middle = None if central else self(x)
         for i in range(len(x)):
             step = np.zeros(len(x))
@@ -112,7 +112,7 @@ def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint 
     change = stroboscopic_map(x) - x
     residual, matrix, here = float(np.abs(change / scale).max()), stroboscopic_map.derivative(x), True
     for _ in range(_MOST_ITERATIONS):
-        if residual <= _FOUND:
+        if residual <= _FIXED_POINT_RESIDUAL:
             break
         step = np.linalg.solve(matrix - np.eye(len(x)), -change)
         for halving in range(_HALVINGS):
@@ -127,8 +127,8 @@ def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint 
             continue
         gained = float(np.abs(after / scale).max()) / residual
         x, change, residual, here = trial, after, gained * residual, False
-        if gained > _ENOUGH and residual > _FOUND:
+        if gained > _RENEWAL_PART and residual > _FIXED_POINT_RESIDUAL:
             matrix, here = stroboscopic_map.derivative(x), True
-    if residual > 100.0 * _FOUND:
+    if residual > 100.0 * _FIXED_POINT_RESIDUAL:
         return None
     return FixedPoint(x, matrix if here else stroboscopic_map.derivative(x), residual)

@@ -29,27 +29,27 @@ UNSURE = 1e-5
 #: from the orbit that is then found.
 NEAR_AN_ORBIT = 0.1
 #: The period tried is the shortest over which the motion changes by at most this factor times the least change.
-_AS_SMALL = 3.0
+_CHANGE_FACTOR = 3.0
 #: Factor between the tested distances. Near an orbit that has just become stable there may be a closed curve on which
 #: the motion stays, and distances vary by some per cent: hence several distances, and large parts of each.
-_CLOSER = 0.4
+_DISTANCE_FACTOR = 0.4
 #: Smallest distance tested, relative to the orbit.
-_SMALLEST = 1e-5
+_SMALLEST_DISTANCE = 1e-5
 #: Fraction of a distance that must decay according to the multipliers: it sets the number of orbits.
-_TAKEN = 0.2
+_PREDICTED_PART = 0.2
 #: Most orbits for that.
 _MOST_ORBITS = 3000
 #: Fraction of the predicted decay that must be observed.
-_PART = 0.3
+_OBSERVED_PART = 0.3
 #: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
-_TURN = 16
+_COMPARED_ORBITS = 16
 #: Directions whose |μ| is below this, or below this part of the largest, have decayed after those orbits.
 _SLOW_DIRECTION = 0.3
 #: Length to which a departure is enlarged along the growing directions, relative to the motion.
-_ENLARGED_TO = 3e-3
+_ENLARGED_LENGTH = 3e-3
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period. The fixed-step map
 #: is known less well than the one of `granchain_core/orbits/stroboscopic_map.py`.
-_BACK = 1e-6
+_RETURN_DISTANCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,21 +91,21 @@ class NearbyOrbit:
         if not self.stable or self.away > NEAR_AN_ORBIT:
             return False
         rows = _slow_coordinates(self.point.derivative, max(_SLOW_DIRECTION, _SLOW_DIRECTION * self.modulus))
-        orbits = min(_MOST_ORBITS, int(_TAKEN / (1.0 - self.modulus)))
-        left = 1.0 - _PART * (1.0 - self.modulus ** (orbits + _TURN))
+        orbits = min(_MOST_ORBITS, int(_PREDICTED_PART / (1.0 - self.modulus)))
+        left = 1.0 - _OBSERVED_PART * (1.0 - self.modulus ** (orbits + _COMPARED_ORBITS))
         offset = self.x - self.point.x
         while True:
             before, after = self._lengths(rows, offset, orbits)
             if not after <= left * before:
                 return False
-            offset = offset * _CLOSER
-            if float(np.abs(offset / sizes(self.point.x)).max()) < _SMALLEST:
+            offset = offset * _DISTANCE_FACTOR
+            if float(np.abs(offset / sizes(self.point.x)).max()) < _SMALLEST_DISTANCE:
                 return True
 
     def _lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
         """Largest lengths of an offset from the orbit, now and after `orbits` orbits; infinite if the map fails."""
         try:
-            passed = self.stroboscopic_map.passed(self.point.x + offset, _TURN, orbits)
+            passed = self.stroboscopic_map.passed(self.point.x + offset, _COMPARED_ORBITS, orbits)
         except NumbersFailed:
             return 0.0, np.inf
         now, later = (float(_lengths(rows, states - self.point.x).max()) for states in passed)
@@ -123,7 +123,7 @@ class NearbyOrbit:
             parts = np.ones(len(parts), dtype=complex)
         leaving = np.real(right[:, grows] @ parts)
         length = float(np.abs(leaving / sizes(self.point.x)).max())
-        return None if length >= _ENLARGED_TO else self.point.x + leaving * (_ENLARGED_TO / length)
+        return None if length >= _ENLARGED_LENGTH else self.point.x + leaving * (_ENLARGED_LENGTH / length)
 
 
 def _slow_coordinates(matrix: np.ndarray, slowest: float) -> np.ndarray:
@@ -143,7 +143,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
     if found is None:
         return None
     parts = {n: FiniteDifferenceMap(scene, n, stop) for n in range(1, period) if period % n == 0}
-    for shorter in shorter_periods(lambda n: parts[n](found.x), found.x, period, _BACK):
+    for shorter in shorter_periods(lambda n: parts[n](found.x), found.x, period, _RETURN_DISTANCE):
         again = fixed_point(parts[shorter], found.x)
         if again is not None:
             return NearbyOrbit(parts[shorter], again, x, again.modulus)
@@ -161,7 +161,7 @@ def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) 
     moved = [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]
     if not moved or min(moved) > NEAR_AN_ORBIT:
         return
-    tried = {next(n for n, change in enumerate(moved, 1) if change <= _AS_SMALL * min(moved)),
+    tried = {next(n for n, change in enumerate(moved, 1) if change <= _CHANGE_FACTOR * min(moved)),
              1 + int(np.argmin(moved))}
     for n in sorted(tried):
         found = orbit_of(scene, n, x, stop)

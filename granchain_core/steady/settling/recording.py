@@ -18,7 +18,7 @@ from .outcome import Settled
 from .refine_orbit import refined_orbit
 
 #: Periods shown of a motion that is not periodic.
-_SHOWN = 4
+_PERIODS_SHOWN = 4
 
 
 def motion_so_far(motion: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
@@ -26,7 +26,7 @@ def motion_so_far(motion: Settling, samples: int, began: float, origin: str, fin
     engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
     state = motion.engine.state
     engine.start(state)
-    shown = motion.regime.period or _SHOWN
+    shown = motion.regime.period or _PERIODS_SHOWN
     record = engine.record(shown * samples)
     engine.counts.array += motion.engine.counts.array
     cost = Cost.of(time.perf_counter() - began, engine.counts, engine.setting.method)

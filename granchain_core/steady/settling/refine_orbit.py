@@ -19,7 +19,7 @@ LEAST_ACCURATE = 1e-4
 #: Smallest error of one period that is asked of a method: below it is rounding.
 _LEAST_ERROR = 1e-13
 #: The method is too coarse if a round leaves more than this part of the distance.
-_STALLED = 0.3
+_STALLED_PART = 0.3
 #: Most rounds; each has as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 
@@ -64,7 +64,7 @@ def refined_orbit(settling: Settling, accuracy: float, samples: int = 1) -> tupl
         if unproved is not None:  # the extrapolation did not lead nearer: back to where it began
             engine.start(unproved[0])
             unproved, bound = None, np.inf
-        elif bound > _STALLED * before and not setting.finest:
+        elif bound > _STALLED_PART * before and not setting.finest:
             # the changes are the method's own: it has to be finer before it can come nearer
             setting, state = setting.finer(), engine.state
             engine = Engine(scene, setting, samples, stop=settling.stop)

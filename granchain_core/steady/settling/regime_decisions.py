@@ -26,20 +26,20 @@ MOST_PERIODS = 4000
 EXPONENT_BLOCKS = 10
 #: Drive periods in a block.
 PERIODS_IN_BLOCK = 20
-#: Strobes on which a decision is based. A batch keeps a few more (`STROBES_KEPT` in kernels/batch/period_end.py).
+#: Strobes on which a decision is based. A batch keeps a few more (`STROBES_KEPT` in kernels/batch/record.py).
 REMEMBERED = 420
 #: Measurements of the Lyapunov exponent for a motion that is not followed any further.
 _MEASUREMENTS = 3
 #: How often such a measurement is made longer, at most.
-_CONTINUED = 2
+_MOST_EXTENSIONS = 2
 #: Beads up to which multipliers confirm every claim of `settled`; for longer chains only unconfirmed claims.
-_ALWAYS = 30
+_CONFIRMED_BEADS = 30
 #: A claim is unconfirmed if the decay per drive period is above this: a slowly unstable orbit may look like it.
 CLEAR_DECAY = 0.9
 #: Factor on the largest number of periods for a motion near an unstable orbit, since departures are slow too.
-_PATIENCE = 4
+_DEPARTURE_FACTOR = 4
 #: Largest |μ| of a settled motion, by differences at its own state, below which Newton's method is not needed.
-_CLEAR = 0.97
+_CLEAR_MULTIPLIER = 0.97
 #: How often the departure of a motion from an orbit is enlarged.
 _MOST_DEPARTURES = 6
 
@@ -71,7 +71,7 @@ class Decisions:
                 found = self._beside(orbit, regime)
                 if found is not None:
                     return found
-        if regime.periods_run >= MOST_PERIODS * (_PATIENCE if self._leaves else 1):
+        if regime.periods_run >= MOST_PERIODS * (_DEPARTURE_FACTOR if self._leaves else 1):
             return Decision(regime)
         if converging(strobes) or departing(strobes):
             return Decision()
@@ -88,10 +88,10 @@ class Decisions:
         """
         assert regime.period is not None
         unconfirmed = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
-        if (MOST_BEADS_WITH_MULTIPLIERS if unconfirmed else _ALWAYS) < self.scene.N:
+        if (MOST_BEADS_WITH_MULTIPLIERS if unconfirmed else _CONFIRMED_BEADS) < self.scene.N:
             return Decision(regime)
         seen = seen_modulus(self.scene, regime.period, scaled(engine), engine.stop, refine=4.0)
-        if seen <= _CLEAR and not _may_repeat_sooner(strobes, regime.period):
+        if seen <= _CLEAR_MULTIPLIER and not _may_repeat_sooner(strobes, regime.period):
             return Decision(replace(regime, multiplier=seen))
         orbit = orbit_of(self.scene, regime.period, scaled(engine), engine.stop)
         if orbit is None:
@@ -176,7 +176,7 @@ def _classified_by_exponent(engine: Engine, strobes: np.ndarray, regime: Regime)
     record, before = strobes, None
     for _ in range(_MEASUREMENTS):
         found = np.zeros(0)
-        for _ in range(_CONTINUED):
+        for _ in range(_MOST_EXTENSIONS):
             more, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
             record, found = np.concatenate([record, passed]), np.concatenate([found, more])
             if not undecided(found):

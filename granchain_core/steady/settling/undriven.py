@@ -17,7 +17,7 @@ from ..orbit_errors import errors_between
 from .outcome import Settled
 
 #: Finest steps: how many of them take the place of one default step.
-_MOST_REFINED = 64
+_FINEST_REFINEMENT = 64
 
 
 def undriven_motion(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
@@ -36,7 +36,7 @@ def undriven_motion(scene: Scene, start: State | None, samples: int, began: floa
         setting = setting.finer_than(coarse.scaled, samples)
         fine, rows = recorded(setting)
         change = relative_difference(rows.displacement, before.displacement)
-        if change <= scene.accuracy or setting.refine >= _MOST_REFINED:
+        if change <= scene.accuracy or setting.refine >= _FINEST_REFINEMENT:
             break
         coarse, before = fine, rows
     regime, cost = Regime.undriven(1), Cost.of(time.perf_counter() - began, total, setting.method)

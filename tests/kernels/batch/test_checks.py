@@ -38,7 +38,10 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
     assert moved == pytest.approx(checks._DISTURBANCE, rel=1e-9)
 
 
-@pytest.mark.parametrize(("rate", "stable"), [(0.8, True), (1.2, False)])
+@pytest.mark.parametrize(("rate", "stable"), [
+    (0.8, True), (1.2, False),
+    ((checks._PART_LEFT - 0.01) ** (1 / checks._TEST_ORBITS), True),
+    ((checks._PART_LEFT + 0.01) ** (1 / checks._TEST_ORBITS), False)])
 def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: bool) -> None:
     """Sixteen periods after a disturbance of 1e-4: smaller, and the chain is put back; larger, and it was no orbit.
 
@@ -49,7 +52,7 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
     state.testing[MEMBER], state.slowest[MEMBER], state.last_check[MEMBER, checks.CHECK_PERIOD] = 1, 0.9, 1.0
     state.scale[:] = 1e-12, 1e12
     state.before[MEMBER, :, 1:-1] = 1.0
-    assert checks.decayed.py_func(state, MEMBER) == stable
+    assert checks.judge_disturbance.py_func(state, MEMBER) == stable
     assert state.testing[MEMBER] == 0 and (state.slowest[MEMBER] > 0.0) == stable
     assert (state.y[1, MEMBER] == 1.0) == stable
     assert (state.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was no orbit has no period"

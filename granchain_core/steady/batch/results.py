@@ -35,11 +35,11 @@ from ..steady_state import SteadyState
 from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
 
 #: Periods after which a draft gives up.
-_DRAFT = 300
+_DRAFT_PERIODS = 300
 #: Decay per orbit above which an orbit found by extrapolation needs its multipliers.
 _SLOW_DECAY = 0.998
 #: Such an orbit is accepted if its largest |μ|, by one-sided differences, is below this.
-_SURE = 0.995
+_LARGEST_SURE_MULTIPLIER = 0.995
 
 
 class _JobsInBatch:
@@ -85,7 +85,8 @@ class _JobsInBatch:
         return Job(start.scene, self.latest, y, number=start.number)
 
     def _start(self, member: int, job: Job) -> None:
-        """The coarse run is checked once it may have settled, the finer one once the difference has decayed.
+        """Make a job a member. A coarse run is due after `EXAMINED_AFTER` periods at the latest, a finer one once the
+        difference has decayed.
 
         A job whose exponent is measured gets a shadow.
         """
@@ -94,8 +95,8 @@ class _JobsInBatch:
             put_with_shadow(self.batch, member, shadow, job.scaled, job.y, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
             return
         if job.coarse is None:
-            look = min(_DRAFT if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
-            self.batch.put(member, job.scaled, job.y, 1, look)
+            return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
+            self.batch.put(member, job.scaled, job.y, 1, return_at)
             return
         regime, maxima = job.coarse
         assert regime.period is not None
@@ -103,7 +104,7 @@ class _JobsInBatch:
         self.batch.put_fine(member, job.scaled, job.y, FINER, regime.period, contraction, maxima)
 
     def step(self) -> SteadyState | None:
-        """Run until a member is due for a check, and check it."""
+        """Run until a member is due; returns its result, or None where it goes on."""
         member, finite = self.batch.run()
         job = self.jobs[member]
         if not finite or (job.measuring and np.isnan(self.batch.growth(member)).any()):
@@ -219,4 +220,4 @@ def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
         return result
     y = scale_chain(scene).from_si(result.state).reshape(2, -1)
     largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
-    return result if largest < _SURE else replace(result, undecided=True)
+    return result if largest < _LARGEST_SURE_MULTIPLIER else replace(result, undecided=True)
