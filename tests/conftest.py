@@ -60,10 +60,10 @@ def _names_the_app(file: Path) -> bool:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """`-n auto`: two workers more than processors, because two test the dashboard and mostly wait for browser and
-    server.
+    """`-n auto`: four workers more than processors, because half of them test the dashboard and mostly wait for browser
+    and server.
     """
-    return (os.cpu_count() or 1) + 2
+    return (os.cpu_count() or 1) + 4
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
@@ -100,7 +100,7 @@ def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
     """The tests in the order in which `--dist worksteal` shares them out best.
 
     Each worker begins with an equal number of tests in a row, and who has ended takes the last half of the longest row.
-    So two rows begin with the browser's tests, for which a worker needs a server and a browser of its own, the others
+    So half of the rows begin with the browser's tests, for which a worker needs a server and a browser of its own, the others
     with tests that are marked `long`, and what is left at the end is short. The files of both are not divided: their
     tests share what a fixture made, and those of one page ask for the same curves, which a server computes once.
     """
@@ -111,9 +111,9 @@ def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
     number = 0
     for path in sorted(files, key=lambda path: not any(map(_is_long, files[path]))):  # others stay in their order
         if path.is_relative_to(HERE / "browser"):
-            min(rows[:2], key=lambda row: sum(_LONG_IS if _is_long(item) else 1 for item in row)).extend(files[path])
+            min(rows[: workers // 2], key=lambda row: sum(_LONG_IS if _is_long(item) else 1 for item in row)).extend(files[path])
         elif any(map(_is_long, files[path])):
-            rows[-1 - number % max(1, workers - 2)].extend(files[path])
+            rows[-1 - number % max(1, workers - workers // 2)].extend(files[path])
             number += 1
     begun = {item for row in rows for item in row}
     others = iter([item for item in items if item not in begun])
