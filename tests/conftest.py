@@ -100,9 +100,9 @@ def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
     """The tests in the order in which `--dist worksteal` shares them out best.
 
     Each worker begins with an equal number of tests in a row, and who has ended takes the last half of the longest row.
-    So half of the rows begin with the browser's tests, for which a worker needs a server and a browser of its own, the others
-    with tests that are marked `long`, and what is left at the end is short. The files of both are not divided: their
-    tests share what a fixture made, and those of one page ask for the same curves, which a server computes once.
+    So half of the rows begin with the browser's tests, for which a worker needs a server and a browser of its own, the
+    others with tests that are marked `long`, and what is left at the end is short. The files of both are not divided:
+    their tests share what a fixture made, and those of one page ask for the same curves, which a server computes once.
     """
     files: dict[Path, list[pytest.Item]] = {}
     for item in items:

@@ -14,7 +14,7 @@ from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE
 from ..scaling import ScaledChain
 from ..stop import Stop
-from .stepper import Start, empty_samples
+from .stepper import CallStart, empty_samples
 
 #: At least this many steps are made in a period, so that the driver is never stepped over.
 LEAST_STEPS_PER_PERIOD = 16
@@ -24,7 +24,7 @@ _FIRST_STEP = 0.01
 _LEAST_SCALE = 1e-3
 
 
-class Adaptive:
+class Dop853Stepper:
     """Dormand–Prince 8 in (u, w) at a relative tolerance per step."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
@@ -88,7 +88,7 @@ class Adaptive:
         """None: steps have no number in their period."""
         return None
 
-    def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
         """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
         row = self.scaled.bodies
         first = next((bead for bead in (first_not_finite(slope, row) for slope in self.work.k) if bead), 0)

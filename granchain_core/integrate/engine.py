@@ -18,7 +18,7 @@ from .counts import Counts
 from .failure import Failure
 from .flushed import flushed
 from .methods import METHODS, Setting
-from .stepper import Start, empty_samples
+from .stepper import CallStart, empty_samples
 
 #: Places for closings of a contact in one period; bounces beyond that are ever weaker.
 _MOST_CLOSINGS = 4
@@ -182,7 +182,7 @@ class Engine:
 
     # --- failures ------------------------------------------------------------------------------------------
 
-    def raise_for(self, status: int, done: float, before: Start | None = None) -> None:
+    def raise_for(self, status: int, done: float, before: CallStart | None = None) -> None:
         """Raise the error for a kernel's status, after `done` periods of a call from `before`, None if unknown.
 
         Raises `NumbersFailed`, `Cancelled`.
@@ -198,7 +198,7 @@ class Engine:
         bead = first_not_finite(self.y, stepper.scaled.bodies)
         if bead:
             raise self._failure(NOT_FINITE, 0.0, bead, stepper.step_at(self.grid_index)).error
-        self._before: Start = self.y.copy(), stepper.work.k[0].copy(), self.grid_index
+        self._before: CallStart = self.y.copy(), stepper.work.k[0].copy(), self.grid_index
 
     def _failure(self, status: int, done: float, bead: int, step: int | None) -> Failure:
         return Failure(status, self.elapsed + done, bead, step, self.counts.by_name, self.scaled.scene,

@@ -31,7 +31,7 @@ from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
 from ..stop import Stop
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
-from .stepper import Start, empty_samples
+from .stepper import CallStart, empty_samples
 
 #: Steps in a period up to which the driver's motion is tabulated.
 _LARGEST_TABLE = 200_000
@@ -141,7 +141,7 @@ class FixedStep:
         """Number of the step in its period that begins there."""
         return grid_index
 
-    def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
         """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it."""
         n, row = self.grid, self.scaled.bodies
         if start is None:

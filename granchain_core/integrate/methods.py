@@ -13,7 +13,7 @@ from ..errors import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
 from ..scaling import ScaledChain
-from .adaptive import Adaptive
+from .adaptive import Dop853Stepper
 from .fixed import FixedStep, FixedStepInVelocity
 from .regularised import Regularised
 from .stepper import Stepper
@@ -192,7 +192,7 @@ METHODS: dict[str, Method] = {
         Method(
             name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
             adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
-            reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Adaptive),
+            reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Dop853Stepper),
             cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
         Method(
             name="dop853-root", title="Dormand–Prince 8 in w, in the root of an overlap next to contact events",
@@ -228,7 +228,11 @@ def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
     if accuracy >= FIXED_STEP_IS_CHEAPER and not tension_cut:  # where tension is cut the fixed-step method has order 1
         return fixed_step_setting(max(_COARSEST_REFINEMENT, (_FIXED_STEP_ERROR / accuracy) ** 0.25))
-    return adaptive_setting(min(_LARGEST_TOLERANCE, _TOLERANCE_PER_ACCURACY * accuracy))
+    return adaptive_setting(_first_tolerance(accuracy))
+
+
+def _first_tolerance(accuracy: float) -> float:
+    return min(_LARGEST_TOLERANCE, _TOLERANCE_PER_ACCURACY * accuracy)
 
 
 def typical_error(setting: Setting) -> float:
@@ -260,7 +264,10 @@ def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.nd
 
 
 def setting_of(name: str, accuracy: float) -> Setting:
-    """The first setting of the method called `name` for `accuracy`; `BadInput` for a method that does not exist."""
+    """The first setting of the method called `name` for `accuracy`; `BadInput` for a method that does not exist.
+
+    A method with fixed steps begins with its default steps: of most of them no usual error is known.
+    """
     if name not in METHODS:
         raise unknown_name("method", name, METHODS)
-    return Setting(name, tolerance=_TOLERANCE_PER_ACCURACY * accuracy) if METHODS[name].adaptive else Setting(name)
+    return Setting(name, tolerance=_first_tolerance(accuracy)) if METHODS[name].adaptive else Setting(name)

@@ -16,12 +16,12 @@ from ..kernels.samples import Output, Samples
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
 from ..stop import Stop
-from .adaptive import Adaptive
+from .adaptive import Dop853Stepper
 from .fixed import short_chain_workspace
-from .stepper import Start, empty_samples
+from .stepper import CallStart, empty_samples
 
 
-class Regularised(Adaptive):
+class Regularised(Dop853Stepper):
     """Dormand–Prince 8 in (u, w) at a relative tolerance per step, in a transformed time next to contact events."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
@@ -40,12 +40,12 @@ class Regularised(Adaptive):
                                   Stretch(first, points, self.grid, every), samples, out)
         return status, rows
 
-    def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
         """The bead is found by dop853, whose stages can be told apart, on the call repeated from its start."""
         if start is None:
             return super().locate_failure(y, start, done)
         before, _, first = start
-        again, now = Adaptive(self.method.tolerance, self.scaled, self.grid), before.copy()
+        again, now = Dop853Stepper(self.method.tolerance, self.scaled, self.grid), before.copy()
         again.prepare(now)
         kept = empty_samples(self.scaled, round(self.grid * (done + 2.0)))
         again.samples(now, first, kept, Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag))

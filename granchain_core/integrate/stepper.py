@@ -12,7 +12,7 @@ from ..kernels.samples import Output, Samples
 from ..scaling import ScaledChain
 
 #: Where a call began: state and slope (M,), and the grid index.
-Start = tuple[np.ndarray, np.ndarray, int]
+CallStart = tuple[np.ndarray, np.ndarray, int]
 
 
 class Stepper(Protocol):
@@ -48,7 +48,7 @@ class Stepper(Protocol):
     def step_at(self, grid_index: int) -> int | None:
         """Number of the step in its period that begins there; None where steps are not counted."""
 
-    def locate_failure(self, y: np.ndarray, start: Start | None, done: float) -> tuple[int, int | None]:
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
         """Bead and step in which the numbers failed, after `done` periods of a call from `start`, if that is known."""
 
 

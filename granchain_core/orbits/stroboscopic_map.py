@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..integrate import Engine, adaptive_setting
-from ..integrate.adaptive import Adaptive
+from ..integrate.adaptive import Dop853Stepper
 from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.contact import Held
 from ..kernels.effects.dissipation import LinearDashpot
@@ -67,7 +67,7 @@ class StroboscopicMap:
     def move(self, scene: Scene, tolerance: float) -> None:
         """Become the map of another scene with as many beads, to the same bits as a new one at a third of the cost."""
         engine, scaled = self.engine, scale_like(self.engine.scaled, scene)
-        engine.stepper = Adaptive(tolerance, scaled, 1)
+        engine.stepper = Dop853Stepper(tolerance, scaled, 1)
         engine.stepper.pause = engine.stop.pause
         self._prepare(tolerance)
 
