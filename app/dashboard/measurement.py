@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import math
 import tempfile
 from dataclasses import replace
 from functools import partial
@@ -239,5 +240,5 @@ def _misfit(difference: Difference | None) -> dict[str, Any] | None:
     rows = [[f"{f:g} Hz", in_words(float(force), "N"), in_words(float(model), "N"),
              signed_in_words(float(gap), "N")]
             for f, force, model, gap in zip(measured.frequency, measured.force, difference.model, difference.residuals,
-                                            strict=True) if abs(gap) >= 0.0]
+                                            strict=True) if not math.isnan(gap)]
     return {"sentence": difference.sentence, "rows": rows[:_MOST_ROWS], "left": max(0, len(rows) - _MOST_ROWS)}
