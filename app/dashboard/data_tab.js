@@ -136,9 +136,9 @@ function misfitTable({ sentence, rows, left }) {
 }
 
 export function dataTab(model) {
-  const { understood, question, misfit, series } = model.state;
+  const { understood, question, misfit, series, endings } = model.state;
   const ariaLabel = "your measured curve or series";
-  const accept = ".csv,.tsv,.txt,.dat,.json,.tar,.h5,.hdf5,.nc,text/csv";
+  const accept = [...endings, "text/csv"].join();
   const file = element("input", { type: "file", accept, ariaLabel });
   file.addEventListener("change", async () => {
     await sendFile(model, file.files);

@@ -13,6 +13,7 @@ from bokeh.models import Range1d
 from panel.io import unlocked
 
 from granchain_core import Settled
+from granchain_core.experiment.formats import FORMATS
 
 from ..curve.bar import KINDS, CurveBar
 from ..curve.view import CurveFigure
@@ -58,7 +59,8 @@ class Views:
         self.curvebar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
             "largest_file": LARGEST_UPLOAD, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
-            "pages": watched_pages(), "regimes": KINDS})
+            "pages": watched_pages(), "regimes": KINDS,
+            "endings": [ending for one in FORMATS for ending in one.endings]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
         self.shown: Settled | None = None

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import base64
 import binascii
-import tempfile
+import math
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from granchain_core import BadInput, Run, Scene, Settled, settle
@@ -22,10 +21,9 @@ from granchain_core.experiment import (
     answers_of,
     read_data,
 )
-from granchain_core.experiment.labelled import read_labelled
+from granchain_core.experiment.formats import TEXT, format_of
 from granchain_core.experiment.reader import TABLE_KINDS
 from granchain_core.experiment.units import QUANTITIES, UNITS
-from granchain_core.hdf5 import SIGNATURE
 from granchain_core.scene import ASSETS
 from granchain_core.scene.driven import refuse_undriven
 
@@ -204,16 +202,13 @@ def _content(message: dict[str, Any]) -> bytes:
 def _found(content: bytes, answers: Answers, name: str) -> Measured | Series:
     """The curve or the series in a file. Raises `Unclear` and `BadInput`."""
     found: Measured | Series | Shaker
-    if content.startswith(SIGNATURE):
-        with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder) / "data.h5"
-            path.write_bytes(content)
-            found = read_labelled(path, answers, TABLE_KINDS, name)
-    else:
-        try:
-            found = read_data(content, answers, TABLE_KINDS, name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
-        except Unclear:  # asked again for a curve alone, which is what the page offers
-            found = read_data(content, answers, ("curve",), name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
+    try:
+        found = read_data(content, answers, TABLE_KINDS, name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
+    except Unclear:
+        if format_of(content) is not TEXT:
+            raise
+        # asked about again for a curve alone, so that the question speaks of nothing else
+        found = read_data(content, answers, ("curve",), name, LARGEST_UPLOAD, MOST_UPLOADED_POINTS)
     if isinstance(found, Shaker):
         raise BadInput(f"{name} is the shaker's amplitude, and the page draws curves of frequency and force, and "
                        "series of forces; use granchain curve --amplitude FILE.")
@@ -239,5 +234,5 @@ def _misfit(difference: Difference | None) -> dict[str, Any] | None:
     rows = [[f"{f:g} Hz", in_words(float(force), "N"), in_words(float(model), "N"),
              signed_in_words(float(gap), "N")]
             for f, force, model, gap in zip(measured.frequency, measured.force, difference.model, difference.residuals,
-                                            strict=True) if abs(gap) >= 0.0]
+                                            strict=True) if not math.isnan(gap)]
     return {"sentence": difference.sentence, "rows": rows[:_MOST_ROWS], "left": max(0, len(rows) - _MOST_ROWS)}

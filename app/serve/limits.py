@@ -1,4 +1,4 @@
-"""What a visitor may have at most; docs/security.md has the other limits.
+"""Limits that the command line reads too; docs/security.md has all.
 
 The module imports nothing, because the command line reads it before it loads the server.
 """

@@ -291,4 +291,4 @@ class LatestWins:
             if not self._closed:
                 self._fail(error)
         except Exception:
-            log.exception("a failure could not be told to its page")
+            log.exception("a failure could not be reported to its page")

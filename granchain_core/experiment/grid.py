@@ -46,10 +46,15 @@ class TextGrid:
     encoding: str
 
 
-def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | None = None) -> TextGrid:
-    """The fields of a text. Raises `BadInput`."""
+def check_size(content: bytes, most_bytes: int) -> None:
+    """Refuse a content that is too large; raises `BadInput`."""
     if len(content) > most_bytes:
         raise BadInput(f"The file has {len(content)} bytes; at most {most_bytes} are read.")
+
+
+def grid_of(content: bytes, most_bytes: int, most_rows: int, separator: str | None = None) -> TextGrid:
+    """The fields of a text. Raises `BadInput`."""
+    check_size(content, most_bytes)
     text, encoding = _decoded(content)
     lines = re.split(r"\r\n|\r|\n", text)
     mark = SEPARATORS.get(separator or "")

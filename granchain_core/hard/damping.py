@@ -60,7 +60,10 @@ def bounce(law: str, strength: float, cut: bool, speed: float = 1.0) -> float:
 
 
 def tsuji_strength(e: float) -> float:
-    """The coefficient with which Tsuji's law has restitution e at every speed."""
+    """The coefficient α with which Tsuji's law has restitution e at every speed: D = α √(m_eff K) δ_r^{1/4}.
+
+    It is an exact solution as long as tension is allowed (Antypov & Elliott 2011).
+    """
     loss = -np.log(e)
     return float(np.sqrt(5.0) * loss / np.hypot(np.pi, loss))
 

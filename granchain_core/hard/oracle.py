@@ -133,7 +133,8 @@ def restitution(law: str, strength: float, cut: bool) -> float:
     def over(s: float, state: np.ndarray) -> float:
         if s < 1e-3:
             return 1.0
-        # both laws' forces vanish with the overlap; divided by d^power the end of the force is a simple root
+        # the forces of Tsuji's and of Kuwabara and Kono's laws vanish with the overlap; divided by d^power the end of a
+        # force is a simple root
         d = max(state[0], 0.0)
         return float(d ** (1.5 - power) + strength * state[1]) if cut and state[1] < 0.0 else float(state[0])
 

@@ -58,7 +58,7 @@ class Computations:
     Two computations may agree by chance (docs/design.md, "Accuracy is measured, not trusted"). So the stated error is
     the largest of
       - the difference of the last two, times a factor;
-      - the previous difference, reduced by the method's order;
+      - the previous difference, reduced by the method's order, or with error control by the ratio of the tolerances;
       - the typical error of a method with such steps;
       - the rounding of the steps, times the largest growth of errors that any of the computations showed.
     The first quantity determines how errors grow.
@@ -105,7 +105,7 @@ class Computations:
             self._growth = max(self._growth, difference / typical)
 
     def _falls(self, coarser: Setting, finer: Setting) -> float:
-        """The factor by which the finer one's error is smaller by the method's order."""
+        """The expected ratio of the two errors: from the method's order, or with error control from the tolerances."""
         method = METHODS[finer.method]
         if method.adaptive:
             return coarser.tolerance / finer.tolerance

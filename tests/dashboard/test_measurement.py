@@ -19,6 +19,7 @@ from app.frames import samples_for
 from app.pictures.measured import measured_columns
 from granchain_core import CurvePoint, Scene, scene, settle
 from granchain_core.experiment import Measured, compared, read_data
+from granchain_core.experiment.formats import FORMATS
 from granchain_core.hdf5 import VERSIONS, seal
 from granchain_core.regime import Regime
 from granchain_core.result import ForceErrors
@@ -73,6 +74,10 @@ def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, t
     dashboard.received(sent((tmp_path / "a.h5").read_bytes()))
     dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("question")))
     assert dashboard.views.tabs.state["question"]["reason"].startswith("What 'F'")
+
+
+def test_files_are_offered_by_the_endings_of_all_formats(dashboard: Dashboard) -> None:
+    assert dashboard.views.tabs.state["endings"] == [ending for one in FORMATS for ending in one.endings]
 
 
 def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> None:

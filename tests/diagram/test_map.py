@@ -159,8 +159,8 @@ def test_a_killed_map_resumes_and_computes_nothing_again(tmp_path: Path, capsys:
     assert "holds another map" in capsys.readouterr().err
 
     assert main(words(out, "--resume")) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["cells"] == 400 and told["computed"] == 400 - there
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["cells"] == 400 and printed["computed"] == 400 - there
     assert not folder_of(out).exists()
     found = load_diagram(out)
     kept = before["regime"] >= 0

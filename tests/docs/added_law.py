@@ -36,7 +36,7 @@ def motion(f: float, setting: Setting) -> np.ndarray:
 
 @pytest.mark.parametrize(("method", "least", "most"), [("rk4-split", 3.3, 5.0), ("rk4", 2.0, 3.0)])
 def test_split_steps_keep_their_order_across_contact_events(method: str, least: float, most: float) -> None:
-    """3.5, because what Simpson's rule gives too much of G is known; steps across events have 2.5."""
+    """3.5, because the error of Simpson's rule in G is known and subtracted; steps across events have 2.5."""
     errors = []
     for f in (340.0, 615.0, 1130.0):
         true = motion(f, Setting("dop853", tolerance=1e-13))

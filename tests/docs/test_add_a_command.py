@@ -36,9 +36,9 @@ _LISTS = ("tests/cli/test_command_lists.py::test_the_readmes_table_has_every_com
 
 
 def test_the_tests_that_know_every_command_know_the_new_one(tree: Path) -> None:
-    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", *_LISTS,
-                  "tests/cli/test_json_keys.py::test_the_keys_are_those_of_the_page[beads]")
-    assert told.startswith("....") and "F" not in told
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", *_LISTS,
+                     "tests/cli/test_json_keys.py::test_the_keys_are_those_of_the_page[beads]")
+    assert printed.startswith("....") and "F" not in printed
 
 
 @pytest.mark.parametrize(("file", "words", "test"), [
@@ -48,7 +48,7 @@ def test_a_list_without_the_command_is_named(file: str, words: str, test: str, t
     right = (tree / file).read_text(encoding="utf-8")
     (tree / file).write_text(right.replace(words, words.replace("beads", "bonds")), encoding="utf-8")
     try:
-        told = follow(tree, "-c", f"import pytest; print(int(pytest.main(['-p', 'no:cacheprovider', {test!r}])))")
+        printed = follow(tree, "-c", f"import pytest; print(int(pytest.main(['-p', 'no:cacheprovider', {test!r}])))")
     finally:
         (tree / file).write_text(right, encoding="utf-8")
-    assert told.startswith("F") and told.endswith("1\n")
+    assert printed.startswith("F") and printed.endswith("1\n")

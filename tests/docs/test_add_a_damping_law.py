@@ -35,7 +35,7 @@ def test_the_new_law_is_right_in_every_kernel(tree: Path) -> None:
 
 def test_the_new_law_is_seen(tree: Path) -> None:
     """A choice of the knob on the page, a term of the equation, a name among the effects and in the kernel's name."""
-    told = follow(tree, "-c", """
+    printed = follow(tree, "-c", """
 from app.cli.explain import explanation
 from app.parts.knobs import knob_state
 from granchain_core import scene
@@ -45,7 +45,7 @@ print(one.effects[-1], one.equation_latex(), structure(one), sep="|")
 print([spec["choices"] for spec in knob_state(one)["specs"] if spec["name"] == "dissipation"])
 print(explanation(one, None, 96))
 """)
-    first, choices, *explained = told.splitlines()
+    first, choices, *explained = printed.splitlines()
     name, equation, kernels = first.split("|")
     assert name == "damping with δ^(3/4)" and r"D\,(\delta_j/\delta_r)_+^{3/4}\,\dot\delta_j" in equation
     assert kernels == "three-quarters, vector of 16" and "'three-quarters'" in choices
@@ -67,8 +67,8 @@ def test_what_the_law_forgets_is_named(tree: Path, path: str, right: str, wrong:
     assert text.count(right) == 1
     file.write_text(text.replace(right, wrong), encoding="utf-8")
     try:
-        with pytest.raises(AssertionError) as told:
+        with pytest.raises(AssertionError) as failed:
             follow(tree, "-c", "from granchain_core import run")
     finally:
         file.write_text(text, encoding="utf-8")
-    assert f"TypeError: {sentence}" in str(told.value)
+    assert f"TypeError: {sentence}" in str(failed.value)

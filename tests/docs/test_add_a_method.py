@@ -25,7 +25,7 @@ def test_the_page_edits_two_files_and_writes_one() -> None:
 
 def test_the_new_method_has_its_order_and_its_row(tree: Path) -> None:
     """Two halvings of the step against RK4 with 32 times the steps, with and without contact events."""
-    told = follow(tree, "-c", """
+    printed = follow(tree, "-c", """
 import numpy as np
 from granchain_core import scene
 from granchain_core.accuracy.compared_methods import compared_methods
@@ -39,6 +39,6 @@ for knobs in ({"F0": 5.0}, {}):
     print(np.log2(errors[0] / errors[2]) / 2.0)
 print(compared_methods()["heun"].title, method_for(1e-6).method, sep="|")
 """)
-    smooth, events, row = told.splitlines()
+    smooth, events, row = printed.splitlines()
     assert 1.8 < float(smooth) < 2.3 and 1.8 < float(events) < 2.6  # the limit is 2; over coarse steps a part of order 3 is left
     assert row == "Heun's method in w|rk4-split"  # it is there, and not chosen by itself

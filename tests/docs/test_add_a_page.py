@@ -29,7 +29,7 @@ def test_the_page_edits_four_files_and_writes_four() -> None:
 
 def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
     """A row makes an overlay, a tab, a call with every picture, and an answer to the page's own message."""
-    told = follow(tree, "-c", """
+    printed = follow(tree, "-c", """
 from types import SimpleNamespace
 from bokeh.document import Document
 from app.dashboard.controller import Controller
@@ -50,14 +50,14 @@ dashboard.views.put_into(document)
 print(dict(document.template_variables["overlays"])["transmission"], "transmission.js" in FILES)
 print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["title"] == "transmission"])
 """)
-    first, second, overlay, words = told.splitlines()
+    first, second, overlay, words = printed.splitlines()
     assert first == second == "25.0 % of the largest input force arrives at the wall."
     assert (overlay, words) == ("Transmission True", "['How much of the input force arrives.']")
 
 
 def test_the_new_page_computes_in_the_background_until_it_is_told_to_stop(tree: Path) -> None:
     """What takes long is done by a task: it ends with what it found, with a moved knob, and with the visitor."""
-    told = follow(tree, "-c", """
+    printed = follow(tree, "-c", """
 import sys
 sys.path.insert(0, "tests")
 from types import SimpleNamespace
@@ -80,7 +80,7 @@ host.leave()
 host.run_callbacks_until(lambda: not host.callbacks)
 print(shown["status"])
 """)
-    begun, found, stopped, left = told.splitlines()
+    begun, found, stopped, left = printed.splitlines()
     assert (begun, stopped, left) == ("True waiting for its turn …", "stopped False ''", "waiting")
     assert found.startswith("done The largest share arrives at ") and found.endswith(" Hz.")
 
@@ -90,6 +90,6 @@ def test_the_new_page_fits_into_the_dashboard(tree: Path) -> None:
     """Layers, private attributes, docstrings, the map of docs/design.md, the table of messages of docs/dashboard.md,
     and the pages that a story may open.
     """
-    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
-                  str(Path("tests", "dashboard")), "-k", "transmission or table or map or circle or message")
-    assert " passed" in told and "deselected" in told
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
+                     str(Path("tests", "dashboard")), "-k", "transmission or table or map or circle or message")
+    assert " passed" in printed and "deselected" in printed

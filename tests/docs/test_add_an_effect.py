@@ -58,16 +58,16 @@ def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, r
     for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
         copied(part, tree)
     follow(tree, "-m", "tools.gallery", "drag")
-    told = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/session/test_share.py", "tests/dashboard/test_scales.py::test_every_scene_has_a_scale",
-                  "tests/dashboard/test_gallery.py::test_every_scene_has_a_picture_and_a_question_and_there_are_no_others",
-                  "tests/dashboard/test_gallery.py::test_a_card_has_title_sentence_question_and_its_picture",
-                  "tests/docs/test_pages.py::test_every_scene_is_in_the_readme_and_every_knob_in_the_model")
-    assert " passed" in told and "failed" not in told
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/session/test_share.py", "tests/dashboard/test_scales.py::test_every_scene_has_a_scale",
+                     "tests/dashboard/test_gallery.py::test_every_scene_has_a_picture_and_a_question_and_there_are_no_others",
+                     "tests/dashboard/test_gallery.py::test_a_card_has_title_sentence_question_and_its_picture",
+                     "tests/docs/test_pages.py::test_every_scene_is_in_the_readme_and_every_knob_in_the_model")
+    assert " passed" in printed and "failed" not in printed
 
 
 def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
     """v̇ of every bead, of which Ḟ is made, against the velocities a moment later and earlier along the motion."""
-    told = follow(tree, "-c", """
+    printed = follow(tree, "-c", """
 import numpy as np
 from granchain_core import scene
 from granchain_core.integrate import Engine, fixed_step_setting
@@ -88,14 +88,14 @@ for sign in (1.0, -1.0):
 exact = (there[0] - there[1]) / (2.0 * h)
 print(np.abs(found - exact).max() / np.abs(exact).max())
 """)
-    assert float(told) < 1e-6  # h² of the difference, and 1e-16/h
+    assert float(printed) < 1e-6  # h² of the difference, and 1e-16/h
 
 
 def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
     """Unmarked, and marked for the kernels that step 2 names but dop853-root's: a motion without the drag would be
     wrong.
     """
-    told = follow(tree, "-c", """
+    printed = follow(tree, "-c", """
 from granchain_core import BadInput, run, scene
 from granchain_core.integrate.batch import can_share_batch
 from granchain_core.kernels.effects.drag import Drag
@@ -111,14 +111,14 @@ try:
 except TypeError as problem:
     print(problem)
 """).splitlines()
-    assert [line.split()[0] for line in told] == ["False", "True", "in_simd_kernels:"]
-    assert all("use dop853 for this one. It does not know: drag." in line for line in told[:2])
-    assert "name those with terms of the slot, of rk4, batch, regularised" in told[2]
+    assert [line.split()[0] for line in printed] == ["False", "True", "in_simd_kernels:"]
+    assert all("use dop853 for this one. It does not know: drag." in line for line in printed[:2])
+    assert "name those with terms of the slot, of rk4, batch, regularised" in printed[2]
 
 
 def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> None:
     """The scene names it, the equation shows it, a scene without it has no slot."""
-    told = follow(tree, "-c", """
+    printed = follow(tree, "-c", """
 from app.cli.explain import explanation
 from granchain_core import scene
 from granchain_core.scaling import scale_chain
@@ -129,7 +129,7 @@ from granchain_core.scene.cite import citations
 print(dict(citations(one))["ground drag"])
 print(explanation(one, None, 96))
 """)
-    first, absent, source, *explained = told.splitlines()
+    first, absent, source, *explained = printed.splitlines()
     assert "ground drag" in first.split("]")[0] and r"- c\,\dot u_i" in first
     assert "ground drag" not in first.rsplit("[", 1)[1] and absent == "None" and "Stokes" in source
     assert "ground drag (Drag)" in explained[0]
@@ -137,7 +137,7 @@ print(explanation(one, None, 96))
 
 def test_the_new_effect_has_a_switch_in_the_panel_a_slider_a_cost_and_axes(tree: Path) -> None:
     """Off and on again by its switch, with its own kernel each time; the knob is under "more", and can be followed."""
-    told = follow(tree, "-c", """
+    printed = follow(tree, "-c", """
 from app.session.session import Session
 from app.session.switches import SWITCHES, present, variants
 from app.parts.knobs import knob_state
@@ -153,7 +153,7 @@ for on in (False, True):
 print(scene("sec2").c, [one.scene.c for one in variants("drag", scene("sec2"))])
 print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name"] == "c"], "c" in KNOBS, "c" in CONTINUOUS)
 """).splitlines()
-    assert told == ["ground drag | True", "0.0 linear, vector of 16", "20.0 linear+drag, vector of 16", "0.0 [10.0, 0.0]",
+    assert printed == ["ground drag | True", "0.0 linear, vector of 16", "20.0 linear+drag, vector of 16", "0.0 [10.0, 0.0]",
                     "[True] True True"]
 
 
@@ -172,8 +172,8 @@ def test_what_the_effect_forgets_is_named(tree: Path, path: str, right: str, wro
     assert text.count(right) == 1
     file.write_text(text.replace(right, wrong), encoding="utf-8")
     try:
-        with pytest.raises(AssertionError) as told:
+        with pytest.raises(AssertionError) as failed:
             follow(tree, "-c", "from granchain_core import run")
     finally:
         file.write_text(text, encoding="utf-8")
-    assert f"TypeError: {sentence}" in str(told.value)
+    assert f"TypeError: {sentence}" in str(failed.value)

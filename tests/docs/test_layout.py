@@ -77,3 +77,10 @@ def test_the_set_up_has_its_commands():
 def test_pages_have_no_double_empty_lines(page: Path):
     empty = {number for number, line in lines_outside_fences(page) if not line}
     assert [number for number in sorted(empty) if number + 1 in empty] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_a_line_has_at_most_120_characters(page: Path) -> None:
+    """Except rows of tables and what stands in a fenced block."""
+    long = [number for number, line in lines_outside_fences(page) if len(line) > 120 and not line.lstrip().startswith("|")]
+    assert long == []

@@ -87,9 +87,9 @@ def test_a_measured_velocity_or_displacement_drives_the_chain(tmp_path: Path, ca
         path.write_text(f"time (s),{name} ({unit})\n" + "".join(f"{t:.12e},{x:.12e}\n" for t, x in zip(time, values, strict=True)), "utf-8")
         out = tmp_path / f"{name}.h5"
         assert main(["run", "sec2", "--set", "N=3", "--drive", str(path), "--json", "--out", str(out)]) == 0
-        told = json.loads(capsys.readouterr().out)
+        printed = json.loads(capsys.readouterr().out)
         # 222 samples a period: the trapezoid of the velocity is (2π/222)²/12 = 7e-5 too small
-        assert told["max_output_force_elastic"] == pytest.approx(exact, rel=5e-4) and name in told["drive"]
+        assert printed["max_output_force_elastic"] == pytest.approx(exact, rel=5e-4) and name in printed["drive"]
         with h5py.File(out) as file:
             assert file["driven/drive_displacement"].attrs["units"] == "m" and len(file["driven/time"]) >= 801
 

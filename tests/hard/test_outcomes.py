@@ -146,7 +146,7 @@ def test_no_convergence_with_its_history() -> None:
 
 
 def test_every_failure_has_a_known_name() -> None:
-    """Each status that is written in the source is in the list that scripts are told, and the list has no other."""
+    """Each status that is written in the source is in FAILURES, and FAILURES has no other."""
     written = {node.args[1].value for package in (granchain_core, app) for path in Path(package.__path__[0]).rglob("*.py")
                for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)
                and getattr(node.func, "id", "") == "NumbersFailed" and isinstance(node.args[1], ast.Constant)}

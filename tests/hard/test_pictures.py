@@ -117,7 +117,7 @@ def test_one_step_for_all_throws_the_light_bead_out() -> None:
 def test_the_free_observer_grows_by_its_multiplier_in_every_solver() -> None:
     free, founded, *naive = computed(drifting_picture).traces
     rate = np.log10(float(free.label.rpartition(" ")[2]))
-    assert np.allclose(np.diff(free.values)[1:], rate, atol=0.01)  # three digits are told
+    assert np.allclose(np.diff(free.values)[1:], rate, atol=0.01)  # the label has three digits
     assert founded.values.max() < -5.5
     for trace in naive:  # as long as they are small, and to the bend that their own errors make
         small = trace.values[np.isfinite(trace.values)]

@@ -18,7 +18,8 @@ from granchain_core.state import rest
 from granchain_core.steady.lyapunov import exponents
 from granchain_core.stop import Stop
 
-METHODS = [("rk4", 2e-6), ("rk4-split", 2e-6), ("dop853", 1e-9)]
+#: Methods of three kinds, and the error of each with the setting of `engine`.
+TOLERATED = [("rk4", 2e-6), ("rk4-split", 2e-6), ("dop853", 1e-9)]
 
 
 def engine(method: str, samples: int = 8, **knobs) -> Engine:
@@ -26,7 +27,7 @@ def engine(method: str, samples: int = 8, **knobs) -> Engine:
     return Engine(scene("sec2").evolve(**knobs), Setting(method, refine=4, tolerance=1e-11), samples)
 
 
-@pytest.mark.parametrize(("method", "_"), METHODS)
+@pytest.mark.parametrize(("method", "_"), TOLERATED)
 def test_two_halves_are_the_whole_bit_by_bit(method, _):
     """An engine that records twice does what one that records once does, and nothing else."""
     whole, halves = engine(method), engine(method)
@@ -41,7 +42,7 @@ def test_two_halves_are_the_whole_bit_by_bit(method, _):
         np.testing.assert_array_equal(np.vstack([first.force, second.force[1:]]), together.force)
 
 
-@pytest.mark.parametrize(("method", "error"), METHODS)
+@pytest.mark.parametrize(("method", "error"), TOLERATED)
 @pytest.mark.parametrize("rows", [16, 13])
 def test_a_new_engine_started_from_a_state_goes_on_the_same_way(method, error, rows):
     """State out, state in, at phase 0 and in the middle of a period: the same motion, to the method's own error."""

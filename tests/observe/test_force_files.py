@@ -139,13 +139,13 @@ def test_a_run_written_by_granchain_is_observed_and_comes_round(tmp_path: Path, 
     save(run(CHAIN, periods=60, record=2, samples=1000), known)
     words = ["observe", "fig11-founded", "--set", "f=340", "--start", "input", "--json"]
     assert cli.main([*words, "--input", str(known), "--out", str(seen)]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["status"] == "done" and told["residual"]["relative"] < 0.01
-    assert told["error_estimate"] == pytest.approx(told["integration_error"] + told["interpolation_error"])
-    assert "given force" in told["effects"] and "driver" not in told["effects"]
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["status"] == "done" and printed["residual"]["relative"] < 0.01
+    assert printed["error_estimate"] == pytest.approx(printed["integration_error"] + printed["interpolation_error"])
+    assert "given force" in printed["effects"] and "driver" not in printed["effects"]
     assert cli.main([*words, "--input", str(seen)]) == 0
     again = json.loads(capsys.readouterr().out)
-    assert again["max_output_force"] == told["max_output_force"]
+    assert again["max_output_force"] == printed["max_output_force"]
     assert again["residual"]["relative"] < 1e-12
     with h5py.File(seen) as file:
         assert file["observation/displacement"].attrs["units"] == "m"

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from granchain_core import scene
 from granchain_core.hard.chains import Bench
 from granchain_core.kernels.effects.dissipation import LinearDashpot, Tsuji
+from granchain_core.scaling import scale_chain
 
 pytestmark = pytest.mark.quick
 
@@ -45,6 +47,18 @@ def test_tsuji_restitution_is_exact_and_independent_of_speed(speed, restitution)
     alpha = np.sqrt(5.0) * loss / np.hypot(np.pi, loss)
     _, _, found = impact(Tsuji(alpha), speed)
     assert found == pytest.approx(restitution, rel=1e-9)  # exact formula; 1e4 times the tolerance per step
+
+
+@pytest.mark.parametrize("wall", ["bead", "rigid"])
+def test_the_damping_coefficient_of_the_page_gives_the_restitution(wall):
+    """docs/model.md: D = α √(m_eff K) δ_r^{1/4} in SI, here at the wall, where m_eff is the bead's mass."""
+    loss = -np.log(0.6)
+    shown = scene("rig").evolve(A0=3e-6, dissipation="tsuji", wall=wall)  # A0 is not the reference overlap
+    stiffness = shown.contact_stiffness()[-1]
+    alpha = np.sqrt(5.0) * loss / np.hypot(np.pi, loss)
+    damping = alpha * np.sqrt(shown.bead(1).mass * stiffness) * shown.reference_overlap**0.25
+    slot = scale_chain(shown.evolve(D=damping)).slots.dissipation
+    assert impact(slot, 1.0, stiffness / shown.K)[2] == pytest.approx(0.6, rel=1e-9)  # as above
 
 
 def test_linear_dashpot_restitution_depends_on_one_number_to_first_order():

@@ -83,8 +83,8 @@ def test_it_is_saved_with_the_curve(tmp_path: Path) -> None:
 def test_the_command_line_takes_it_and_goes_on_with_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["curve", "sec2", "--set", "N=2", "--from", "1800", "--to", "2000", "--points", "3", "--json", "--out", str(tmp_path / "a.h5")]
     assert main([*words, "--amplitude", "constant-velocity=6e-3"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["drive_amplitude"] == pytest.approx([6e-3 / (2 * np.pi * f) for f in told["frequency"]])
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["drive_amplitude"] == pytest.approx([6e-3 / (2 * np.pi * f) for f in printed["frequency"]])
     assert main([*words, "--amplitude", "constant-velocity=6e-3", "--resume"]) == 0
     assert "finished already" in capsys.readouterr().err
     assert main([*words, "--amplitude", "constant-velocity=7e-3", "--resume"]) == 2

@@ -71,7 +71,6 @@ def test_after_a_failure_that_cannot_be_reported_the_next_picture_comes() -> Non
 
     jobs = LatestWins(lambda _: came.set(), fail)
     jobs.submit(broken)  # type: ignore[arg-type]
-    while jobs.busy:
-        pass
+    waiting.until(lambda: not jobs.busy)
     jobs.submit(lambda _: iter([1]))
     assert came.wait(20)

@@ -43,10 +43,10 @@ def run_again(program: str, tmp_path: Path) -> str:
 
 
 def test_the_script_finds_what_the_page_showed_to_the_last_digit(screen: Screen, tmp_path: Path) -> None:
-    told = run_again(script(screen) + "\nprint(repr(run.max_output_force))\n", tmp_path)
-    assert told.count("as on the page") == 3 and "but the page" not in told
-    assert repr(screen.run.max_output_force) in told  # not only to the digits shown
-    assert "3 points, largest difference from the page 0.0e+00" in told
+    printed = run_again(script(screen) + "\nprint(repr(run.max_output_force))\n", tmp_path)
+    assert printed.count("as on the page") == 3 and "but the page" not in printed
+    assert repr(screen.run.max_output_force) in printed  # not only to the digits shown
+    assert "3 points, largest difference from the page 0.0e+00" in printed
     # the start matters: from rest there is another motion
     assert settle(SHOWN).run.regime.period != screen.run.regime.period
 
@@ -63,8 +63,8 @@ def test_the_notebook_runs_and_finds_the_same(screen: Screen, tmp_path: Path) ->
     assert len({cell["id"] for cell in content["cells"]}) == len(content["cells"])
     code = ["".join(cell["source"]) for cell in content["cells"] if cell["cell_type"] == "code"]
     shown = re.sub(r"^output_notebook.*$", "drawn = []\nshow = drawn.append", "\n\n".join(code), flags=re.MULTILINE)
-    told = run_again(shown + "\nprint(len(drawn), 'pictures')\n", tmp_path)
-    assert told.count("as on the page") == 3 and "2 pictures" in told
+    printed = run_again(shown + "\nprint(len(drawn), 'pictures')\n", tmp_path)
+    assert printed.count("as on the page") == 3 and "2 pictures" in printed
 
 
 def test_the_curve_can_be_read_again(screen: Screen) -> None:

@@ -38,7 +38,7 @@ def test_the_shortest_period_is_told() -> None:
 
 
 def test_changes_lost_in_rounding_leave_a_distance() -> None:
-    """A decay by 0.97 that went below a rounding of 1e-7: what is left to go may be 1e-7·0.97/0.03, and is told."""
+    """A decay by 0.97 that went below a rounding of 1e-7: the distance left may be 1e-7·0.97/0.03, and is stated."""
     states = 1.0 + 0.97 ** np.arange(600)[:, None, None] * np.ones((1, 2, 3))
     found = regime_criteria.find_period(states, rounding=1e-7)
     assert found.name == "periodic" and found.decay == pytest.approx(0.97, abs=0.01)

@@ -146,8 +146,10 @@ def test_the_command_writes_a_file_that_every_reader_takes(tmp_path: Path, capsy
     assert main([*words, "--out", str(out)]) == 0 and "virtual experiment" in capsys.readouterr().out
     assert main(["fit", "sec2", "--set", "N=3", "--set", "f=1000", "--data", str(out), "--error", "0.005", "--free", "D=60:160",
                  "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert told["parameters"][0]["low"] < 100.0 < told["parameters"][0]["high"] or told["verdict"] == "cannot"
+    printed = json.loads(capsys.readouterr().out)
+    # the sensors round the jumps of the force, which no D of the model does: χ² is 2.9 per degree of freedom, and D is
+    # found to 0.14 %
+    assert printed["verdict"] == "cannot" and printed["parameters"][0]["best"] == pytest.approx(100.0, rel=0.01)
     assert main(["virtual", "sec2", "--set", "N=2", "--kind", "curve", "--from", "1800", "--to", "2000", "--points", "2"]) == 0
     assert capsys.readouterr().out.count("\n") == 3 + 1 + 6
     for bad, sentence in ((["--kind", "picture"], "neither series nor curve"), (["--kind", "curve"], "--from and --to"),

@@ -1,0 +1,147 @@
+"""The formats of measured data: how a file is recognised, and what reads it. docs/data.md has the same table."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import BadInput
+from ..hdf5 import SIGNATURE
+from .columns import NO_CONVENTION, Asked, Convention, answered, in_si
+from .digitizer import datasets_in, is_project, is_two_headed
+from .grid import Row, check_size, grid_of
+from .labelled import read_labelled
+from .measured import MOST_BYTES, MOST_ROWS, Measured
+from .question import Answers, Guess, Question, Unclear, first_rows
+from .series import Series, Shaker
+from .text_table import decimal_of, number_of, read_text_table
+
+
+@dataclass(frozen=True)
+class Reading:
+    """How a file is to be read.
+
+    Attributes
+    ----------
+    answers : Answers
+        What a person has said of the file.
+    wanted : sequence of str
+        The kinds of measurement that the reader can use.
+    source : str
+        What the file is called.
+    most_bytes, most_rows : int
+        The largest content and the most lines that are read.
+    convention : Convention
+        What the reader takes for granted.
+    path : Path or None
+        Where the file is. Then the content that stands beside this may be only its beginning.
+    """
+
+    answers: Answers
+    wanted: Sequence[str]
+    source: str = ""
+    most_bytes: int = MOST_BYTES
+    most_rows: int = MOST_ROWS
+    convention: Convention = NO_CONVENTION
+    path: Path | None = None
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format of measured data.
+
+    Attributes
+    ----------
+    name : str
+        As in the table of docs/data.md.
+    endings : tuple of str
+        How the names of such files end; the dashboard offers them. A file is recognised by its content alone.
+    recognises : callable
+        Whether a content (bytes) has this format.
+    read : callable
+        The measurement in a content, read as a `Reading` says. Raises `Unclear` and `BadInput`.
+    """
+
+    name: str
+    endings: tuple[str, ...]
+    recognises: Callable[[bytes], bool]
+    read: Callable[[bytes, Reading], Series | Shaker | Measured]
+
+
+def format_of(content: bytes) -> Format:
+    """The format of a file with this content: the first of the table that recognises it."""
+    return next(one for one in FORMATS if one.recognises(content))
+
+
+def _read_labelled(content: bytes, reading: Reading) -> Series | Shaker | Measured:
+    if reading.path is not None:
+        return read_labelled(reading.path, reading.answers, reading.wanted, reading.source)
+    check_size(content, reading.most_bytes)
+    with tempfile.TemporaryDirectory() as folder:  # HDF5 opens only files
+        path = Path(folder) / "data.h5"
+        path.write_bytes(content)
+        return read_labelled(path, reading.answers, reading.wanted, reading.source)
+
+
+def _read_project(content: bytes, reading: Reading) -> Series | Shaker | Measured:
+    check_size(content, reading.most_bytes)
+    return _digitised(datasets_in(content), reading, "a WebPlotDigitizer project")
+
+
+def _read_text(content: bytes, reading: Reading) -> Series | Shaker | Measured:
+    grid = grid_of(content, reading.most_bytes, reading.most_rows, reading.answers.separator)
+    if is_two_headed(grid.rows):
+        decimal = decimal_of([(n, f) for n, fields in grid.rows[2:] for f in fields if f], reading.answers)
+        return _digitised(_pairs(grid.rows, decimal), reading, "a table of WebPlotDigitizer")
+    return read_text_table(grid, reading.answers, reading.wanted, reading.source, reading.convention)
+
+
+#: Text comes last, since it refuses what no format recognises and says what that is.
+TEXT = Format("table in text", (".csv", ".tsv", ".txt", ".dat"), lambda content: True, _read_text)
+FORMATS = (
+    Format("HDF5 or netCDF-4", (".h5", ".hdf5", ".nc"), lambda content: content.startswith(SIGNATURE), _read_labelled),
+    Format("project of WebPlotDigitizer", (".json", ".tar"), is_project, _read_project),
+    TEXT,
+)
+
+
+def _digitised(datasets: dict[str, list[tuple[float, float]]], reading: Reading,
+               what: str) -> Series | Shaker | Measured:
+    """One dataset of x and y, whose quantities and units a digitiser does not know."""
+    answers, names = reading.answers, tuple(datasets)
+    name = answers.dataset or (names[0] if len(names) == 1 else "")
+    rows = [(i, (f"{x:.9g}", f"{y:.9g}")) for i, (x, y) in enumerate(datasets.get(name, datasets[names[0]]), 1)]
+    guesses = (Guess(1, "x", "frequency", "Hz"), Guess(2, "y", "force", "N"))
+    about = (*(("dataset",) if len(names) > 1 else ()), "columns")
+    if name not in datasets:
+        known = ", ".join(map(repr, names))
+        raise Unclear(Question(f"This is {what} with {len(names)} datasets: {known[:200]}.", about, guesses,
+                               first_rows(rows), names))
+    if not answers.columns:
+        raise Unclear(Question(f"This is {what}, which does not say what x and y are.", about, guesses,
+                               first_rows(rows), names))
+    asked = Asked(guesses, first_rows(rows), True)
+    chosen = answered(asked, answers)
+    points = np.array(datasets[name])
+    values = {quantity: np.array([points[:, place] for place, _ in places]) for quantity, places in chosen.items()}
+    return in_si(values, chosen, asked, range(1, len(points) + 1), f"dataset {name[:40]!r} of {what}", reading.wanted,
+                 answers.source or reading.source, answers.note, True)
+
+
+def _pairs(rows: list[Row], decimal: str) -> dict[str, list[tuple[float, float]]]:
+    """The datasets of a table with a row of names over pairs of X and Y; columns may end early."""
+    found: dict[str, list[tuple[float, float]]] = {}
+    names = rows[0][1]
+    for place in range(0, len(rows[1][1]) - 1, 2):
+        name = (names[place] if place < len(names) else "") or f"dataset {place // 2 + 1}"
+        pairs = [(line, fields[place : place + 2]) for line, fields in rows[2:] if any(fields[place : place + 2])]
+        if pairs:
+            found[name] = [(number_of(line, pair[0], decimal), number_of(line, "".join(pair[1:]), decimal))
+                           for line, pair in pairs]
+    if not found:
+        raise BadInput(f"Line {rows[1][0]}: there is no number below the names of the datasets.")
+    return found
