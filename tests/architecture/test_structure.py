@@ -78,3 +78,11 @@ def test_kernels_take_few_arguments() -> None:
 
 def _dotted(path: Path) -> str:
     return ".".join(path.relative_to(ROOT).with_suffix("").parts)
+
+
+def test_the_folders_of_quick_tests_are_there() -> None:
+    """A folder of another name would drop out of the inner loop silently."""
+    tests = ROOT / "tests"
+    (quick,) = (ast.literal_eval(statement.value) for statement in parsed(tests / "conftest.py").body
+                if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "QUICK")
+    assert [folder for folder in quick if not (tests / folder).is_dir()] == []
