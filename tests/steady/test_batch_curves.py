@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.kernels.batch import checks
-from granchain_core.steady.batch import jobs
+from granchain_core.steady.batch import results as batch_module
 from granchain_core.steady.curve.resonance_curve import draft_curve, resonance_curve
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.steady_state import SteadyState
@@ -20,7 +20,7 @@ FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620
 def results(frequencies: list[float]) -> dict[float, SteadyState]:
     """What batches find at these frequencies of section 2."""
     scenes = (scene("sec2").evolve(f=f) for f in frequencies)
-    return {found.scene.f: found for found in jobs.batch_results(scenes, Stop())}
+    return {found.scene.f: found for found in batch_module.batch_results(scenes, Stop())}
 
 
 def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
@@ -40,8 +40,8 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
 
 def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 1640 Hz from rest: one measurement of a zero exponent is not enough, as for a chain by itself."""
-    real, measured = jobs.put_with_shadow, []
-    monkeypatch.setattr(jobs, "put_with_shadow", lambda *words: measured.append(True) or real(*words))
+    real, measured = batch_module.put_with_shadow, []
+    monkeypatch.setattr(batch_module, "put_with_shadow", lambda *words: measured.append(True) or real(*words))
     found = results([1640.0])[1640.0]
     assert (found.regime.name, found.undecided, len(measured)) == ("quasi-periodic", False, 2)
 
