@@ -60,10 +60,10 @@ def _names_the_app(file: Path) -> bool:
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """`-n auto`: four workers more than processors, because half of them test the dashboard and mostly wait for browser
-    and server.
+    """`-n auto`: two workers more than processors, because some of them wait for browser and server. Two more than that
+    gain nothing: all processors are busy then.
     """
-    return (os.cpu_count() or 1) + 4
+    return (os.cpu_count() or 1) + 2
 
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
