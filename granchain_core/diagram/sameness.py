@@ -1,10 +1,12 @@
 """Comparing results: whether two of them are the same steady state.
 
 Periodic results are the same if all their stroboscopic states agree for some shift by whole periods, so that the n
-copies of a period-n orbit count once; first within the errors stated for them, then, when each has been brought onto
-its orbit by Newton's method, within the error of that. Motions that are not periodic are the same if their sections
-lie in each other: the median distance of the states of one to the nearest of the other is no larger than
-`_SECTION_FACTOR` times that within each.
+copies of a period-n orbit count once: first within the errors stated for them, at most `_LARGEST_DIFFERENCE` each. Then
+the first of each group is brought onto its orbit by Newton's method, and groups whose orbits agree within the sum of
+their `_ORBIT_DIFFERENCE`/(1 − |μ|), with 1 − |μ| at least 1e-3, are joined. A group is not divided again.
+
+Motions that are not periodic are the same if their sections lie in each other: the median distance of the states of one
+to the nearest of the other is no larger than `_SECTION_FACTOR` times that within each.
 """
 
 from __future__ import annotations
@@ -22,6 +24,9 @@ from ..scene import Scene
 from ..state import State
 from ..steady.steady_state import SteadyState
 
+#: Largest difference of states that is explained by one stated error. It is the error of the output force, which stands
+#: in for that of the states and is infinite where the force is zero.
+_LARGEST_DIFFERENCE = 1e-3
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are the same.
 _ORBIT_DIFFERENCE = 1e-7
 #: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
@@ -46,7 +51,7 @@ class Found:
         """How far its section may be from the true one, relative to the largest displacement or w."""
         if self.orbit is not None:
             return _ORBIT_DIFFERENCE / max(1e-3, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
-        return self.result.error_estimate or 0.0
+        return min(_LARGEST_DIFFERENCE, self.result.error_estimate or 0.0)
 
     @property
     def unstable(self) -> bool:

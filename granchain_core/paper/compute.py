@@ -1,4 +1,4 @@
-"""`compute`: the result of a figure of the paper, from the presets.
+"""The results behind the figures of the paper, from the presets: one function for each kind of figure.
 
 Each function takes a user's data, a stop flag, and a function that is called with the fraction done.
 """

@@ -79,18 +79,14 @@ _TABLE = (
                 lambda *_: by.rig("rig")),
     PaperFigure("9", "Model and measurement: largest transmitted force, and force trains at 60 Hz",
                 "(a) " + _FEATURES + "Model (3) needs the measured input force at every frequency; in its place model "
-                                     "(5) at four constant amplitudes from rest and, ringed, the presets of figure 12 "
-                                     "at the frequencies that the paper names. (b) Model (3) fed with a measured input "
-                                     "force or, without one, with that of model (5). "
-                + _IMAGES,
+                "(5) at four constant amplitudes from rest and, ringed, the presets of figure 12 at the frequencies "
+                "that the paper names. (b) Model (3) fed with a measured input force or, without one, with that of "
+                "model (5). " + _IMAGES,
                 lambda given, stop, progress: by.response(given, True, stop, progress), ("curve", "series"), (60.0,)),
     PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
-                "Model (3) from rest, fed with "
-                "a measured input force or, "
-                "without one, with that of "
-                "model (5), and shown after 60 "
-                "periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable and does not find "
-                                                     "the chain's motion. " + _IMAGES,
+                "Model (3) from rest, fed with a measured input force or, without one, with that of model (5), and "
+                "shown after 60 periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable and does not find the "
+                "chain's motion. " + _IMAGES,
                 lambda given, stop, progress: by.trains((90.0, 100.0), given, True, stop, progress), ("series",),
                 (90.0, 100.0)),
     PaperFigure("11", "Stability of model (4): multipliers, and the first beads of both chains",
@@ -98,13 +94,9 @@ _TABLE = (
                 "observer, which starts 0.001 A0 beside it. The text does not name the drive frequency; here 100 Hz.",
                 lambda _, stop, __: by.observers(stop)),
     PaperFigure("12", "Model (5) at 60, 90 and 100 Hz",
-                "Top the shaker's "
-                "velocity with the "
-                "contact of driver and "
-                "bead 1 (green: they "
-                "touch), then input and "
-                "output force. " + _AMPLITUDES + "Dotted at 100 Hz: a shaker with 6.5 µm, which has the same "
-                                                 "velocity amplitude. " + _IMAGES,
+                "Top the shaker's velocity with the contact of driver and bead 1 (green: they touch), then input and "
+                "output force. " + _AMPLITUDES +
+                "Dotted at 100 Hz: a shaker with 6.5 µm, which has the same velocity amplitude. " + _IMAGES,
                 lambda given, stop, progress: by.trains((60.0, 90.0, 100.0), given, False, stop, progress), ("series",),
                 (60.0, 90.0, 100.0)),
 )

@@ -20,7 +20,8 @@ from .axis import KnobAxis
 from .newton import ROUGH, Near, Newton
 from .quick import QuickMap, quick_steps
 
-#: Difference in p: between the curvature of the map and the noise of its steps (docs/branches.md, Equations).
+#: One-sided difference ε in p of the exact map. Its error by curvature is ε P_pp/2, that by the noise of the steps
+#: 1e-12/ε.
 _DIFFERENCE = 1e-6
 #: Half of the central difference in p of the quick map.
 _QUICK_DIFFERENCE = 1e-5
