@@ -18,7 +18,8 @@ def address_of(kernel: Any, *arguments: Any) -> int:
     if signature not in kernel.overloads:
         kernel.compile(signature)
     version = kernel.overloads[signature]
-    return int(version.library.get_pointer_to_function(version.fndesc.llvm_func_name))
+    return int(version.  # what Numba calls a library is the code of this one version
+               library.get_pointer_to_function(version.fndesc.llvm_func_name))
 
 
 @intrinsic
