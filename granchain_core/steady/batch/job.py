@@ -17,6 +17,7 @@ from ...scaling import ScaledChain
 from ...scene import Scene
 from ...state import State, rest
 from ...stop import Stop
+from ..exponent_measurements import ExponentMeasurements
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
 from ..regime_criteria import SLOW_RECORD, converging
 from ..settling.advance import MOST_SETTLING_STEPS
@@ -45,8 +46,7 @@ class Job:
     """A scene that is being settled, from the scaled state y at phase 0, `run` periods after its start.
 
     `coarse` holds regime and forces of the coarse run while the finer one runs. A job whose Lyapunov exponent is
-    measured (`measuring`) carries its record, its forces [N], a first measurement of the exponent, and the blocks (B,)
-    of one that is not finished.
+    measured (`measuring`) carries its record, its forces [N] and the measurements so far.
     """
 
     scene: Scene
@@ -57,8 +57,7 @@ class Job:
     measuring: bool = False
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     maxima: np.ndarray = field(default_factory=lambda: np.zeros(3))
-    measured: Regime | None = None
-    blocks: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    measurements: ExponentMeasurements = field(default_factory=ExponentMeasurements)
     number: int = 0
 
     @functools.cached_property

@@ -5,9 +5,9 @@ Every scene becomes a member of a batch, with coarse steps. Once its regime is d
 Coarse run: `check_coarse` (kernels/batch/checks.py) bounds the distance to the orbit; an orbit that was reached by
 extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run, a third of the step:
 `check_fine`, until that bound is small or six extrapolations are spent; what is left goes into the stated error, with
-the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents, measured twice
-beside a neighbouring trajectory in another lane. What is then not decided is marked `undecided` and settled alone
-(settling/single_chain.py).
+the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents
+(steady/exponent_measurements.py), measured beside a neighbouring trajectory in another lane. What is then not decided
+is marked `undecided` and settled alone (settling/single_chain.py).
 """
 
 from __future__ import annotations
@@ -21,14 +21,13 @@ import numpy as np
 
 from ...integrate.batch import Batch
 from ...kernels.width import BATCH_SIZE
-from ...regime import Regime
 from ...scaling import scale_chain, scale_like
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
 from ..lyapunov import exponents_of, put_with_shadow
-from ..regime_criteria import agree, clearly_chaotic, find_period, regime_from_exponents, undecided
+from ..regime_criteria import find_period
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK, REMEMBERED
 from ..steady_state import SteadyState
@@ -139,11 +138,10 @@ class _JobsInBatch:
         self.left.update(lanes)
 
     def _decide(self, job: Job, member: int) -> SteadyState | None:
-        """Classify a job by its Lyapunov exponents; one whose neighbours come closer runs on."""
+        """The result of a job whose Lyapunov exponents were measured, or None where it goes on."""
         seen = exponents_of(self.batch, member, PERIODS_IN_BLOCK)
-        growth = np.concatenate([job.blocks, seen.exponents])
         job.run += len(seen.strobes)
-        job.y, job.measuring, job.blocks = seen.y, False, np.zeros(0)
+        job.y, job.measuring = seen.y, False
         regime = replace(find_period(seen.strobes), periods_run=job.run)
         if regime.period is not None:
             job.coarse = (regime, seen.maxima[-regime.period :].max(axis=0))
@@ -151,37 +149,33 @@ class _JobsInBatch:
             return None
         job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as a chain settled alone is judged
         goes_on = job.run < MOST_PERIODS and job.affordable
-        if undecided(growth) and goes_on:
-            job.blocks = growth
-            self._measure(job)
+        first = job.measurements.latest is None
+        decided = job.measurements.add(seen.exponents, job.record, job.run, last=not goes_on)
+        if decided is None and self._followed(job, first, goes_on):
             return None
-        regime, before = regime_from_exponents(growth, job.record, job.run), job.measured
-        if before is None and regime.name != "unsettled" and not clearly_chaotic(growth):
-            job.measured = regime
+        latest = job.measurements.latest
+        assert latest is not None
+        return SteadyState(job.scene, job.maxima, decided or replace(latest, name="unsettled"), None,
+                           job.scaled.to_si(seen.y), number=job.number, undecided=decided is None and job.affordable)
+
+    def _followed(self, job: Job, first: bool, goes_on: bool) -> bool:
+        """Whether a job whose regime a measurement has not decided is measured again or runs on; if so, it waits.
+
+        `first` says whether no measurement was complete before, `goes_on` whether the budget allows more periods.
+        """
+        latest = job.measurements.latest
+        if len(job.measurements.unfinished) or latest is None or (first and latest.name != "unsettled"):
             self._measure(job)
-            return None
-        if regime.name == "unsettled" and growth.mean() < 0.0 and goes_on:
+            return True
+        if goes_on and latest.name == "unsettled" and latest.lyapunov is not None and latest.lyapunov[0] < 0.0:
             self.waiting.append(job)
-            return None
-        reported, clear = decided(regime, before, clearly_chaotic(growth))
-        return SteadyState(job.scene, job.maxima, reported, None, job.scaled.to_si(seen.y), number=job.number,
-                           undecided=not clear and job.affordable)
+            return True
+        return False
 
     def _measure(self, job: Job) -> None:
         """Let a job wait for two lanes, behind those with as many steps a period or more: the longest begin first."""
         job.measuring = True
         insort(self.to_measure, job, key=lambda one: -one.steps)
-
-
-def decided(regime: Regime, before: Regime | None, sure: bool) -> tuple[Regime, bool]:
-    """The regime to report after a last measurement, and whether it is clear.
-
-    Two measurements that disagree decide nothing, unless the last is `sure` by itself.
-    """
-    agreed = before is None or agree(regime, before)
-    if not agreed and not sure:
-        regime = replace(regime, name="unsettled")
-    return regime, agreed and regime.name != "unsettled"
 
 
 def batch_results(scenes: Iterator[Scene], stop: Stop, draft: bool = False) -> Iterator[SteadyState]:

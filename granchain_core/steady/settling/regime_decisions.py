@@ -2,7 +2,7 @@
 
 A motion that seems settled is confirmed by the multipliers of its orbit. Otherwise a nearby orbit is
 examined: if the motion approaches it, the orbit is reported; if it departs, the departure is
-enlarged. A motion that does neither is classified by its Lyapunov exponent, measured twice.
+enlarged. A motion that does neither is classified by its Lyapunov exponent (steady/exponent_measurements.py).
 """
 
 from __future__ import annotations
@@ -14,8 +14,9 @@ import numpy as np
 from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
+from ..exponent_measurements import ExponentMeasurements
 from ..lyapunov import exponents
-from ..regime_criteria import agree, changes, clearly_chaotic, converging, departing, regime_from_exponents, undecided
+from ..regime_criteria import changes, converging, departing
 from .nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, NEAR_AN_ORBIT, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
 #: Drive periods after which an unsettled motion is examined by its nearby orbit.
@@ -59,8 +60,7 @@ class Decisions:
     def __init__(self, scene: Scene, carried: bool) -> None:
         self.scene, self._carried = scene, carried
         self._departures, self._leaves = 0, False
-        self._measured: Regime | None = None
-        self._blocks = np.zeros(0)
+        self._measurements = ExponentMeasurements()
 
     def next(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """The next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
@@ -116,29 +116,15 @@ class Decisions:
         if further is None:
             return None
         self._departures += 1
-        self._measured, self._blocks = None, np.zeros(0)
+        self._measurements = ExponentMeasurements()
         return Decision(state=further)
 
     def _measure(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
-        """The Lyapunov exponent of the next periods; one that is small counts if a second measurement agrees.
-
-        A measurement whose error is too large for a decision is continued by the next one.
-        """
+        """The regime, if the Lyapunov exponent of the next periods decides it."""
         found, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
-        found = np.concatenate([self._blocks, found])
-        if undecided(found):
-            self._blocks = found
-            return Decision(strobes=passed)
-        self._blocks = np.zeros(0)
-        record = np.concatenate([strobes, passed])
-        run = regime.periods_run + len(passed)
-        now, before = regime_from_exponents(found, record[-len(strobes):], run), self._measured
-        if clearly_chaotic(found):
-            return Decision(now)
-        if before is not None and agree(now, before):
-            return Decision(now)
-        self._measured = now
-        return Decision(strobes=passed)
+        record = np.concatenate([strobes, passed])[-len(strobes):]
+        decided = self._measurements.add(found, record, regime.periods_run + len(passed))
+        return Decision(decided, strobes=passed if decided is None else None)
 
 
 def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
@@ -169,23 +155,19 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
 
 
 def _classified_by_exponent(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
-    """Chaotic or quasi-periodic by one clear measurement of the Lyapunov exponent or by two that agree.
-
-    A measurement may be made of two, where the error of one is too large for a decision.
-    """
-    record, before = strobes, None
+    """Chaotic or quasi-periodic by its Lyapunov exponent, else unsettled."""
+    measurements, record, run = ExponentMeasurements(), strobes, regime.periods_run
     for _ in range(_MEASUREMENTS):
-        found = np.zeros(0)
-        for _ in range(_MOST_EXTENSIONS):
-            more, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
-            record, found = np.concatenate([record, passed]), np.concatenate([found, more])
-            if not undecided(found):
+        for extension in range(_MOST_EXTENSIONS):
+            found, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
+            record, run = np.concatenate([record, passed])[-REMEMBERED:], run + len(passed)
+            decided = measurements.add(found, record, run, last=extension == _MOST_EXTENSIONS - 1)
+            if decided is not None:
+                return decided
+            if not len(measurements.unfinished):
                 break
-        now = regime_from_exponents(found, record[-REMEMBERED:], regime.periods_run + len(record) - len(strobes))
-        if clearly_chaotic(found) or (before is not None and agree(now, before)):
-            return now
-        before = now
-    return replace(now, name="unsettled")
+    assert measurements.latest is not None
+    return replace(measurements.latest, name="unsettled")
 
 
 def scaled(engine: Engine) -> np.ndarray:
