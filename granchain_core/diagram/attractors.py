@@ -19,6 +19,7 @@ from ..result import ForceErrors
 from ..scene import Scene
 from ..state import State, rest
 from ..steady.batch.job import Start
+from ..steady.exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
 from ..steady.regime_criteria import grows, is_neutral
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
@@ -183,19 +184,22 @@ def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
 
 
 def _regime(regimes: list[Regime]) -> Regime:
-    """The regime of a group, of irregular motions by the mean of their Lyapunov exponents with its standard error.
+    """The regime of a group; of irregular motions with the mean of their Lyapunov exponents and its standard error.
 
-    The rule is that of steady/regime_criteria.py. The error that falls as 1/periods is alike in all of them, and their
-    mean does not reduce it: an exponent counts as zero within the error of a single one.
+    Where the members have different names, the rule of steady/regime_criteria.py decides by this mean. The error that
+    falls as 1/periods is alike in all of them, and their mean does not reduce it: the mean counts as measured over one
+    measurement's periods, and as zero within the error of a single one.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     if regimes[0].period is not None or not known:
         return regimes[0]
     mean, error = sum(value for value, _ in known) / len(known), math.sqrt(sum(e**2 for _, e in known)) / len(known)
-    if grows(mean, error):
+    names, periods = {one.name for one in regimes}, EXPONENT_BLOCKS * PERIODS_IN_BLOCK
+    if len(names) == 1:
+        name = regimes[0].name
+    elif grows(mean, error, periods):
         name = "chaotic"
     else:
-        neutral = is_neutral(mean, error * math.sqrt(len(known)))
-        quasi = neutral and any(one.name == "quasi-periodic" for one in regimes)
-        name = "quasi-periodic" if quasi else "unsettled"
+        neutral = is_neutral(mean, error * math.sqrt(len(known)), periods)
+        name = "quasi-periodic" if neutral and "quasi-periodic" in names else "unsettled"
     return replace(regimes[0], name=name, lyapunov=(mean, error))

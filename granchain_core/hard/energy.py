@@ -101,7 +101,7 @@ def two_exponents(blocks: int) -> tuple[float, tuple[float, float], tuple[float,
     engine.periods(100)
     stroboscopic_map = StroboscopicMap(chosen, 1)
     x = stroboscopic_map.inner(engine.y)
-    found, _ = exponents(engine, blocks, 10)
+    found, _, _ = exponents(engine, blocks, 10)
     vector = np.ones(len(x)) / np.sqrt(len(x))
     growth = np.zeros((blocks + 1) * 10)
     for p in range(len(growth)):

@@ -19,7 +19,7 @@ from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
 from ..state import State
-from ..steady.regime_criteria import LONGEST_PERIOD
+from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..steady.returns import relative_change
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
@@ -226,7 +226,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     True
     """
     if period is not None:
-        check_range("period", period, 1, LONGEST_PERIOD)
+        check_range("period", period, 1, LONGEST_LOCKED_PERIOD)
     refuse_cut(scene)
     n = period
     if start is None:

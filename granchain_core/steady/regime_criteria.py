@@ -17,9 +17,15 @@ from ..regime import Regime
 
 #: Standard errors within which a mean exponent counts as not known.
 STANDARD_ERRORS = 3.0
-#: Mean exponents per period above which a motion may be chaotic, and within which it may be quasi-periodic, however
-#: small the standard error: the error that a finite record leaves falls as 1/periods.
-_LEAST_CHAOTIC_EXPONENT, _LARGEST_NEUTRAL_EXPONENT = 0.01, 5e-4
+#: Longest period that is looked for, in drive periods: orbits locked to the drive among quasi-periodic motions may be
+#: that long. A batch looks for periods up to `LONGEST_PERIOD`, and leaves a longer one to a chain settled alone.
+LONGEST_LOCKED_PERIOD = 60
+#: Logarithm of the factor by which a distance may grow or shrink on a closed curve, once and not again: up to 4 was
+#: seen. A mean exponent over P periods says nothing below this over P.
+_BOUNDED_GROWTH = 6.0
+#: Largest mean exponent per period of a quasi-periodic motion, and largest three standard errors of it. All but weak
+#: chaos is excluded.
+_LARGEST_NEUTRAL_EXPONENT = 0.01
 #: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
 #: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
 _SLOW_WINDOW, _SHRINK_FACTOR = 100, 0.98
@@ -43,7 +49,7 @@ def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
     return out
 
 
-def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: float = ROUNDING) -> Regime:
+def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, rounding: float = ROUNDING) -> Regime:
     """Periodic with the smallest n whose distance bound holds, else unsettled; strobes (P + 1, 2, N).
 
     Changes below `rounding` are the method's own and count as none. Those that are lost in it may still be those of a
@@ -59,20 +65,20 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_PERIOD, rounding: fl
     return Regime("periodic", int(period), None if decay < 0.0 else float(decay), float(distance), run)
 
 
-def grows(mean: float, error: float) -> bool:
-    """Whether neighbours part, by a mean exponent per period and its standard error."""
-    return mean > max(STANDARD_ERRORS * error, _LEAST_CHAOTIC_EXPONENT)
+def grows(mean: float, error: float, periods: int) -> bool:
+    """Whether neighbours part, by a mean exponent per period over so many periods and its standard error."""
+    return mean > max(STANDARD_ERRORS * error, _BOUNDED_GROWTH / periods)
 
 
-def is_neutral(mean: float, error: float) -> bool:
+def is_neutral(mean: float, error: float, periods: int) -> bool:
     """Whether neighbours neither part nor approach, by a mean exponent per period and its standard error.
 
-    A large error must not make this easier: three standard errors below `CLEAR_GROWTH` exclude strong chaos, and a mean
-    above the limit of chaos is never neutral. Otherwise the measurement is undecided.
+    A large error must not make this easier: three standard errors are limited, as is the mean. Otherwise the
+    measurement is undecided.
     """
     uncertain = STANDARD_ERRORS * error
-    neutral = abs(mean) <= max(uncertain, _LARGEST_NEUTRAL_EXPONENT)
-    return neutral and uncertain < CLEAR_GROWTH and mean <= _LEAST_CHAOTIC_EXPONENT
+    limit = min(max(uncertain, _BOUNDED_GROWTH / periods), _LARGEST_NEUTRAL_EXPONENT)
+    return abs(mean) <= limit and uncertain < _LARGEST_NEUTRAL_EXPONENT
 
 
 def _mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
@@ -81,17 +87,18 @@ def _mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
     return mean, math.sqrt(math.fsum((one - mean) ** 2 for one in values) / (len(values) - 1) / len(values))
 
 
-def undecided(exponents: np.ndarray) -> bool:
-    """Whether the error of these blocks is too large for a decision: more blocks are needed.
+def undecided(exponents: np.ndarray, periods: int) -> bool:
+    """Whether the error of these blocks is too large for a decision: more periods are needed.
 
     The mean is neither clearly positive nor clearly negative, and `is_neutral` does not hold.
     """
     mean, error = _mean_and_error(exponents)
-    return mean >= -STANDARD_ERRORS * error and not grows(mean, error) and not is_neutral(mean, error)
+    return (mean >= -STANDARD_ERRORS * error and not grows(mean, error, periods)
+            and not is_neutral(mean, error, periods))
 
 
-def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) -> Regime:
-    """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of periods.
+def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarray, run: int) -> Regime:
+    """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of `periods` in all.
 
     Chaotic: the mean is above its error and a least value (`grows`). Quasi-periodic: it is zero within its error, which
     is limited (`is_neutral`), the section comes back near itself (`return_limit`), and the record is long enough to
@@ -99,9 +106,9 @@ def regime_from_exponents(exponents: np.ndarray, strobes: np.ndarray, run: int) 
     numbers on which the other two conditions rest, met or not.
     """
     mean, error = _mean_and_error(exponents)
-    if grows(mean, error):
+    if grows(mean, error, periods):
         return Regime("chaotic", None, None, None, run, (mean, error))
-    if not is_neutral(mean, error):
+    if not is_neutral(mean, error, periods):
         return Regime.unsettled(run, (mean, error))
     windows, distance, limit = _windows(strobes), return_distance(strobes), return_limit(strobes)
     name = "quasi-periodic" if _neither_converges_nor_departs(windows) and distance < limit else "unsettled"
@@ -119,12 +126,15 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
 
 
 def agree(one: Regime, other: Regime) -> bool:
-    """Whether two Lyapunov measurements give the same regime, and means within the larger of two limits.
+    """Whether two Lyapunov measurements give the same regime, with means that agree if it is chaotic.
 
-    These are `STANDARD_ERRORS` combined standard errors and `_EXPONENT_DIFFERENCE`.
+    Means agree within the larger of `STANDARD_ERRORS` combined standard errors and `_EXPONENT_DIFFERENCE`. Those of a
+    quasi-periodic motion are both zero within their errors.
     """
     if one.name != other.name or one.name == "unsettled" or one.lyapunov is None or other.lyapunov is None:
         return False
+    if one.name == "quasi-periodic":
+        return True
     (a, error_a), (b, error_b) = one.lyapunov, other.lyapunov
     return abs(a - b) <= max(STANDARD_ERRORS * math.hypot(error_a, error_b), _EXPONENT_DIFFERENCE)
 

@@ -21,11 +21,11 @@ import numpy as np
 from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
-from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
 from ..orbits.branch.special import SPECIAL_KINDS
 from ..orbits.branch.tables import NO_CONTACT
 from ..scene import Amplitude
+from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..tables import MAXIMA
 from .writing import write_file, write_result
 
@@ -86,8 +86,8 @@ def _header(found: Any) -> dict[str, Any]:
     header = entries("branch", found, {"knob": "text", "start": "number", "end": "number", "period": "whole"})
     if not isinstance(arms, list) or not 1 <= len(arms) <= 2:
         raise Refused("its attribute branch does not have one arm or two")
-    if not 1 <= header["period"] <= LONGEST_PERIOD:
-        raise Refused(f"its period {header['period']} is outside 1 to {LONGEST_PERIOD}")
+    if not 1 <= header["period"] <= LONGEST_LOCKED_PERIOD:
+        raise Refused(f"its period {header['period']} is outside 1 to {LONGEST_LOCKED_PERIOD}")
     header["arms"] = [entries("arm", arm, {"direction": "number", "step": "text", "ended": "text", "reason": "text"})
                     for arm in arms]
     for arm in header["arms"]:

@@ -68,7 +68,7 @@ def test_the_largest_is_that_of_two_trajectories(undamped: LyapunovSpectrum) -> 
     engine = Engine(UNDAMPED, fixed_step_setting(), 1)
     engine.start(run_until_settled(UNDAMPED, None, None).engine.state)
     engine.periods(50)
-    blocks, _ = exponents(engine, 20, 10)
+    blocks, _, _ = exponents(engine, 20, 10)
     error = np.hypot(undamped.errors[0], blocks.std(ddof=1) / np.sqrt(len(blocks)))
     assert abs(undamped.exponents[0] - blocks.mean()) < 4.0 * error
 

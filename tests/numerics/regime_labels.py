@@ -28,7 +28,7 @@ PLACES = (146.42, 233.52, 255.80, 511.94, 832.5, 889.0, 1235.6, 1304.9)
 #: Periods run at a time, most in all, the shortest step's divisor, and what counts as repeated.
 PERIODS, PATIENCE, REFINE, REPEATS = 5000, 60_000, 4, 1e-9
 #: Longest period looked for.
-LONGEST = 16
+LONGEST = 60
 #: An exponent per period that is no chaos and no approach: errors of means over 2,000 periods of a torus are smaller.
 ZERO = 2e-3
 

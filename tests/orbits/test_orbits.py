@@ -90,7 +90,7 @@ def test_a_start_that_leads_to_no_orbit_is_a_failure_with_its_residuals() -> Non
 
 
 def test_a_period_out_of_range_is_refused() -> None:
-    with pytest.raises(BadInput, match="nearest valid value is 16"):
+    with pytest.raises(BadInput, match="nearest valid value is 60"):
         periodic_orbit(scene("sec2"), period=99)
 
 

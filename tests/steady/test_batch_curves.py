@@ -39,11 +39,11 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
 
 
 def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At 1640 Hz from rest: one measurement of a zero exponent is not enough, as for a chain by itself."""
+    """At 1640 Hz from rest: 200 periods with a zero exponent are not enough, as for a chain by itself."""
     real, measured = batch_module.put_with_shadow, []
     monkeypatch.setattr(batch_module, "put_with_shadow", lambda *words: measured.append(True) or real(*words))
     found = results([1640.0])[1640.0]
-    assert (found.regime.name, found.undecided, len(measured)) == ("quasi-periodic", False, 2)
+    assert (found.regime.name, found.undecided) == ("quasi-periodic", False) and len(measured) >= 2
 
 
 def test_up_and_down_really_differ_there() -> None:

@@ -18,7 +18,7 @@ STEADY = (
     Mutant("longest-period-told", _SECTION, "if n % q == 0 and largest <= nothing:\n            return q",
            "if n % q == 0 and largest <= nothing:\n            return n", "an orbit of period 1 is told as one of period 2",
            k.CLAIMS),
-    Mutant("any-growth-is-chaos", _REGIME, "return mean > max(STANDARD_ERRORS * error, _LEAST_CHAOTIC_EXPONENT)", "return mean > 0.0",
+    Mutant("any-growth-is-chaos", _REGIME, "return mean > max(STANDARD_ERRORS * error, _BOUNDED_GROWTH / periods)", "return mean > 0.0",
            "an exponent within its error is called chaos", k.CLAIMS),
     Mutant("creeping-is-quasi-periodic", _REGIME, "if _neither_converges_nor_departs(windows) and", "if",
            "a slow approach with an exponent near zero is called quasi-periodic", k.CLAIMS),

@@ -11,7 +11,7 @@ from granchain_core import BadInput, Scene, Settled, State
 from granchain_core.orbits.stroboscopic_map import refuse_cut
 from granchain_core.pieces import ORBIT_KERNELS
 from granchain_core.steady.poincare import Section
-from granchain_core.steady.regime_criteria import LONGEST_PERIOD
+from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...pictures.multipliers import plane_state
 from ...serve.delays import ANALYSIS_QUIET
@@ -253,7 +253,7 @@ class StabilityPage(Page):
         self._show_section()
 
     def _search(self, message: dict[str, Any]) -> None:
-        period = whole("period", message.get("value"), 1, LONGEST_PERIOD)
+        period = whole("period", message.get("value"), 1, LONGEST_LOCKED_PERIOD)
         picture, section = self._picture, self._section
         if not self._visible or picture is None:
             raise BadInput("There is no settled picture to search from yet; wait for it.")

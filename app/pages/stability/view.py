@@ -15,7 +15,7 @@ from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
 from granchain_core.regime import modulus_words
 from granchain_core.steady.poincare import Section
-from granchain_core.steady.regime_criteria import LONGEST_PERIOD
+from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...format import duration, prefixed, short_error
 from ...parts.chain import drawn_chain
@@ -46,7 +46,7 @@ class Stability(FigurePart):
     empty_figures = staticmethod(empty_figures)
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"longest_period": LONGEST_PERIOD, "phases": PHASES}, **params)
+        super().__init__(received, state={"longest_period": LONGEST_LOCKED_PERIOD, "phases": PHASES}, **params)
 
     def section(self, shown: SectionPoints) -> None:
         """Show a section in place of an earlier one."""

@@ -13,6 +13,7 @@ is marked `undecided` and settled alone (settling/single_chain.py).
 from __future__ import annotations
 
 import itertools
+import math
 from bisect import insort
 from collections.abc import Iterator
 from dataclasses import replace
@@ -20,16 +21,19 @@ from dataclasses import replace
 import numpy as np
 
 from ...integrate.batch import Batch
+from ...kernels.strobes.periodicity import LONGEST_PERIOD, SETTLED_DISTANCE
 from ...kernels.width import BATCH_SIZE
+from ...regime import Regime
 from ...scaling import scale_chain, scale_like
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
+from ..exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
 from ..lyapunov import exponents_of, put_with_shadow
 from ..regime_criteria import find_period
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
-from ..settling.regime_decisions import EXAMINED_AFTER, EXPONENT_BLOCKS, MOST_PERIODS, PERIODS_IN_BLOCK, REMEMBERED
+from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
 from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
 
@@ -91,7 +95,8 @@ class _JobsInBatch:
         """
         if job.measuring:
             shadow = self.shadows[member] = self.free.pop()
-            put_with_shadow(self.batch, member, shadow, job.scaled, job.y, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
+            put_with_shadow(self.batch, member, shadow, job.scaled, job.y, EXPONENT_BLOCKS, PERIODS_IN_BLOCK,
+                            job.measurements.offset)
             return
         if job.coarse is None:
             return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
@@ -141,36 +146,36 @@ class _JobsInBatch:
         """The result of a job whose Lyapunov exponents were measured, or None where it goes on."""
         seen = exponents_of(self.batch, member, PERIODS_IN_BLOCK)
         job.run += len(seen.strobes)
-        job.y, job.measuring = seen.y, False
-        regime = replace(find_period(seen.strobes), periods_run=job.run)
+        job.y, job.measuring, job.measurements.offset = seen.y, False, seen.offset
+        job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as a chain settled alone is judged
+        regime = replace(find_period(job.record), periods_run=job.run)
         if regime.period is not None:
+            if regime.period > LONGEST_PERIOD:
+                return self._measured_result(job, Regime.unsettled(job.run), undecided=True)
             job.coarse = (regime, seen.maxima[-regime.period :].max(axis=0))
             self.waiting.append(job)
             return None
-        job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as a chain settled alone is judged
         goes_on = job.run < MOST_PERIODS and job.affordable
-        first = job.measurements.latest is None
         decided = job.measurements.add(seen.exponents, job.record, job.run, last=not goes_on)
-        if decided is None and self._followed(job, first, goes_on):
-            return None
         latest = job.measurements.latest
-        assert latest is not None
-        return SteadyState(job.scene, job.maxima, decided or replace(latest, name="unsettled"), None,
-                           job.scaled.to_si(seen.y), number=job.number, undecided=decided is None and job.affordable)
-
-    def _followed(self, job: Job, first: bool, goes_on: bool) -> bool:
-        """Whether a job whose regime a measurement has not decided is measured again or runs on; if so, it waits.
-
-        `first` says whether no measurement was complete before, `goes_on` whether the budget allows more periods.
-        """
-        latest = job.measurements.latest
-        if len(job.measurements.unfinished) or latest is None or (first and latest.name != "unsettled"):
+        if decided is not None:
+            return self._measured_result(job, decided, undecided=False)
+        if latest is None or len(job.measurements.unfinished):
             self._measure(job)
-            return True
-        if goes_on and latest.name == "unsettled" and latest.lyapunov is not None and latest.lyapunov[0] < 0.0:
-            self.waiting.append(job)
-            return True
-        return False
+            return None
+        approach = job.measurements.approach
+        if goes_on and approach * (MOST_PERIODS - job.run) > -math.log(SETTLED_DISTANCE):
+            self.waiting.append(job)  # it comes to its orbit within its budget, if there is one
+            return None
+        if approach == 0.0 and job.measurements.complete < MOST_MEASUREMENTS:
+            self._measure(job)
+            return None
+        return self._measured_result(job, replace(latest, name="unsettled"), undecided=True)
+
+    def _measured_result(self, job: Job, regime: Regime, undecided: bool) -> SteadyState:
+        """The result of a job whose exponents were measured; where its steps are spent no more is tried."""
+        return SteadyState(job.scene, job.maxima, regime, None, job.scaled.to_si(job.y), number=job.number,
+                           undecided=undecided and job.affordable)
 
     def _measure(self, job: Job) -> None:
         """Let a job wait for two lanes, behind those with as many steps a period or more: the longest begin first."""

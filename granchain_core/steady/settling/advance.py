@@ -28,9 +28,12 @@ _FIRST_LOOK, _BETWEEN_LOOKS = 2, 8
 
 
 class Settling:
-    """Runs a chain by the fixed-step method towards its steady state, chunk by chunk, until the regime is decided."""
+    """Runs a chain by the fixed-step method towards its steady state, chunk by chunk, until the regime is decided.
 
-    def __init__(self, scene: Scene, start: State | None, stop: Stop | None) -> None:
+    `run` is the number of drive periods after which `start` was reached: they count as run.
+    """
+
+    def __init__(self, scene: Scene, start: State | None, stop: Stop | None, run: int = 0) -> None:
         refuse_undriven(scene)
         self.scene = scene
         self.engine = Engine(scene, fixed_step_setting(), 1, stop=stop)
@@ -38,7 +41,7 @@ class Settling:
         self.engine.start(start if start is not None else rest(scene))
         self._steps = self.engine.grid
         self.maxima = np.zeros((0, 3))
-        self._begin(0)
+        self._begin(run)
         self.decisions = Decisions(self.scene, start is not None)
         self.decided = False
 
@@ -117,8 +120,8 @@ class Settling:
             self._stop_at = self._here + EXAMINED_AFTER
 
 
-def run_until_settled(scene: Scene, start: State | None, stop: Stop | None) -> Settling:
-    """Run to the end of the budget or to the steady state, without pictures."""
-    settling = Settling(scene, start, stop)
+def run_until_settled(scene: Scene, start: State | None, stop: Stop | None, run: int = 0) -> Settling:
+    """Run to the end of the budget or to the steady state, without pictures; `run` periods came before the start."""
+    settling = Settling(scene, start, stop, run)
     settling.go_on(np.inf)
     return settling

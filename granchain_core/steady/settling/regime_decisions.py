@@ -14,7 +14,7 @@ import numpy as np
 from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
-from ..exponent_measurements import ExponentMeasurements
+from ..exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK, ExponentMeasurements
 from ..lyapunov import exponents
 from ..regime_criteria import changes, converging, departing
 from .nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, NEAR_AN_ORBIT, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
@@ -23,16 +23,12 @@ from .nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, NEAR_AN_ORBIT, NearbyOrbi
 EXAMINED_AFTER = 400
 #: Most drive periods in all.
 MOST_PERIODS = 4000
-#: Blocks in one measurement of the Lyapunov exponent.
-EXPONENT_BLOCKS = 10
-#: Drive periods in a block.
-PERIODS_IN_BLOCK = 20
 #: Strobes on which a decision is based. A batch keeps a few more (`STROBES_KEPT` in kernels/batch/record.py).
 REMEMBERED = 420
-#: Measurements of the Lyapunov exponent for a motion that is not followed any further.
-_MEASUREMENTS = 3
-#: How often such a measurement is made longer, at most.
-_MOST_EXTENSIONS = 2
+#: Most measurements of the Lyapunov exponent for a member of a batch, or for a motion that is not followed any further.
+MOST_MEASUREMENTS = 3
+#: Most parts of one measurement of a chain alone, each of `EXPONENT_BLOCKS`.
+_MOST_PARTS = 8
 #: Beads up to which multipliers confirm every claim of `settled`; for longer chains only unconfirmed claims.
 _CONFIRMED_BEADS = 30
 #: A claim is unconfirmed if the decay per drive period is above this: a slowly unstable orbit may look like it.
@@ -71,7 +67,8 @@ class Decisions:
                 found = self._beside(orbit, regime)
                 if found is not None:
                     return found
-        if regime.periods_run >= MOST_PERIODS * (_DEPARTURE_FACTOR if self._leaves else 1):
+        leaves = self._leaves and self._measurements.approach == 0.0
+        if regime.periods_run >= MOST_PERIODS * (_DEPARTURE_FACTOR if leaves else 1):
             return Decision(regime)
         if converging(strobes) or departing(strobes):
             return Decision()
@@ -121,9 +118,7 @@ class Decisions:
 
     def _measure(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
         """The regime, if the Lyapunov exponent of the next periods decides it."""
-        found, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
-        record = np.concatenate([strobes, passed])[-len(strobes):]
-        decided = self._measurements.add(found, record, regime.periods_run + len(passed))
+        decided, passed = _measured(engine, strobes, regime, self._measurements)
         return Decision(decided, strobes=passed if decided is None else None)
 
 
@@ -154,18 +149,29 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
     return _classified_by_exponent(engine, strobes, regime)
 
 
+def _measured(engine: Engine, strobes: np.ndarray, regime: Regime,
+              measurements: ExponentMeasurements) -> tuple[Regime | None, np.ndarray]:
+    """The regime, if one more measurement of the Lyapunov exponent decides it, and the strobes (P, 2, N) it ran."""
+    passed = strobes[:0]
+    for part in range(_MOST_PARTS):
+        found, more, measurements.offset = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK, measurements.offset)
+        passed = np.concatenate([passed, more])
+        decided = measurements.add(found, np.concatenate([strobes, passed])[-REMEMBERED:],
+                                   regime.periods_run + len(passed), last=part == _MOST_PARTS - 1)
+        if not len(measurements.unfinished):
+            break
+    return decided, passed
+
+
 def _classified_by_exponent(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
     """Chaotic or quasi-periodic by its Lyapunov exponent, else unsettled."""
-    measurements, record, run = ExponentMeasurements(), strobes, regime.periods_run
-    for _ in range(_MEASUREMENTS):
-        for extension in range(_MOST_EXTENSIONS):
-            found, passed = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK)
-            record, run = np.concatenate([record, passed])[-REMEMBERED:], run + len(passed)
-            decided = measurements.add(found, record, run, last=extension == _MOST_EXTENSIONS - 1)
-            if decided is not None:
-                return decided
-            if not len(measurements.unfinished):
-                break
+    measurements = ExponentMeasurements()
+    for _ in range(MOST_MEASUREMENTS):
+        decided, passed = _measured(engine, strobes, regime, measurements)
+        if decided is not None:
+            return decided
+        strobes = np.concatenate([strobes, passed])[-REMEMBERED:]
+        regime = replace(regime, periods_run=regime.periods_run + len(passed))
     assert measurements.latest is not None
     return replace(measurements.latest, name="unsettled")
 

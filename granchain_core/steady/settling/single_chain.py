@@ -22,9 +22,9 @@ from .refine_orbit import refined_orbit
 CURVE_ACCURACY = 1e-5
 
 
-def steady_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
-    """The steady state of `scene` from rest or from `start`, refined where it is periodic."""
-    settling = run_until_settled(scene, start, stop)
+def steady_state(scene: Scene, start: State | None, stop: Stop, run: int = 0) -> SteadyState:
+    """The steady state of `scene` from rest or from `start`, `run` periods later, refined where it is periodic."""
+    settling = run_until_settled(scene, start, stop, run)
     if settling.regime.name == "periodic":
         return _on_its_orbit(settling)
     maxima = settling.maxima[-IRREGULAR_PERIODS:].max(axis=0) * settling.engine.scaled.scales.force
@@ -44,10 +44,10 @@ def _on_its_orbit(settling: Settling) -> SteadyState:
     return SteadyState(settling.scene, maxima * finer.scaled.scales.force, settling.regime, errors, finer.state)
 
 
-def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
+def safe_state(scene: Scene, start: State | None, stop: Stop, run: int = 0) -> SteadyState:
     """A steady state, or one that says why there is none: one failed frequency does not lose a curve."""
     try:
-        return steady_state(scene, start, stop)
+        return steady_state(scene, start, stop, run)
     except NumbersFailed as failed:
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
         return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(0), None, start or resting, failed.sentence,
@@ -56,6 +56,5 @@ def safe_state(scene: Scene, start: State | None, stop: Stop) -> SteadyState:
 
 def settled_alone(undecided: SteadyState, stop: Stop) -> SteadyState:
     """The steady state of a chain that a batch left undecided, settled alone from its last state."""
-    found = safe_state(undecided.scene, undecided.state, stop)
-    run = undecided.regime.periods_run + found.regime.periods_run
-    return replace(found, regime=replace(found.regime, periods_run=run), number=undecided.number)
+    found = safe_state(undecided.scene, undecided.state, stop, undecided.regime.periods_run)
+    return replace(found, number=undecided.number)

@@ -57,8 +57,8 @@ def test_a_closed_curve_is_not_periodic() -> None:
     """An irrational rotation is quasi-periodic: no period is found, and with a zero exponent it is called that."""
     states = strobes([np.exp(2j * np.pi * (np.sqrt(5) - 1) / 2)], [1.0], 420)
     assert regime_criteria.find_period(states).name == "unsettled"
-    assert regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), states, 420).name == "quasi-periodic"
-    assert regime_criteria.regime_from_exponents(np.array([0.1, 0.11, 0.09, 0.1]), states, 420).name == "chaotic"
+    assert regime_criteria.regime_from_exponents(np.array([1e-4, -1e-4, 2e-4, -2e-4]), 400, states, 420).name == "quasi-periodic"
+    assert regime_criteria.regime_from_exponents(np.array([0.1, 0.11, 0.09, 0.1]), 400, states, 420).name == "chaotic"
 
 
 @pytest.mark.parametrize("modes", [1, 3, ORBITS - 2])
