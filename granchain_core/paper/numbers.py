@@ -21,7 +21,7 @@ from ..steady.curve.resonance import pushes
 from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
-from .compute import SECTION_2, STATES
+from .computations import SECTION_2, STATES
 from .features import dips, peaks
 
 Numbers = list[float | str]

@@ -1,6 +1,6 @@
-"""The results behind the figures of the paper, from the presets: one function for each kind of figure.
+"""The computations behind the table of figures (figures.py): one function for each kind of figure, from the presets.
 
-Each function takes a user's data, a stop flag, and a function that is called with the fraction done.
+They take what they need of a user's data, a stop flag, and a function that is called with the fraction done.
 """
 
 from __future__ import annotations
