@@ -14,9 +14,9 @@ from .results import Result
 _IMAGES = ("The paper's measured series are images, whose numbers we do not have, so none is drawn; your own is drawn "
            "over it (--data FILE).")
 _FEATURES = "Of the measurement only what the text states is drawn, its frequencies: the text gives no force. "
-_AMPLITUDES = ("Model (5) with the amplitudes of the presets: 11 µm at 60 Hz, 6 µm at 90 Hz, and for the paper's 100 "
-               "Hz 13 µm at 50 Hz, as the paper drove its own model. It took another amplitude at each frequency and "
-               "states none. ")
+_AMPLITUDES = ("Model (5) with the amplitudes of the presets: 11 µm at 60 Hz, 6 µm at 90 Hz, and for the paper's "
+               "100 Hz 13 µm at 50 Hz, as the paper drove its own model. It took another amplitude at each frequency "
+               "and states none. ")
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,8 @@ def _quietly(_: float) -> None:
 
 _TABLE = (
     PaperFigure("1", "The driven chain of section 2",
-                "Driver (bead 0), eleven beads and the wall, to scale from the scene sec2. The drive amplitude, 0.5 "
-                "µm, is 1/38,100 of a bead's diameter and cannot be seen at any scale that shows a bead.",
+                "Driver (bead 0), eleven beads and the wall, to scale from the scene sec2. The drive amplitude, "
+                "0.5 µm, is 1/38,100 of a bead's diameter and cannot be seen at any scale that shows a bead.",
                 lambda *_: computations.rig("sec2")),
     PaperFigure("2", "Largest transmitted force of section 2 over the drive frequency",
                 "Every point starts at rest; the force is the elastic one, the paper's. Peaks have the paper's names "
@@ -65,9 +65,9 @@ _TABLE = (
                 "V0 = 2πf A0 for the amplitudes that the text states, about 6 to 8 µm, and 7 µm between. " + _IMAGES,
                 lambda given, *_: computations.shaker(given), ("shaker",)),
     PaperFigure("6", "The rig's response: largest transmitted force, and force trains at 60 Hz",
-                "(a) " + _FEATURES + "The curve is model (5) at a constant 7 µm from rest, with its regimes; "
-                                     "it has its peak and valley elsewhere. (b) Model (5) at 60 Hz with 11 "
-                                     "µm. " + _IMAGES,
+                "(a) " + _FEATURES +
+                "The curve is model (5) at a constant 7 µm from rest, with its regimes; it has its peak and valley "
+                "elsewhere. (b) Model (5) at 60 Hz with 11 µm. " + _IMAGES,
                 lambda given, stop, progress: computations.response(given, False, stop, progress),
                 ("curve", "series"), (60.0,)),
     PaperFigure("7", "Force trains at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
@@ -79,16 +79,16 @@ _TABLE = (
                 "k/(K√A0). In model (3) a given force F_in takes the driver's place.",
                 lambda *_: computations.rig("rig")),
     PaperFigure("9", "Model and measurement: largest transmitted force, and force trains at 60 Hz",
-                "(a) " + _FEATURES + "Model (3) needs the measured input force at every frequency; in its place model "
-                "(5) at four constant amplitudes from rest and, ringed, the presets of figure 12 at the frequencies "
-                "that the paper names. (b) Model (3) fed with a measured input force or, without one, with that of "
-                "model (5). " + _IMAGES,
+                "(a) " + _FEATURES +
+                "Model (3) needs the measured input force at every frequency; in its place model (5) at four constant "
+                "amplitudes from rest and, ringed, the presets of figure 12 at the frequencies that the paper names. "
+                "(b) Model (3) fed with a measured input force or, without one, with that of model (5). " + _IMAGES,
                 lambda given, stop, progress: computations.response(given, True, stop, progress),
                 ("curve", "series"), (60.0,)),
     PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
                 "Model (3) from rest, fed with a measured input force or, without one, with that of model (5), and "
-                "shown after 60 periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable and does not find the "
-                "chain's motion. " + _IMAGES,
+                "shown after 60 periods. " + _AMPLITUDES +
+                "At 50 Hz this observer is unstable and does not find the chain's motion. " + _IMAGES,
                 lambda given, stop, progress: computations.trains((90.0, 100.0), given, True, stop, progress),
                 ("series",), (90.0, 100.0)),
     PaperFigure("11", "Stability of model (4): multipliers, and the first beads of both chains",
