@@ -37,14 +37,17 @@ from .results import (
 
 Progress = Callable[[float], None]
 #: Frequencies of figure 2 [Hz].
-SECTION_2 = np.arange(30.0, 3000.5, 10.0)
+SECTION_2_FREQUENCIES = np.arange(30.0, 3000.5, 10.0)
 #: Frequencies of figures 5, 6 and 9 [Hz].
-RIG = np.arange(20.0, 160.5, 2.0)
-#: Amplitudes [m]: of figure 5, the range the text states and its middle; of figure 6, that middle; of figure 9, those
-#: of the presets and one between, across the range 6 to 13 µm of the paper's model.
-STATED, MIDDLE, MODELLED = (6e-6, 7e-6, 8e-6), (7e-6,), (6e-6, 8e-6, 11e-6, 13e-6)
+RIG_FREQUENCIES = np.arange(20.0, 160.5, 2.0)
 #: The presets of figure 12 by the paper's frequency [Hz].
 STATES = {60.0: "fig12-60", 90.0: "fig12-90", 100.0: "fig12-100"}
+#: Drive amplitude of figure 6 [m], in the middle of the range that the text states for the shaker.
+RIG_AMPLITUDE = scene("rig").A0
+#: Amplitudes of figure 5 [m]: the range that the text states, about 6 to 8 µm, and the rig's between.
+STATED_AMPLITUDES = (6e-6, RIG_AMPLITUDE, 8e-6)
+#: Amplitudes of figure 9 [m]: those of the presets, and the largest that the text states, which lies between them.
+MODEL_AMPLITUDES = tuple(sorted({STATED_AMPLITUDES[-1], *(scene(name).A0 for name in STATES.values())}))
 #: Drive periods shown of figures 3a and 3b.
 ENERGY = {"fig3a": 4, "fig3b": 9}
 #: Samples a drive period: a pulse of the rig lasts 1/70 of one at 60 Hz; those of section 2 are slower.
@@ -62,7 +65,7 @@ def rig(name: str, fixture: bool = False, **changes: float) -> Rig:
 
 def transmission(given: Given, stop: Stop | None, progress: Progress) -> Transmission:
     """Figure 2."""
-    return Transmission(_curve(scene("sec2"), SECTION_2, stop, progress), given.curve)
+    return Transmission(_curve(scene("sec2"), SECTION_2_FREQUENCIES, stop, progress), given.curve)
 
 
 def energy(names: Sequence[str], stop: Stop | None) -> EnergyMaps:
@@ -72,14 +75,14 @@ def energy(names: Sequence[str], stop: Stop | None) -> EnergyMaps:
 
 def shaker(given: Given) -> ShakerAmplitude:
     """Figure 5."""
-    return ShakerAmplitude(RIG, STATED, given.shaker)
+    return ShakerAmplitude(RIG_FREQUENCIES, STATED_AMPLITUDES, given.shaker)
 
 
 def response(given: Given, observed: bool, stop: Stop | None, progress: Progress) -> RigResponse:
     """Figures 6 and 9; `observed` adds model (3) and more amplitudes, as figure 9 does."""
-    amplitudes = MODELLED if observed else MIDDLE
+    amplitudes = MODEL_AMPLITUDES if observed else (RIG_AMPLITUDE,)
     part = 1.0 / (len(amplitudes) + 1)
-    curves = [_curve(scene("rig").evolve(A0=a, kappa=0.001), RIG, stop, _within(progress, i * part, part))
+    curves = [_curve(scene("rig").evolve(A0=a, kappa=0.001), RIG_FREQUENCIES, stop, _within(progress, i * part, part))
               for i, a in enumerate(amplitudes)]
     states = tuple((f, _state(name, stop)) for f, name in STATES.items()) if observed else ()
     panel = RigCurves(tuple(curves), stated_features(), states, given.curve)

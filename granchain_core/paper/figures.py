@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..errors import BadInput
+from ..scene import scene
 from ..stop import Stop
 from . import computations
 from .given import Given
@@ -14,9 +15,19 @@ from .results import Result
 _IMAGES = ("The paper's measured series are images, whose numbers we do not have, so none is drawn; your own is drawn "
            "over it (--data FILE).")
 _FEATURES = "Of the measurement only what the text states is drawn, its frequencies: the text gives no force. "
-_AMPLITUDES = ("Model (5) with the amplitudes of the presets: 11 µm at 60 Hz, 6 µm at 90 Hz, and for the paper's "
-               "100 Hz 13 µm at 50 Hz, as the paper drove its own model. It took another amplitude at each frequency "
-               "and states none. ")
+
+
+def _micrometres(length: float) -> str:
+    return f"{1e6 * length:g} µm"
+
+
+_LOW, _MIDDLE, _HIGH = computations.STATED_AMPLITUDES
+#: The presets of figure 12, in the order of `STATES`.
+_AT_60, _AT_90, _AT_50 = (scene(name) for name in computations.STATES.values())
+_AMPLITUDES = (f"Model (5) with the amplitudes of the presets: {_micrometres(_AT_60.A0)} at {_AT_60.f:g} Hz, "
+               f"{_micrometres(_AT_90.A0)} at {_AT_90.f:g} Hz, and for the paper's 100 Hz {_micrometres(_AT_50.A0)} at "
+               f"{_AT_50.f:g} Hz, as the paper drove its own model. It took another amplitude at each frequency and "
+               "states none. ")
 
 
 @dataclass(frozen=True)
@@ -62,12 +73,13 @@ _TABLE = (
                 "drawn where the text has them, without a scale: it states no size of theirs.",
                 lambda *_: computations.rig("rig", True)),
     PaperFigure("5", "What the shaker does: velocity and displacement over the frequency",
-                "V0 = 2πf A0 for the amplitudes that the text states, about 6 to 8 µm, and 7 µm between. " + _IMAGES,
+                f"V0 = 2πf A0 for the amplitudes that the text states, about {1e6 * _LOW:g} to {_micrometres(_HIGH)}, "
+                f"and {_micrometres(_MIDDLE)} between. " + _IMAGES,
                 lambda given, *_: computations.shaker(given), ("shaker",)),
     PaperFigure("6", "The rig's response: largest transmitted force, and force trains at 60 Hz",
                 "(a) " + _FEATURES +
-                "The curve is model (5) at a constant 7 µm from rest, with its regimes; it has its peak and valley "
-                "elsewhere. (b) Model (5) at 60 Hz with 11 µm. " + _IMAGES,
+                f"The curve is model (5) at a constant {_micrometres(_MIDDLE)} from rest, with its regimes; it has its "
+                f"peak and valley elsewhere. (b) Model (5) at 60 Hz with {_micrometres(_AT_60.A0)}. " + _IMAGES,
                 lambda given, stop, progress: computations.response(given, False, stop, progress),
                 ("curve", "series"), (60.0,)),
     PaperFigure("7", "Force trains at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
@@ -98,7 +110,8 @@ _TABLE = (
     PaperFigure("12", "Model (5) at 60, 90 and 100 Hz",
                 "Top the shaker's velocity with the contact of driver and bead 1 (green: they touch), then input and "
                 "output force. " + _AMPLITUDES +
-                "Dotted at 100 Hz: a shaker with 6.5 µm, which has the same velocity amplitude. " + _IMAGES,
+                f"Dotted at 100 Hz: a shaker with {_micrometres(_AT_50.A0 * _AT_50.f / 100.0)}, which has the same "
+                "velocity amplitude. " + _IMAGES,
                 lambda given, stop, progress: computations.trains((60.0, 90.0, 100.0), given, False, stop, progress),
                 ("series",), (60.0, 90.0, 100.0)),
 )

@@ -21,7 +21,7 @@ from ..steady.curve.resonance import pushes
 from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
-from .computations import SECTION_2, STATES
+from .computations import MODEL_AMPLITUDES, RIG_AMPLITUDE, SECTION_2_FREQUENCIES, STATES
 from .features import dips, peaks
 
 Numbers = list[float | str]
@@ -38,7 +38,7 @@ def _settle(name: str, **changes: float) -> Settled:
 
 @functools.cache
 def _section_2() -> Curve:
-    return resonance_curve(scene("sec2"), SECTION_2)
+    return resonance_curve(scene("sec2"), SECTION_2_FREQUENCIES)
 
 
 def _words(regime: Regime) -> str:
@@ -91,18 +91,18 @@ def _mass() -> Numbers:
 
 
 def _shaker() -> Numbers:
-    return [1e3 * 2.0 * math.pi * f * 7e-6 for f in (20.0, 60.0, 160.0)]
+    return [1e3 * 2.0 * math.pi * f * RIG_AMPLITUDE for f in (20.0, 60.0, 160.0)]
 
 
 def _one_amplitude() -> Numbers:
-    found = [_settle("rig", f=f, A0=7e-6, kappa=0.001) for f in (60.0, 90.0, 100.0)]
+    found = [_settle("rig", f=f, A0=RIG_AMPLITUDE, kappa=0.001) for f in (60.0, 90.0, 100.0)]
     forces = [one.run.max_output_force_elastic for one in found]
     return [forces[0], _words(found[0].regime), *forces[1:]]
 
 
 def _stiffness() -> Numbers:
     stiff = _settle("rig", k=0.001 * scene("rig").K).run
-    ends = [scene("rig").evolve(A0=a, kappa=0.001) for a in (6e-6, 13e-6)]
+    ends = [scene("rig").evolve(A0=a, kappa=0.001) for a in (MODEL_AMPLITUDES[0], MODEL_AMPLITUDES[-1])]
     return [stiff.max_output_force, stiff.max_input_force, *(one.k / 1e3 for one in ends),
             *(one.foundation_frequency for one in ends)]
 
@@ -133,7 +133,7 @@ def _states() -> Numbers:
 
 def _two_solutions() -> Numbers:
     chain, values = scene("fig12-100"), []
-    for changes in ({"f": 100.0, "A0": 7e-6}, {"f": 100.0, "A0": 10e-6}, {}):
+    for changes in ({"f": 100.0, "A0": RIG_AMPLITUDE}, {"f": 100.0, "A0": 10e-6}, {}):
         values.append(attractors(chain.evolve(**changes, **({"kappa": 0.001} if changes else {})), 32))
     counts = {float(len(one)) for one in values[:2]}
     words = {_words(one.regime) for found in values[:2] for one in found}

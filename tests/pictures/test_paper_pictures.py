@@ -23,7 +23,7 @@ def result(number: str) -> Result:
     """The result of a figure without data; figure 9's four curves have every fifth point, which changes no panel."""
     with pytest.MonkeyPatch.context() as patch:
         if number == "9":
-            patch.setattr(computations, "RIG", computations.RIG[::5])
+            patch.setattr(computations, "RIG_FREQUENCIES", computations.RIG_FREQUENCIES[::5])
         return compute(number)
 
 
