@@ -100,6 +100,14 @@ def _one_amplitude() -> Numbers:
     return [forces[0], _words(found[0].regime), *forces[1:]]
 
 
+def _four_amplitudes() -> Numbers:
+    valley, peak = ([_settle("rig", f=f, A0=a, kappa=0.001) for a in MODEL_AMPLITUDES] for f in (90.0, 60.0))
+    return [*(one.run.max_output_force_elastic for one in valley),
+            " or ".join(sorted({_words(one.regime) for one in valley})),
+            *(one.run.max_output_force_elastic for one in peak if one.regime.period),
+            *(_words(one.regime) for one in peak if not one.regime.period)]
+
+
 def _stiffness() -> Numbers:
     stiff = _settle("rig", k=0.001 * scene("rig").K).run
     ends = [scene("rig").evolve(A0=a, kappa=0.001) for a in (MODEL_AMPLITUDES[0], MODEL_AMPLITUDES[-1])]
@@ -149,8 +157,9 @@ def _contact() -> Numbers:
 
 _NUMBERS: dict[str, Callable[[], Numbers]] = {
     "scales": _scales, "peaks": _peaks, "dips": _dips, "stop band": _stop_band, "energy": _energy, "mass": _mass,
-    "shaker": _shaker, "one amplitude": _one_amplitude, "stiffness": _stiffness, "output force": _output_force,
-    "model 3": _model_3, "model 4": _model_4, "states": _states, "two solutions": _two_solutions, "contact": _contact,
+    "shaker": _shaker, "one amplitude": _one_amplitude, "stiffness": _stiffness, "four amplitudes": _four_amplitudes,
+    "output force": _output_force, "model 3": _model_3, "model 4": _model_4, "states": _states,
+    "two solutions": _two_solutions, "contact": _contact,
 }
 
 

@@ -21,6 +21,7 @@ NAMED = {
     "docs/model.md": (f"form peak, valley, peak: {AT_60}, {AT_90} and {AT_50} µm", f"at {RIG} µm the broad high region",
                       f"At {RIG} µm the model has *no* anti-resonance"),
     "assets/paper/statements.toml": (
+        f"with a constant {', '.join(MODELLED[:-1])} and {MODELLED[-1]} µm:",
         f"{RIG} µm is V0 =", f"with a constant {RIG} µm:", f"kN/m at {MODELLED[0]} µm and **44.2** at {MODELLED[-1]} µm",
         f"N with {AT_60} µm, **6.55** N with {AT_90} µm, **15.18** N with {AT_50} µm",
         f"100 Hz: with {RIG} and with 10 µm", f"with {AT_50} µm the motion is **chaotic**. 50 Hz with {AT_50} µm:",
