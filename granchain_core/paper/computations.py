@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..experiment import Series, stated_features
-from ..observe import figure_11, force_record, observe, twin
+from ..observe import force_record, observe, twin
 from ..scene import Scene, scene
 from ..state import rest
 from ..steady.curve.curve import Curve
@@ -24,6 +24,7 @@ from .given import Given, behind, moved
 from .results import (
     SHOWN,
     Column,
+    CoupledRow,
     EnergyMaps,
     Observers,
     Rig,
@@ -54,8 +55,12 @@ ENERGY = {"fig3a": 4, "fig3b": 9}
 _TRAIN, _ENERGY = 960, 192
 #: Drive periods for which model (3) is followed from rest before it is shown.
 _FOLLOWED = 60
-#: Figure 11: the observer starts `perturbation` · A0 beside its chain and is followed for `periods` drive periods.
-FIGURE_11 = {"frequencies": (100.0,), "periods": 16, "perturbation": 1e-3}
+#: Figure 11: drive frequency [Hz], which the text does not name; 200 Hz gives the same picture.
+COUPLED_FREQUENCY = 100.0
+#: Figure 11: first distance of the observer from its chain, in drive amplitudes.
+COUPLED_DISTANCE = 1e-3
+#: Figure 11: drive periods that are shown.
+COUPLED_PERIODS = 16
 
 
 def rig(name: str, fixture: bool = False, **changes: float) -> Rig:
@@ -99,9 +104,15 @@ def trains(frequencies: Sequence[float], given: Given, observed: bool, stop: Sto
     return Trains(tuple(columns))
 
 
-def observers(stop: Stop | None) -> Observers:
-    """Figure 11."""
-    return Observers(figure_11(**FIGURE_11, stop=stop))  # type: ignore[arg-type]
+def observers(stop: Stop | None, frequencies: Sequence[float] = (COUPLED_FREQUENCY,),
+              periods: int = COUPLED_PERIODS, distance: float = COUPLED_DISTANCE) -> Observers:
+    """Figure 11: at every frequency [Hz] a row without foundation, then one with κ = 0.001.
+
+    (a) One multiplier lies outside the unit circle, (b) the chain's orbit is stable and (c) the observer leaves it; (d)
+    all multipliers lie inside and (e, f) both first beads move alike.
+    """
+    chains = [scene(name).evolve(f=f) for f in frequencies for name in ("fig11-free", "fig11-founded")]
+    return Observers(tuple(CoupledRow(one.f, one.kappa, twin(one, distance, periods, stop=stop)) for one in chains))
 
 
 def column(named: float, series: Series | None, observed: bool, stop: Stop | None) -> Column:

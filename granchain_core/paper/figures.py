@@ -105,7 +105,8 @@ _TABLE = (
                 ("series",), (90.0, 100.0)),
     PaperFigure("11", "Stability of model (4): multipliers, and the first beads of both chains",
                 "Top κ = 0, bottom κ = 0.001; multipliers of chain and observer, then bead 1 of the chain and of the "
-                "observer, which starts 0.001 A0 beside it. The text does not name the drive frequency; here 100 Hz.",
+                f"observer, which starts {computations.COUPLED_DISTANCE:g} A0 beside it. The text does not name the "
+                f"drive frequency; here {computations.COUPLED_FREQUENCY:g} Hz.",
                 lambda _, stop, __: computations.observers(stop)),
     PaperFigure("12", "Model (5) at 60, 90 and 100 Hz",
                 "Top the shaker's velocity with the contact of driver and bead 1 (green: they touch), then input and "

@@ -11,7 +11,6 @@ import numpy as np
 
 from ..diagram import attractors
 from ..errors import unknown_name
-from ..observe import figure_11
 from ..orbits import periodic_orbit
 from ..regime import Regime
 from ..scene import scene
@@ -21,7 +20,7 @@ from ..steady.curve.resonance import pushes
 from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
-from .computations import MODEL_AMPLITUDES, RIG_AMPLITUDE, SECTION_2_FREQUENCIES, STATES
+from .computations import MODEL_AMPLITUDES, RIG_AMPLITUDE, SECTION_2_FREQUENCIES, STATES, observers
 from .features import dips, peaks
 
 Numbers = list[float | str]
@@ -126,7 +125,7 @@ def _model_3() -> Numbers:
 
 
 def _model_4() -> Numbers:
-    found = figure_11((100.0, 200.0), periods=2)
+    found = observers(None, (100.0, 200.0), periods=2).parts
     outside = [float(len(one.outside)) for one in found]
     orbits = [one.twin.orbit for one in found[:2]]
     return [*outside, float(np.abs(found[0].outside).max()),

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, scene
-from granchain_core.observe import figure_11, observer_stability, twin
+from granchain_core.observe import observer_stability, twin
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import rates
 from granchain_core.orbits import periodic_orbit
@@ -90,22 +90,6 @@ def test_the_observers_multipliers_are_finite_differences_of_the_pair() -> None:
     assert orbit.observer_multipliers is not None
     # central differences over kinks of contacts err by about h
     assert np.abs(found) == pytest.approx(np.abs(orbit.observer_multipliers), abs=2e-4)
-
-
-def test_figure_11_in_full() -> None:
-    rows = {(row.frequency, row.kappa > 0): row for row in figure_11(periods=30)}
-    assert set(rows) == {(100.0, False), (100.0, True), (200.0, False), (200.0, True)}
-    for (_, founded), row in rows.items():
-        assert len(row.multipliers) == 4 * FREE.N
-        chain, observer = row.first_beads
-        assert row.twin.orbit is not None and row.twin.orbit.stable  # (b), (e)
-        assert len(chain) == len(row.twin.time)
-        if founded:  # (d), (e, f): identical to the perturbation, 1e-6 of A0, which grows for a while before it decays
-            assert len(row.outside) == 0
-            assert np.abs(chain - observer).max() < 1e-5 * row.twin.scene.A0
-        else:  # (a), (c)
-            assert len(row.outside) == 1 and row.outside[0].imag == 0.0
-            assert np.abs(chain - observer)[-96:].max() > 0.1 * row.twin.scene.A0
 
 
 def test_how_much_foundation_makes_it_stable() -> None:
