@@ -88,13 +88,13 @@ class Twin:
 
     @property
     def verdict(self) -> str:
-        """"synchronises", "drifts" (without foundation an offset grows), "breaks down" or "neither yet"."""
+        """"synchronises", "drifts", "breaks down" (it grows apart otherwise) or "neither yet" (docs/observers.md)."""
         grows = self.rate is not None and self.rate > 1.0
         if self.rate is None or (grows and self.leading is not None and abs(self.leading) < 1.0):
             return "neither yet"
         if not grows:
             return "synchronises"
-        return "drifts" if is_drift(self.scene, self.translation) else "breaks down"
+        return "drifts" if is_drift(self.scene, self.translation, self.leading) else "breaks down"
 
     @property
     def sentence(self) -> str:
@@ -106,7 +106,7 @@ class Twin:
         if self.verdict == "synchronises":
             return f"The observer synchronises: {factor}."
         side = ""
-        if self.leading is not None and self.leading.real < 0.0:
+        if self.leading is not None and self.leading.imag == 0.0 and self.leading.real < 0.0:
             side = ", to the other side each time"
         if self.verdict == "drifts":
             return f"The observer drifts: an offset of all its beads, which nothing pulls back, grows{side}; {factor}."

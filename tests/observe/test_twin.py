@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, scene
-from granchain_core.observe import observer_stability, twin
+from granchain_core import BadInput, Scene, scene
+from granchain_core.observe import Twin, observer_stability, twin
+from granchain_core.observe.drift import TRANSLATION, is_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import rates
 from granchain_core.orbits import periodic_orbit
@@ -37,6 +39,34 @@ def test_without_foundation_the_observer_drifts_and_is_told_so() -> None:
     assert found.translation > 0.8  # the uniform shift is most of what grows
     assert found.distance[-1] > 0.5  # and it is left in: nothing brings the observer back
     assert np.abs(found.offset[-1]) > 0.05 * FREE.A0
+
+
+@pytest.mark.parametrize(("chain", "share", "multiplier", "drifts"), [
+    (FREE, TRANSLATION, 4.4 + 0j, True), (FREE, TRANSLATION, -2.2 + 0j, True), (FREE, TRANSLATION, None, True),
+    (FREE, TRANSLATION, 4.4 + 0.1j, False), (FREE, 0.99 * TRANSLATION, 4.4 + 0j, False), (FOUNDED, 1.0, 4.4 + 0j, False),
+])
+def test_a_drift_is_a_shift_that_nothing_holds_and_that_does_not_turn(chain: Scene, share: float, multiplier: complex | None,
+                                                                      drifts: bool) -> None:
+    assert is_drift(chain, share, multiplier) is drifts
+
+
+def test_each_verdict_has_its_condition() -> None:
+    """Of one twin without foundation, whose rate, leading multiplier and shape are given."""
+    found = twin(FREE, 1e-6, 30)
+    assert found.orbit is not None and found.orbit.observer_multipliers is not None
+    others = found.orbit.observer_multipliers[1:]
+
+    def told(rate: float | None, leading: complex, share: float = 1.0) -> Twin:
+        assert found.orbit is not None
+        orbit = replace(found.orbit, observer_multipliers=np.concatenate([[leading], others]))
+        return replace(found, rate=rate, orbit=orbit, translation=share)
+
+    assert told(0.5, 0.5).verdict == "synchronises"
+    assert [told(2.0, leading).verdict for leading in (2.0, -2.0, 2.0j)] == ["drifts", "drifts", "breaks down"]
+    assert told(2.0, 2.0, 0.1).verdict == "breaks down"
+    assert told(None, 2.0).verdict == told(2.0, 0.5).verdict == "neither yet"
+    assert ["other side" in told(2.0, leading).sentence for leading in (2.0, -2.0, -2.0 + 1.0j)] == [False, True, False]
+    assert replace(found, orbit=None).verdict == "drifts"  # the multiplier is not known
 
 
 def test_with_foundation_an_observer_that_knows_nothing_finds_its_chain() -> None:
