@@ -25,6 +25,8 @@ from ..stop import Stop
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
 #: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.
 TOLERANCE = 1e-13
+#: The method, in the provenance of results.
+FLOW_METHOD = "tangent flow (DOP853 in regularised time)"
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
 BACK = 1e-8
 
