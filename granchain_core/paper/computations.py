@@ -51,10 +51,16 @@ STATED_AMPLITUDES = (6e-6, RIG_AMPLITUDE, 8e-6)
 MODEL_AMPLITUDES = tuple(sorted({STATED_AMPLITUDES[-1], *(scene(name).A0 for name in STATES.values())}))
 #: Drive periods shown of figures 3a and 3b.
 ENERGY = {"fig3a": 4, "fig3b": 9}
-#: Samples a drive period: a pulse of the rig lasts 1/70 of one at 60 Hz; those of section 2 are slower.
-_TRAIN, _ENERGY = 960, 192
-#: Drive periods for which model (3) is followed from rest before it is shown.
-_FOLLOWED = 60
+#: Samples a drive period of force trains: a pulse of the rig lasts 1/70 of one at 60 Hz.
+_TRAIN_SAMPLES = 960
+#: Samples a drive period of energy maps: pulses of section 2 are slower.
+_ENERGY_SAMPLES = 192
+#: Drive periods for which model (3) is followed from rest; the last of them are shown.
+FOLLOWED_PERIODS = 60
+#: Accuracy of model (3)'s steps; what a measured force leaves open between its samples is more.
+_OBSERVER_ACCURACY = 1e-4
+#: The paper's foundation, κ = k/(K√A0).
+KAPPA = 0.001
 #: Figure 11: drive frequency [Hz], which the text does not name; 200 Hz gives the same picture.
 COUPLED_FREQUENCY = 100.0
 #: Figure 11: first distance of the observer from its chain, in drive amplitudes.
@@ -75,7 +81,7 @@ def transmission(given: Given, stop: Stop | None, progress: Progress) -> Transmi
 
 def energy(names: Sequence[str], stop: Stop | None) -> EnergyMaps:
     """Figure 3 or one of its parts."""
-    return EnergyMaps(tuple((settle(scene(name), samples=_ENERGY, stop=stop), ENERGY[name]) for name in names))
+    return EnergyMaps(tuple((settle(scene(name), samples=_ENERGY_SAMPLES, stop=stop), ENERGY[name]) for name in names))
 
 
 def shaker(given: Given) -> ShakerAmplitude:
@@ -87,7 +93,7 @@ def response(given: Given, observed: bool, stop: Stop | None, progress: Progress
     """Figures 6 and 9; `observed` adds model (3) and more amplitudes, as figure 9 does."""
     amplitudes = MODEL_AMPLITUDES if observed else (RIG_AMPLITUDE,)
     part = 1.0 / (len(amplitudes) + 1)
-    curves = [_curve(scene("rig").evolve(A0=a, kappa=0.001), RIG_FREQUENCIES, stop, _within(progress, i * part, part))
+    curves = [_curve(scene("rig").evolve(A0=a, kappa=KAPPA), RIG_FREQUENCIES, stop, _within(progress, i * part, part))
               for i, a in enumerate(amplitudes)]
     states = tuple((f, _state(name, stop)) for f, name in STATES.items()) if observed else ()
     panel = RigCurves(tuple(curves), stated_features(), states, given.curve)
@@ -132,19 +138,19 @@ def _observer(chain: Scene, series: Series | None, back: float,
               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, str]:
     """Model (3): time, output force and words. A measured input force drives it or, without one, model (5)'s."""
     if series is None:
-        pair = twin(chain, rest(chain), _FOLLOWED, _TRAIN, stop)
-        rows = min(len(pair.time), round(SHOWN * chain.f) * _TRAIN + 1)
+        pair = twin(chain, rest(chain), FOLLOWED_PERIODS, _TRAIN_SAMPLES, stop)
+        rows = min(len(pair.time), round(SHOWN * chain.f) * _TRAIN_SAMPLES + 1)
         return pair.time[:rows], pair.observer_output_force[-rows:], "fed with model (5)'s input force, from rest"
     if series.input_force is None:
         raise BadInput("Model (3) is pushed by the measured input force; the series has no column input_force_N.")
-    found = observe(chain.evolve(accuracy=1e-4), force_record(series.time, series.input_force), stop=stop)
+    found = observe(chain.evolve(accuracy=_OBSERVER_ACCURACY), force_record(series.time, series.input_force), stop=stop)
     time = series.time - back
     kept = (time >= 0.0) & (time <= SHOWN)
     return time[kept], found.output_force[kept], "fed with the measured input force, from rest"
 
 
 def _state(name: str, stop: Stop | None) -> Settled:
-    return settle(scene(name), samples=_TRAIN, stop=stop)
+    return settle(scene(name), samples=_TRAIN_SAMPLES, stop=stop)
 
 
 def _within(progress: Progress, begin: float, part: float) -> Progress:

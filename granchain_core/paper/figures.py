@@ -87,8 +87,8 @@ _TABLE = (
                 lambda given, stop, progress: computations.trains((90.0, 100.0), given, False, stop, progress),
                 ("series",), (90.0, 100.0)),
     PaperFigure("8", "The chain of models (3) to (5): every bead on a weak foundation",
-                "The scene rig to scale; the springs, which stand for the flexures, are symbols. κ = 0.001 is "
-                "k/(K√A0). In model (3) a given force F_in takes the driver's place.",
+                "The scene rig to scale; the springs, which stand for the flexures, are symbols. "
+                f"κ = {computations.KAPPA:g} is k/(K√A0). In model (3) a given force F_in takes the driver's place.",
                 lambda *_: computations.rig("rig")),
     PaperFigure("9", "Model and measurement: largest transmitted force, and force trains at 60 Hz",
                 "(a) " + _FEATURES +
@@ -99,14 +99,14 @@ _TABLE = (
                 ("curve", "series"), (60.0,)),
     PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
                 "Model (3) from rest, fed with a measured input force or, without one, with that of model (5), and "
-                "shown after 60 periods. " + _AMPLITUDES +
+                f"shown after {computations.FOLLOWED_PERIODS} periods. " + _AMPLITUDES +
                 "At 50 Hz this observer is unstable and does not find the chain's motion. " + _IMAGES,
                 lambda given, stop, progress: computations.trains((90.0, 100.0), given, True, stop, progress),
                 ("series",), (90.0, 100.0)),
     PaperFigure("11", "Stability of model (4): multipliers, and the first beads of both chains",
-                "Top κ = 0, bottom κ = 0.001; multipliers of chain and observer, then bead 1 of the chain and of the "
-                f"observer, which starts {computations.COUPLED_DISTANCE:g} A0 beside it. The text does not name the "
-                f"drive frequency; here {computations.COUPLED_FREQUENCY:g} Hz.",
+                f"Top κ = 0, bottom κ = {computations.KAPPA:g}; multipliers of chain and observer, then bead 1 of the "
+                f"chain and of the observer, which starts {computations.COUPLED_DISTANCE:g} A0 beside it. The text "
+                f"does not name the drive frequency; here {computations.COUPLED_FREQUENCY:g} Hz.",
                 lambda _, stop, __: computations.observers(stop)),
     PaperFigure("12", "Model (5) at 60, 90 and 100 Hz",
                 "Top the shaker's velocity with the contact of driver and bead 1 (green: they touch), then input and "

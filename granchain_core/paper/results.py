@@ -155,7 +155,7 @@ class Column:
                 yield {"frequency_in_paper_Hz": self.named, "source": "model (3)", "time_s": t,
                        "output_force_N": force}
         if self.measured is not None:
-            columns = {f"{name}": getattr(self.measured, attribute) for name, attribute in (
+            columns = {name: getattr(self.measured, attribute) for name, attribute in (
                 ("velocity_m_s", "velocity"), ("input_force_N", "input_force"), ("output_force_N", "output_force"))}
             for i, t in enumerate(self.measured.time):
                 yield {"frequency_in_paper_Hz": self.named, "source": "measured", "time_s": t,
