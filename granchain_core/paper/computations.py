@@ -20,7 +20,7 @@ from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
 from ..stop import Stop
-from .given import Given, behind, moved
+from .given import Given, delay_of, moved_back
 from .results import (
     SHOWN,
     Column,
@@ -127,14 +127,14 @@ def column(named: float, series: Series | None, observed: bool, stop: Stop | Non
     run, chain = found.run, found.run.scene
     index, time = repeated(run, SHOWN * chain.f)
     velocity = 2.0 * math.pi * chain.f * chain.A0 * np.cos(2.0 * math.pi * chain.f * time)
-    back = 0.0 if series is None else behind(series, chain.f, time, velocity, run.input_force[index])
-    when, force, words = _observer(chain, series, back, stop) if observed else (None, None, "")
+    delay = 0.0 if series is None else delay_of(series, chain.f, time, velocity, run.input_force[index])
+    when, force, words = _observer(chain, series, delay, stop) if observed else (None, None, "")
     return Column(named, found, time, velocity, run.input_force[index], run.output_force[index],
                   (run.overlap[index, 0] > 0.0).astype(int), when, force, words,
-                  None if series is None else moved(series, back))
+                  None if series is None else moved_back(series, delay))
 
 
-def _observer(chain: Scene, series: Series | None, back: float,
+def _observer(chain: Scene, series: Series | None, delay: float,
               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, str]:
     """Model (3): time, output force and words. A measured input force drives it or, without one, model (5)'s."""
     if series is None:
@@ -144,7 +144,7 @@ def _observer(chain: Scene, series: Series | None, back: float,
     if series.input_force is None:
         raise BadInput("Model (3) is pushed by the measured input force; the series has no column input_force_N.")
     found = observe(chain.evolve(accuracy=_OBSERVER_ACCURACY), force_record(series.time, series.input_force), stop=stop)
-    time = series.time - back
+    time = series.time - delay
     kept = (time >= 0.0) & (time <= SHOWN)
     return time[kept], found.output_force[kept], "fed with the measured input force, from rest"
 
