@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..diagram.attractor import Attractor, Origin, attractors_table
+from ..diagram.attractor import Attractor, Origin, attractor_methods, attractors_table
 from ..diagram.attractors import attractors_from
 from ..errors import BadInput
 from ..scene import Scene
@@ -72,7 +72,7 @@ class Basins(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Where they come from."""
-        return dict(provenance(self.scene, "rk4 in batches, orbits by dop853", None))
+        return dict(provenance(self.scene, attractor_methods(self.scene, self.attractors), None))
 
     def summary(self) -> list[str]:
         """The plane, and what part of it leads to each attractor."""

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import check_range
-from ..integrate.methods import ADAPTIVE
-from ..orbits.stroboscopic_map import StroboscopicMap
+from ..orbits.stroboscopic_map import FLOW_METHOD, StroboscopicMap
 from ..scene import Scene
 from ..state import State
 from ..steady.settling.advance import run_until_settled
@@ -117,7 +116,7 @@ class LyapunovSpectrum(Labelled):
     def attributes(self) -> dict[str, Attribute]:
         """Dimension and sums, and where they come from."""
         low, high = self.dimension_range or (None, None)
-        return {**provenance(self.scene, ADAPTIVE, None), "periods": self.periods, "mean_trace": self.mean_trace,
+        return {**provenance(self.scene, FLOW_METHOD, None), "periods": self.periods, "mean_trace": self.mean_trace,
                 "dimension": or_nan(self.dimension), "liouville": or_nan(self.liouville),
                 "dimension_low": or_nan(low), "dimension_high": or_nan(high)}
 

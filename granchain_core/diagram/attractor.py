@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..orbits import Orbit
+from ..orbits.stroboscopic_map import FLOW_METHOD
 from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
 from ..state import State
+from ..steady.settling.single_chain import settling_methods
 from ..tables import (
     MAXIMA,
     Column,
@@ -121,7 +123,7 @@ class Attractors(list[Attractor], Labelled):
     def attributes(self) -> dict[str, Attribute]:
         """Where they come from."""
         errors = [one.error_estimate for one in self if one.error_estimate is not None]
-        return dict(provenance(self.scene, "rk4 in batches, orbits by dop853", max(errors) if errors else None))
+        return dict(provenance(self.scene, attractor_methods(self.scene, self), max(errors) if errors else None))
 
     def summary(self) -> list[str]:
         """How many, and a line for each."""
@@ -129,6 +131,12 @@ class Attractors(list[Attractor], Labelled):
 
     def __repr__(self) -> str:
         return as_text(self.heading(), self.summary())
+
+
+def attractor_methods(scene: Scene, found: Iterable[Attractor]) -> str:
+    """The methods behind the attractors of `scene` in words, for their provenance."""
+    has_orbits = any(one.orbit is not None for one in found)
+    return settling_methods(scene, "start") + (f"; orbits by {FLOW_METHOD}" if has_orbits else "")
 
 
 def attractors_table(scene: Scene, found: Sequence[Attractor]) -> Table:

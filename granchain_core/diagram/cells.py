@@ -11,6 +11,7 @@ from ..quantities import QUANTITIES
 from ..regime import NAMES, Regime
 from ..result import ForceErrors
 from ..scene import Scene
+from ..steady.settling.single_chain import settling_methods
 from ..steady.steady_state import SteadyState
 from ..tables import (
     MAXIMA,
@@ -122,7 +123,8 @@ class Diagram(Labelled):
         """
         errors = self.cells["error_estimate"]
         known = errors[np.isfinite(errors)]
-        return {**provenance(self.scene, "rk4 in batches", float(known.max()) if len(known) else None),
+        reached = float(known.max()) if len(known) else None
+        return {**provenance(self.scene, settling_methods(self.scene, "cell"), reached),
                 **amplitude_attribute(self.grid.amplitude), "map_digest": self.grid.digest, "wall_s": self.wall_s,
                 "map_axes": json.dumps([self.grid.y.knob, self.grid.x.knob])}
 

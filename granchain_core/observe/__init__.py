@@ -1,6 +1,5 @@
 """Observers, models (3) and (4) of the paper: a chain pushed by a measured force, and whether it converges."""
 
-from .figure_11 import Figure11, figure_11
 from .observation import Observation, Residual, observe
 from .read import first_state, read_force, read_force_csv
 from .record import ForceRecord, force_record
@@ -8,7 +7,6 @@ from .stability import ObserverPoint, ObserverStability, Threshold, observer_sta
 from .twin import Twin, twin
 
 __all__ = [
-    "Figure11", "ForceRecord", "Observation", "ObserverPoint", "ObserverStability", "Residual",
-    "Threshold", "Twin", "figure_11", "first_state", "force_record", "observe", "observer_stability",
-    "read_force", "read_force_csv", "twin",
+    "ForceRecord", "Observation", "ObserverPoint", "ObserverStability", "Residual", "Threshold", "Twin",
+    "first_state", "force_record", "observe", "observer_stability", "read_force", "read_force_csv", "twin",
 ]

@@ -1,9 +1,9 @@
 """Drift of an observer: without a foundation it may move away as a whole.
 
 The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
-wall alone, and only while they touch it. If a multiplier outside the unit circle is real and its mode is nearly a
-common shift of all beads, the instability is called a drift: the observer keeps its shape and moves to one side if the
-multiplier is positive, or alternates between the sides if it is negative (at 200 Hz).
+wall alone, and only while they touch it. If the leading multiplier is real and not inside the unit circle, and its mode
+is nearly a common shift of all beads, the instability is called a drift: the observer keeps its shape and moves to one
+side if the multiplier is positive, or alternates between the sides if it is negative (at 200 Hz).
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..scene import Scene
 
 #: A multiplier this near to the unit circle counts as on it: the error of the tangents.
 _ON_THE_CIRCLE = 1e-6
-#: Squared cosine between a difference and one shift of all beads above which it is called a translation.
+#: Squared cosine between a difference and one shift of all beads from which on it is called a translation.
 TRANSLATION = 0.7
 
 
@@ -27,9 +27,14 @@ def share_of_translation(difference: np.ndarray) -> float:
     return float(difference.sum() ** 2 / (len(difference) * size)) if size > 0.0 else 0.0
 
 
-def is_drift(scene: Scene, share: float) -> bool:
-    """Whether a growing difference with this share of a translation is a drift, which only a foundation prevents."""
-    return scene.k == 0.0 and share >= TRANSLATION
+def is_drift(scene: Scene, share: float, multiplier: complex | None) -> bool:
+    """Whether a growing difference with this share of a translation is a drift, which only a foundation prevents.
+
+    `multiplier` is the one by which it grows, None where it is not known. A complex one turns the difference through
+    shapes of which only some are a translation.
+    """
+    real = multiplier is None or multiplier.imag == 0.0
+    return scene.k == 0.0 and share >= TRANSLATION and real
 
 
 def observer_drift(orbit: Orbit) -> str | None:
@@ -40,7 +45,7 @@ def observer_drift(orbit: Orbit) -> str | None:
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     value, vector = eigenpair(stroboscopic_map, x, 0, observer=True)
-    if value.imag != 0.0 or not is_drift(orbit.scene, share_of_translation(vector[: orbit.scene.N].real)):
+    if not is_drift(orbit.scene, share_of_translation(vector[: orbit.scene.N].real), value):
         return None
     way = "" if value.real > 0.0 else ", alternating between the sides"
     return (f"The observer drifts: its leading multiplier {value.real:.4g} is real and moves all beads together{way}, "

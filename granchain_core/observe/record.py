@@ -25,9 +25,13 @@ GAP = 1.5
 GAPS = ("refuse", "zero", "interpolate")
 #: Fewest samples over the shortest pulse of this strength.
 PULSE_SAMPLES = 4
+#: A force whose smallest modulus is above this part of its largest may have a sensor's offset, and a note says so.
+_NEAR_ZERO = 0.02
+#: Zero force that is put into a gap begins and ends at most this part of the gap beside its neighbours.
+_PART_OF_GAP = 0.4
 #: Fewest samples in all.
 FEWEST = 8
-#: Duration of a collision of two free beads with peak force F is this times √(m/2) K^{−1/3} F^{−1/6}, m* being m/2.
+#: Duration of a collision of two free beads of mass m with peak force F, over √(m/2) K^{−1/3} F^{−1/6}.
 _HERTZ = HERTZ_DURATION * HERTZ_FORCE ** (1.0 / 6.0)
 
 
@@ -119,7 +123,7 @@ def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: 
     zero = _offset(record, offset)
     if zero != 0.0:
         notes.append(f"offset of {zero:.4g} N subtracted")
-    elif float(np.abs(record.force).min()) > 0.02 * float(np.abs(record.force).max()) and scene.F0 == 0.0:
+    elif float(np.abs(record.force).min()) > _NEAR_ZERO * float(np.abs(record.force).max()) and scene.F0 == 0.0:
         notes.append(f"the force is nowhere below {np.abs(record.force).min():.3g} N: if that is the sensor's offset, "
                      "have it subtracted")
     moved = ForceRecord(record.time, record.force - zero, record.output, record.place, record.understood)
@@ -158,8 +162,8 @@ def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
     if record.output is not None:
         raise BadInput(f"{where}: a gap in a record with an output force can only be interpolated, since there is no "
                        "output force for samples that are put in.")
-    inside = np.sort(np.concatenate([record.time[gaps] + np.minimum(usual, 0.4 * steps[gaps]),
-                                     record.time[gaps + 1] - np.minimum(usual, 0.4 * steps[gaps])]))
+    beside = np.minimum(usual, _PART_OF_GAP * steps[gaps])
+    inside = np.sort(np.concatenate([record.time[gaps] + beside, record.time[gaps + 1] - beside]))
     places = np.searchsorted(record.time, inside)
     return ForceRecord(np.insert(record.time, places, inside), np.insert(record.force, places, 0.0), None,
                        record.place, record.understood)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -83,8 +84,7 @@ def observer_stability(scene: Scene, knob: str, values: Sequence[float], period:
         orbits.append(orbit)
         points.append(_point(float(value), orbit, failure))
     found = []
-    for (a, left), (b, right) in zip(list(zip(points, orbits, strict=True))[:-1],
-                                     list(zip(points, orbits, strict=True))[1:], strict=True):
+    for (a, left), (b, right) in pairwise(zip(points, orbits, strict=True)):
         if left is not None and right is not None and left.period == right.period \
                 and (a.observer_largest < 1.0) != (b.observer_largest < 1.0):
             found.append(_locate(scene, knob, a, b, left, stop))

@@ -44,10 +44,34 @@ _ONE_IS_ENOUGH = 0.03
 class Twin:
     """A chain x and its observer y in time: T samples of N beads in SI.
 
-    `distance` (T,) is in scaled units, `strobe_distance` (P + 1,) the same after every orbit period. `rate` is the
-    factor per orbit period by which the distance grows or shrinks, `measured` one or two leading multipliers fitted to
-    it (None and empty where too few periods were linear), `window` the strobes used. `orbit` is None where the chain is
-    not periodic, or cuts tension. `translation` is how much of the last linear difference is one shift of all beads.
+    Attributes
+    ----------
+    scene : Scene
+        The chain.
+    orbit : Orbit or None
+        The orbit that the chain starts on; None where it is not periodic, or cuts tension.
+    period : int
+        Drive periods between two strobes: that of the chain's motion, 1 where it is not periodic.
+    time : numpy.ndarray, shape (T,)
+        From 0 on [s].
+    chain, observer : numpy.ndarray, shape (T, N)
+        Displacements of the beads [m].
+    input_force, output_force, observer_output_force : numpy.ndarray, shape (T,)
+        Force of the driver on both chains, of the chain and of the observer on their walls [N].
+    distance : numpy.ndarray, shape (T,)
+        Of observer and chain, in scaled units.
+    strobe_distance : numpy.ndarray, shape (strobes,)
+        The same at every strobe.
+    window : tuple of int
+        First strobe of those with a linear distance, and one past the last.
+    rate : float or None
+        Factor by which the distance grows or shrinks from strobe to strobe; None where too few were linear.
+    measured : tuple of complex
+        One or two leading multipliers fitted to the differences; empty where too few strobes were linear.
+    translation : float
+        Share of one shift of all beads in the last linear difference, 0 to 1.
+    cost : Cost
+        Computing time, steps and evaluations.
     """
 
     scene: Scene
@@ -88,13 +112,13 @@ class Twin:
 
     @property
     def verdict(self) -> str:
-        """"synchronises", "drifts" (without foundation an offset grows), "breaks down" or "neither yet"."""
+        """"synchronises", "drifts", "breaks down" (it grows apart otherwise) or "neither yet" (docs/observers.md)."""
         grows = self.rate is not None and self.rate > 1.0
         if self.rate is None or (grows and self.leading is not None and abs(self.leading) < 1.0):
             return "neither yet"
         if not grows:
             return "synchronises"
-        return "drifts" if is_drift(self.scene, self.translation) else "breaks down"
+        return "drifts" if is_drift(self.scene, self.translation, self.leading) else "breaks down"
 
     @property
     def sentence(self) -> str:
@@ -106,7 +130,7 @@ class Twin:
         if self.verdict == "synchronises":
             return f"The observer synchronises: {factor}."
         side = ""
-        if self.leading is not None and self.leading.real < 0.0:
+        if self.leading is not None and self.leading.imag == 0.0 and self.leading.real < 0.0:
             side = ", to the other side each time"
         if self.verdict == "drifts":
             return f"The observer drifts: an offset of all its beads, which nothing pulls back, grows{side}; {factor}."

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed, check_range
-from ..integrate.methods import ADAPTIVE
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
@@ -28,7 +27,7 @@ from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenanc
 from ..tables.provenance import Attribute
 from ..tables.words import multiplier_columns, state_columns
 from .multiplier_errors import derivative_change, errors_of
-from .stroboscopic_map import Flow, StroboscopicMap, refuse_cut
+from .stroboscopic_map import FLOW_METHOD, Flow, StroboscopicMap, refuse_cut
 
 #: Residual at which an orbit is found, relative to the largest displacement and w.
 CONVERGED = 1e-11
@@ -169,7 +168,7 @@ class Orbit(Labelled):
     def attributes(self) -> dict[str, Attribute]:
         """Period, residual, stability, and where it comes from."""
         found: dict[str, Attribute] = {
-            **provenance(self.scene, ADAPTIVE, None), "period": self.period, "residual": self.residual,
+            **provenance(self.scene, FLOW_METHOD, None), "period": self.period, "residual": self.residual,
             "stable": int(self.stable), "liouville": or_nan(self.liouville)}
         return found if self.observer_stable is None else {**found, "observer_stable": int(self.observer_stable)}
 

@@ -25,6 +25,8 @@ from ..stop import Stop
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
 #: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.
 TOLERANCE = 1e-13
+#: The method, in the provenance of results.
+FLOW_METHOD = "tangent flow (DOP853 in regularised time)"
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
 BACK = 1e-8
 
@@ -96,18 +98,20 @@ class StroboscopicMap:
     def derivative_by_saltation(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
 
-        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests use it. It must
-        stay importable, because every process that reads compiled kernels imports their types.
-        Raises `BadInput` for a damping that is not the linear dashpot's.
+        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Raises `BadInput` for a
+        damping that is not the linear dashpot's.
+
+        Only tests use it. It stands here because its type `VelocityTangent` is in the list of compiled versions of
+        `run_flow`: were it in tests/, a process without the tests could not read that list.
         """
         scaled = self.engine.scaled
         if scaled.slots.dissipation is not None and not isinstance(scaled.slots.dissipation, LinearDashpot):
             raise BadInput(f"dissipation = {scaled.scene.dissipation} has no constant saltation; the second route "
                            "knows linear and none.")
-        before = velocity_from_w(scaled, x)
+        before = velocity_jacobian(scaled, x)
         tangent = new_velocity_tangent(before, scaled.bodies, float(jumps))
         self._run(x, tangent)
-        return np.linalg.solve(velocity_from_w(scaled, self.inner(self.engine.y)), tangent.matrix)
+        return np.linalg.solve(velocity_jacobian(scaled, self.inner(self.engine.y)), tangent.matrix)
 
     def end(self, x: np.ndarray) -> np.ndarray:
         """The state n periods after x, without tangents: with none of them, by the kernel that has their code."""
@@ -132,7 +136,7 @@ class StroboscopicMap:
         return float(trace)
 
 
-def velocity_from_w(scaled: ScaledChain, x: np.ndarray) -> np.ndarray:
+def velocity_jacobian(scaled: ScaledChain, x: np.ndarray) -> np.ndarray:
     """Derivative (2N, 2N) of (u, v) with respect to (u, w) at state x, phase 0, for the linear dashpot or none."""
     n = scaled.beads
     matrix = np.eye(2 * n)

@@ -5,6 +5,7 @@ from .given import Given, read_given
 from .numbers import numbers_of
 from .results import (
     Column,
+    CoupledRow,
     EnergyMaps,
     Observers,
     Result,
@@ -18,7 +19,7 @@ from .results import (
 from .statements import Statement, statements
 
 __all__ = [
-    "FIGURES", "Column", "EnergyMaps", "Given", "Observers", "PaperFigure", "Result", "Rig", "RigCurves",
+    "FIGURES", "Column", "CoupledRow", "EnergyMaps", "Given", "Observers", "PaperFigure", "Result", "Rig", "RigCurves",
     "RigResponse", "ShakerAmplitude", "Statement", "Trains", "Transmission", "compute", "figure_of", "numbers_of",
     "read_given", "statements",
 ]

@@ -6,16 +6,27 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..errors import BadInput
+from ..scene import scene
 from ..stop import Stop
-from . import compute as by
+from . import computations
 from .given import Given
 from .results import Result
 
 _IMAGES = ("The paper's measured series are images, whose numbers we do not have, so none is drawn; your own is drawn "
            "over it (--data FILE).")
 _FEATURES = "Of the measurement only what the text states is drawn, its frequencies: the text gives no force. "
-_AMPLITUDES = ("Model (5) with the amplitudes of the presets: 11 µm at 60 Hz, 6 µm at 90 Hz, and for the paper's 100 "
-               "Hz 13 µm at 50 Hz, as the paper drove its own model. It took another amplitude at each frequency and "
+
+
+def _micrometres(length: float) -> str:
+    return f"{1e6 * length:g} µm"
+
+
+_LOW, _MIDDLE, _HIGH = computations.STATED_AMPLITUDES
+#: The presets of figure 12, in the order of `STATES`.
+_AT_60, _AT_90, _AT_50 = (scene(name) for name in computations.STATES.values())
+_AMPLITUDES = (f"Model (5) with the amplitudes of the presets: {_micrometres(_AT_60.A0)} at {_AT_60.f:g} Hz, "
+               f"{_micrometres(_AT_90.A0)} at {_AT_90.f:g} Hz, and for the paper's 100 Hz {_micrometres(_AT_50.A0)} at "
+               f"{_AT_50.f:g} Hz, as the paper drove its own model. It took another amplitude at each frequency and "
                "states none. ")
 
 
@@ -26,7 +37,7 @@ class PaperFigure:
     number: str
     title: str
     caption: str
-    compute: Callable[[Given, Stop | None, by.Progress], Result]
+    compute: Callable[[Given, Stop | None, computations.Progress], Result]
     takes: tuple[str, ...] = ()
     frequencies: tuple[float, ...] = ()
 
@@ -37,68 +48,73 @@ def _quietly(_: float) -> None:
 
 _TABLE = (
     PaperFigure("1", "The driven chain of section 2",
-                "Driver (bead 0), eleven beads and the wall, to scale from the scene sec2. The drive amplitude, 0.5 "
-                "µm, is 1/38,100 of a bead's diameter and cannot be seen at any scale that shows a bead.",
-                lambda *_: by.rig("sec2")),
+                "Driver (bead 0), eleven beads and the wall, to scale from the scene sec2. The drive amplitude, "
+                "0.5 µm, is 1/38,100 of a bead's diameter and cannot be seen at any scale that shows a bead.",
+                lambda *_: computations.rig("sec2")),
     PaperFigure("2", "Largest transmitted force of section 2 over the drive frequency",
                 "Every point starts at rest; the force is the elastic one, the paper's. Peaks have the paper's names "
                 "1:n, marks the motion's regime. Where the motion is not periodic, a mark is the largest force of the "
                 "last periods and not of an orbit.",
-                by.transmission, ("curve",)),
+                computations.transmission, ("curve",)),
     PaperFigure("3", "Kinetic energy of the beads at the 1:1 and the 1:3 resonance",
                 "Left of each map the drive's displacement (red) and the force on bead 1 (blue). At 340 Hz one strong "
                 "push in every period, at 1130 Hz one in three.",
-                lambda _, stop, __: by.energy(("fig3a", "fig3b"), stop)),
+                lambda _, stop, __: computations.energy(("fig3a", "fig3b"), stop)),
     PaperFigure("3a", "Kinetic energy of the beads at the 1:1 resonance, 340 Hz",
                 "Left of the map the drive's displacement (red) and the force on bead 1 (blue): one strong push in "
                 "every period, given when the reflected pulse is back.",
-                lambda _, stop, __: by.energy(("fig3a",), stop)),
+                lambda _, stop, __: computations.energy(("fig3a",), stop)),
     PaperFigure("3b", "Kinetic energy of the beads at the 1:3 resonance, 1130 Hz",
                 "Left of the map the drive's displacement (red) and the force on bead 1 (blue): one strong push in "
                 "three periods; the weaker ones between start no pulse.",
-                lambda _, stop, __: by.energy(("fig3b",), stop)),
+                lambda _, stop, __: computations.energy(("fig3b",), stop)),
     PaperFigure("4", "The laboratory rig",
                 "Beads of the scene rig to scale. Shaker, vibrometer, force transducers, holders and flexures are "
                 "drawn where the text has them, without a scale: it states no size of theirs.",
-                lambda *_: by.rig("rig", True)),
+                lambda *_: computations.rig("rig", True)),
     PaperFigure("5", "What the shaker does: velocity and displacement over the frequency",
-                "V0 = 2πf A0 for the amplitudes that the text states, about 6 to 8 µm, and 7 µm between. " + _IMAGES,
-                lambda given, *_: by.shaker(given), ("shaker",)),
+                f"V0 = 2πf A0 for the amplitudes that the text states, about {1e6 * _LOW:g} to {_micrometres(_HIGH)}, "
+                f"and {_micrometres(_MIDDLE)} between. " + _IMAGES,
+                lambda given, *_: computations.shaker(given), ("shaker",)),
     PaperFigure("6", "The rig's response: largest transmitted force, and force trains at 60 Hz",
-                "(a) " + _FEATURES + "The curve is model (5) at a constant 7 µm from rest, with its regimes; "
-                                     "it has its peak and valley elsewhere. (b) Model (5) at 60 Hz with 11 "
-                                     "µm. " + _IMAGES,
-                lambda given, stop, progress: by.response(given, False, stop, progress), ("curve", "series"), (60.0,)),
+                "(a) " + _FEATURES +
+                f"The curve is model (5) at a constant {_micrometres(_MIDDLE)} from rest, with its regimes; it has its "
+                f"peak and valley elsewhere. (b) Model (5) at 60 Hz with {_micrometres(_AT_60.A0)}. " + _IMAGES,
+                lambda given, stop, progress: computations.response(given, False, stop, progress),
+                ("curve", "series"), (60.0,)),
     PaperFigure("7", "Force trains at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
                 _AMPLITUDES + _IMAGES,
-                lambda given, stop, progress: by.trains((90.0, 100.0), given, False, stop, progress), ("series",),
-                (90.0, 100.0)),
+                lambda given, stop, progress: computations.trains((90.0, 100.0), given, False, stop, progress),
+                ("series",), (90.0, 100.0)),
     PaperFigure("8", "The chain of models (3) to (5): every bead on a weak foundation",
-                "The scene rig to scale; the springs, which stand for the flexures, are symbols. κ = 0.001 is "
-                "k/(K√A0). In model (3) a given force F_in takes the driver's place.",
-                lambda *_: by.rig("rig")),
+                "The scene rig to scale; the springs, which stand for the flexures, are symbols. "
+                f"κ = {computations.KAPPA:g} is k/(K√A0). In model (3) a given force F_in takes the driver's place.",
+                lambda *_: computations.rig("rig")),
     PaperFigure("9", "Model and measurement: largest transmitted force, and force trains at 60 Hz",
-                "(a) " + _FEATURES + "Model (3) needs the measured input force at every frequency; in its place model "
-                "(5) at four constant amplitudes from rest and, ringed, the presets of figure 12 at the frequencies "
-                "that the paper names. (b) Model (3) fed with a measured input force or, without one, with that of "
-                "model (5). " + _IMAGES,
-                lambda given, stop, progress: by.response(given, True, stop, progress), ("curve", "series"), (60.0,)),
+                "(a) " + _FEATURES +
+                "Model (3) needs the measured input force at every frequency; in its place model (5) at four constant "
+                "amplitudes from rest and, ringed, the presets of figure 12 at the frequencies that the paper names. "
+                "(b) Model (3) fed with a measured input force or, without one, with that of model (5). " + _IMAGES,
+                lambda given, stop, progress: computations.response(given, True, stop, progress),
+                ("curve", "series"), (60.0,)),
     PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
                 "Model (3) from rest, fed with a measured input force or, without one, with that of model (5), and "
-                "shown after 60 periods. " + _AMPLITUDES + "At 50 Hz this observer is unstable and does not find the "
-                "chain's motion. " + _IMAGES,
-                lambda given, stop, progress: by.trains((90.0, 100.0), given, True, stop, progress), ("series",),
-                (90.0, 100.0)),
+                f"shown after {computations.FOLLOWED_PERIODS} periods. " + _AMPLITUDES +
+                "At 50 Hz this observer is unstable and does not find the chain's motion. " + _IMAGES,
+                lambda given, stop, progress: computations.trains((90.0, 100.0), given, True, stop, progress),
+                ("series",), (90.0, 100.0)),
     PaperFigure("11", "Stability of model (4): multipliers, and the first beads of both chains",
-                "Top κ = 0, bottom κ = 0.001; multipliers of chain and observer, then bead 1 of the chain and of the "
-                "observer, which starts 0.001 A0 beside it. The text does not name the drive frequency; here 100 Hz.",
-                lambda _, stop, __: by.observers(stop)),
+                f"Top κ = 0, bottom κ = {computations.KAPPA:g}; multipliers of chain and observer, then bead 1 of the "
+                f"chain and of the observer, which starts {computations.COUPLED_DISTANCE:g} A0 beside it. The text "
+                f"does not name the drive frequency; here {computations.COUPLED_FREQUENCY:g} Hz.",
+                lambda _, stop, __: computations.observers(stop)),
     PaperFigure("12", "Model (5) at 60, 90 and 100 Hz",
                 "Top the shaker's velocity with the contact of driver and bead 1 (green: they touch), then input and "
                 "output force. " + _AMPLITUDES +
-                "Dotted at 100 Hz: a shaker with 6.5 µm, which has the same velocity amplitude. " + _IMAGES,
-                lambda given, stop, progress: by.trains((60.0, 90.0, 100.0), given, False, stop, progress), ("series",),
-                (60.0, 90.0, 100.0)),
+                f"Dotted at 100 Hz: a shaker with {_micrometres(_AT_50.A0 * _AT_50.f / 100.0)}, which has the same "
+                "velocity amplitude. " + _IMAGES,
+                lambda given, stop, progress: computations.trains((60.0, 90.0, 100.0), given, False, stop, progress),
+                ("series",), (60.0, 90.0, 100.0)),
 )
 #: By number, in the order of the paper.
 FIGURES: dict[str, PaperFigure] = {one.number: one for one in _TABLE}
@@ -116,7 +132,7 @@ def figure_of(number: str) -> PaperFigure:
 
 
 def compute(number: str, given: Given | None = None, stop: Stop | None = None,
-            progress: by.Progress = _quietly) -> Result:
+            progress: computations.Progress = _quietly) -> Result:
     """The result that a figure is drawn from.
 
     Parameters

@@ -1,4 +1,5 @@
-"""A user's data for a figure: the kinds it takes, and the frequency to which a series belongs."""
+"""A user's data for a figure: the kinds it takes, the frequency to which a series belongs, its delay against the model.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +30,9 @@ class Given:
 
 #: A component smaller than this part of the signal's range has no phase to align by.
 _CLEAR = 1e-3
+#: The field of `Given` that a file's content belongs to.
 _KINDS = {Measured: "curve", Shaker: "shaker", Series: "series"}
+#: The same in words, with the columns of such a file.
 _WORDS = {"curve": "a resonance curve (frequency_Hz, force_N)",
           "shaker": "the shaker's amplitude (frequency_Hz, velocity_m_s or displacement_m)",
           "series": "time series (time_s and velocity_m_s, input_force_N, output_force_N)"}
@@ -86,11 +89,12 @@ def _frequency(hertz: float | None, frequencies: Sequence[float], path: str, num
     return hertz
 
 
-def behind(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, force: np.ndarray) -> float:
-    """How far a series must be moved back, so that its last `SHOWN` seconds are from 0 on and in phase [s].
+def delay_of(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, force: np.ndarray) -> float:
+    """By how much a series must be moved back, so that its last `SHOWN` seconds are from 0 on and in phase [s].
 
-    The phase is that of the component at `f` [Hz], the frequency of the model's drive: of the input force or, where
-    that was not measured, of the velocity. What has no such component, as an output force alone, is not moved.
+    `velocity` and input `force` at `time` (T,) are the model's. The phase is that of the component at `f` [Hz], the
+    frequency of the model's drive: of the input force or, where that was not measured, of the velocity. A series
+    without such a component, as of an output force alone, is moved by whole drive periods.
     """
     for model, measured in ((force, series.input_force), (velocity, series.velocity)):
         if measured is not None:
@@ -103,9 +107,9 @@ def behind(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, for
     return late + max(0.0, np.floor((float(series.time[-1]) - SHOWN - late) * f + 1e-9)) / f
 
 
-def moved(series: Series, back: float) -> Series:
-    """A series `back` seconds earlier, of which what is then from 0 to `SHOWN` is kept."""
-    time = series.time - back
+def moved_back(series: Series, delay: float) -> Series:
+    """A series `delay` seconds earlier, of which what is then from 0 to `SHOWN` is kept."""
+    time = series.time - delay
     kept = (time >= 0.0) & (time <= SHOWN)
     velocity, entered, arrived = (None if values is None else values[kept] for values in (
         series.velocity, series.input_force, series.output_force))

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..experiment import Feature, Measured, Series, Shaker
-from ..observe import Figure11
+from ..observe import Twin
 from ..result import Run
 from ..scene import Scene
 from ..steady.curve.curve import Curve
@@ -155,7 +155,7 @@ class Column:
                 yield {"frequency_in_paper_Hz": self.named, "source": "model (3)", "time_s": t,
                        "output_force_N": force}
         if self.measured is not None:
-            columns = {f"{name}": getattr(self.measured, attribute) for name, attribute in (
+            columns = {name: getattr(self.measured, attribute) for name, attribute in (
                 ("velocity_m_s", "velocity"), ("input_force_N", "input_force"), ("output_force_N", "output_force"))}
             for i, t in enumerate(self.measured.time):
                 yield {"frequency_in_paper_Hz": self.named, "source": "measured", "time_s": t,
@@ -189,10 +189,36 @@ class RigResponse:
 
 
 @dataclass(frozen=True, eq=False)
+class CoupledRow:
+    """One row of figure 11: a chain and its observer, the coupled system (4), at one frequency [Hz] and κ."""
+
+    frequency: float
+    kappa: float
+    twin: Twin
+
+    @property
+    def multipliers(self) -> np.ndarray:
+        """Panel (a) or (d): the chain's and the observer's multipliers."""
+        found = self.twin.multipliers
+        assert found is not None  # the figure's orbits are periodic
+        return found
+
+    @property
+    def outside(self) -> np.ndarray:
+        """Those of them outside the unit circle."""
+        return self.multipliers[np.abs(self.multipliers) > 1.0]
+
+    @property
+    def first_beads(self) -> tuple[np.ndarray, np.ndarray]:
+        """Panels (b), (c) or (e), (f): displacement of bead 1 of chain and observer over `twin.time` [m]."""
+        return self.twin.chain[:, 0], self.twin.observer[:, 0]
+
+
+@dataclass(frozen=True, eq=False)
 class Observers:
     """Figure 11: multipliers of model (4) and the first beads of both chains, without and with foundation."""
 
-    parts: tuple[Figure11, ...]
+    parts: tuple[CoupledRow, ...]
 
     def rows(self) -> Iterator[Row]:
         """Multipliers, then the two first beads over time."""

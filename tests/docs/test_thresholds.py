@@ -16,13 +16,14 @@ from documents import ROOT
 from granchain_core import orbit, scene
 from granchain_core.integrate import methods
 from granchain_core.kernels.batch import record
+from granchain_core.observe.drift import TRANSLATION
 from granchain_core.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.curve import resonance
 from granchain_core.steady.settling import nearby_orbit, refine_orbit, regime_decisions
 
-MODEL, OBSERVERS, DESIGN, REGIMES = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
-                                     for name in ("model", "observers", "design", "regimes"))
+MODEL, OBSERVERS, DESIGN, REGIMES, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
+                                     for name in ("model", "observers", "design", "regimes", "glossary"))
 #: Rows of the table of thresholds: the number, the constant's name and its file.
 ROWS = re.findall(r"\| ([\d.e-]+) \| `(\w+)` in `([\w/]+)\.py` \|", REGIMES)
 #: Numbers in the same files that decide nothing: columns of an array, sizes of a record, how a difference is computed.
@@ -129,3 +130,9 @@ def test_the_observers_multipliers_are_the_pages(name: str, f: float, leading: s
     value = first.real if first.imag == 0.0 else abs(first)
     assert value == pytest.approx(float(leading.replace("−", "-")), abs=0.6e-3)
     assert all(re.search(re.escape(leading), page) for page in pages)
+
+
+@pytest.mark.parametrize("page", [OBSERVERS, GLOSSARY], ids=["observers", "glossary"])
+def test_the_share_of_a_drift_is_the_pages_and_every_verdict_is_named(page: str) -> None:
+    assert f"a share of at least {TRANSLATION:g}" in page
+    assert all(f"`{verdict}`" in page for verdict in ("synchronises", "drifts", "breaks down", "neither yet"))

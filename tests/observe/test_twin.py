@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, scene
-from granchain_core.observe import figure_11, observer_stability, twin
+from granchain_core import BadInput, Scene, scene
+from granchain_core.observe import Twin, observer_stability, twin
+from granchain_core.observe.drift import TRANSLATION, is_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import rates
 from granchain_core.orbits import periodic_orbit
@@ -37,6 +39,34 @@ def test_without_foundation_the_observer_drifts_and_is_told_so() -> None:
     assert found.translation > 0.8  # the uniform shift is most of what grows
     assert found.distance[-1] > 0.5  # and it is left in: nothing brings the observer back
     assert np.abs(found.offset[-1]) > 0.05 * FREE.A0
+
+
+@pytest.mark.parametrize(("chain", "share", "multiplier", "drifts"), [
+    (FREE, TRANSLATION, 4.4 + 0j, True), (FREE, TRANSLATION, -2.2 + 0j, True), (FREE, TRANSLATION, None, True),
+    (FREE, TRANSLATION, 4.4 + 0.1j, False), (FREE, 0.99 * TRANSLATION, 4.4 + 0j, False), (FOUNDED, 1.0, 4.4 + 0j, False),
+])
+def test_a_drift_is_a_shift_that_nothing_holds_and_that_does_not_turn(chain: Scene, share: float, multiplier: complex | None,
+                                                                      drifts: bool) -> None:
+    assert is_drift(chain, share, multiplier) is drifts
+
+
+def test_each_verdict_has_its_condition() -> None:
+    """Of one twin without foundation, whose rate, leading multiplier and shape are given."""
+    found = twin(FREE, 1e-6, 30)
+    assert found.orbit is not None and found.orbit.observer_multipliers is not None
+    others = found.orbit.observer_multipliers[1:]
+
+    def told(rate: float | None, leading: complex, share: float = 1.0) -> Twin:
+        assert found.orbit is not None
+        orbit = replace(found.orbit, observer_multipliers=np.concatenate([[leading], others]))
+        return replace(found, rate=rate, orbit=orbit, translation=share)
+
+    assert told(0.5, 0.5).verdict == "synchronises"
+    assert [told(2.0, leading).verdict for leading in (2.0, -2.0, 2.0j)] == ["drifts", "drifts", "breaks down"]
+    assert told(2.0, 2.0, 0.1).verdict == "breaks down"
+    assert told(None, 2.0).verdict == told(2.0, 0.5).verdict == "neither yet"
+    assert ["other side" in told(2.0, leading).sentence for leading in (2.0, -2.0, -2.0 + 1.0j)] == [False, True, False]
+    assert replace(found, orbit=None).verdict == "drifts"  # the multiplier is not known
 
 
 def test_with_foundation_an_observer_that_knows_nothing_finds_its_chain() -> None:
@@ -90,22 +120,6 @@ def test_the_observers_multipliers_are_finite_differences_of_the_pair() -> None:
     assert orbit.observer_multipliers is not None
     # central differences over kinks of contacts err by about h
     assert np.abs(found) == pytest.approx(np.abs(orbit.observer_multipliers), abs=2e-4)
-
-
-def test_figure_11_in_full() -> None:
-    rows = {(row.frequency, row.kappa > 0): row for row in figure_11(periods=30)}
-    assert set(rows) == {(100.0, False), (100.0, True), (200.0, False), (200.0, True)}
-    for (_, founded), row in rows.items():
-        assert len(row.multipliers) == 4 * FREE.N
-        chain, observer = row.first_beads
-        assert row.twin.orbit is not None and row.twin.orbit.stable  # (b), (e)
-        assert len(chain) == len(row.twin.time)
-        if founded:  # (d), (e, f): identical to the perturbation, 1e-6 of A0, which grows for a while before it decays
-            assert len(row.outside) == 0
-            assert np.abs(chain - observer).max() < 1e-5 * row.twin.scene.A0
-        else:  # (a), (c)
-            assert len(row.outside) == 1 and row.outside[0].imag == 0.0
-            assert np.abs(chain - observer)[-96:].max() > 0.1 * row.twin.scene.A0
 
 
 def test_how_much_foundation_makes_it_stable() -> None:

@@ -10,7 +10,7 @@ import pytest
 from granchain_core import BadInput, scene
 from granchain_core.experiment import Measured, Series, Shaker, read_experiment
 from granchain_core.paper import compute, figure_of, read_given
-from granchain_core.paper.compute import column
+from granchain_core.paper.computations import column
 from granchain_core.paper.results import SHOWN
 
 

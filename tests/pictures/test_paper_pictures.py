@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from functools import cache
 from typing import Any
 
@@ -15,11 +14,8 @@ from app.pictures.paper import paper_figure, size_of
 from app.pictures.paper.panels import fewer
 from app.pictures.theme import THEMES
 from granchain_core.experiment import Measured, Series, Shaker
-from granchain_core.paper import FIGURES, Given, Result, compute
-from granchain_core.paper.features import dips, peaks
-
-#: The module, whose name is also that of the function.
-by = sys.modules["granchain_core.paper.compute"]
+from granchain_core.paper import FIGURES, Given, Result, computations, compute
+from granchain_core.paper.peaks_and_dips import dips, peaks
 
 
 @cache
@@ -27,7 +23,7 @@ def result(number: str) -> Result:
     """The result of a figure without data; figure 9's four curves have every fifth point, which changes no panel."""
     with pytest.MonkeyPatch.context() as patch:
         if number == "9":
-            patch.setattr(by, "RIG", by.RIG[::5])
+            patch.setattr(computations, "RIG_FREQUENCIES", computations.RIG_FREQUENCIES[::5])
         return compute(number)
 
 

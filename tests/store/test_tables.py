@@ -130,6 +130,25 @@ def test_errors_and_regimes_stand_beside_the_numbers() -> None:
     assert list(runs["wall"]) == ["bead", "rigid", "bead"] and list(runs["N"]) == [2, 2, 3] and runs["max_output_force"].is_unique
 
 
+ALONE = "rk4-split or dop853"
+FLOW = "tangent flow (DOP853 in regularised time)"
+
+
+@pytest.mark.parametrize(("kind", "method"), [
+    ("Run", "rk4-split"), ("Orbit", FLOW), ("Branch", FLOW), ("LyapunovSpectrum", FLOW), ("StrobeDiagram", "rk4-split"),
+    ("Curve", f"rk4 in batches, {ALONE} point by point"), ("Diagram", f"rk4 in batches, {ALONE} cell by cell"),
+    ("Basins", f"rk4 in batches, {ALONE} start by start; orbits by {FLOW}"),
+    ("Attractors", f"rk4 in batches, {ALONE} start by start; orbits by {FLOW}"),
+])
+def test_a_result_names_the_method_that_computed_it(kind: str, method: str) -> None:
+    assert result(kind).attributes()["method"] == method
+
+
+def test_chains_that_share_no_batch_and_have_no_orbit_do_not_name_them() -> None:
+    found = granchain_core.attractors(CHAIN.evolve(tension="cut"), random_states=0)
+    assert found.attributes()["method"] == f"{ALONE} start by start"
+
+
 @pytest.mark.parametrize("kind", RESULTS)
 def test_a_cell_shows_a_few_lines_and_no_numbers_by_the_thousand(kind: str) -> None:
     shown = result(kind)._repr_mimebundle_()

@@ -6,8 +6,7 @@ import numpy as np
 from bokeh.models import HoverTool, LayoutDOM, Range1d
 from bokeh.plotting import figure
 
-from granchain_core.observe import Figure11
-from granchain_core.paper import Observers
+from granchain_core.paper import CoupledRow, Observers
 
 from ..multipliers import multipliers
 from ..theme import Theme, apply_theme, frame, themed
@@ -22,7 +21,7 @@ def observers(shown: Observers, theme: Theme) -> LayoutDOM:
     return grid([_row(part, "abc" if number == 0 else "def", place, theme) for number, part in enumerate(shown.parts)])
 
 
-def _row(part: Figure11, letters: str, place: Range1d, theme: Theme) -> list[figure]:
+def _row(part: CoupledRow, letters: str, place: Range1d, theme: Theme) -> list[figure]:
     orbit = part.twin.orbit
     assert orbit is not None  # figure 11 is one of periodic orbits
     plane = multipliers(orbit, theme)

@@ -16,13 +16,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import BadInput, check_range
-from ...integrate.methods import ADAPTIVE
 from ...scene import Amplitude, Scene
 from ...state import State
 from ...stop import Stop
 from ...tables import Labelled, Table, amplitude_attribute, provenance
 from ...tables.provenance import Attribute
 from ..orbit import periodic_orbit
+from ..stroboscopic_map import FLOW_METHOD
 from .axis import KnobAxis
 from .equations import BranchEquations
 from .point import BranchPoint, branch_point, state_at
@@ -97,7 +97,7 @@ class Branch(Labelled):
         header = {"knob": self.axis.knob, "start": self.axis.start, "end": self.axis.end, "period": self.period,
                 "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
                          for arm in self.arms]}
-        return {**provenance(self.scene, ADAPTIVE, None), "branch": json.dumps(header),
+        return {**provenance(self.scene, FLOW_METHOD, None), "branch": json.dumps(header),
                 **amplitude_attribute(self.axis.amplitude)}
 
     def summary(self) -> list[str]:

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...integrate.batch import can_share_batch
-from ...integrate.methods import ADAPTIVE, FIXED_STEP
 from ...regime import Regime
 from ...result import ForceErrors, said_forces
 from ...scene import Amplitude, Scene
@@ -28,6 +26,7 @@ from ...tables import (
 )
 from ...tables.provenance import Attribute
 from ...tables.words import evidence_columns
+from ..settling.single_chain import settling_methods
 from ..steady_state import SteadyState
 
 
@@ -144,8 +143,7 @@ class Curve(Labelled):
 
         Only points that were settled alone were computed to `accuracy_asked`, and at best to `CURVE_ACCURACY`.
         """
-        single = f"{FIXED_STEP} or {ADAPTIVE} point by point"
-        method = f"rk4 in batches, {single}" if can_share_batch(self.scene) else single
+        method = settling_methods(self.scene, "point")
         reached = [p.error_estimate for p in self.points if p.error_estimate is not None]
         return {**provenance(self.scene, method, max(reached) if reached else None), "start": self.start,
                 "wall_s": self.wall_s, **amplitude_attribute(self.amplitude)}

@@ -1,4 +1,4 @@
-"""Peaks, valleys and the stop band of a resonance curve, by prominence."""
+"""Peaks and dips of a resonance curve, by prominence: where the paper names resonances and anti-resonances."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The results behind the figures of the paper, from the presets: one function for each kind of figure.
+"""The computations behind the table of figures (figures.py): one function for each kind of figure, from the presets.
 
-Each function takes a user's data, a stop flag, and a function that is called with the fraction done.
+They take what they need of a user's data, a stop flag, and a function that is called with the fraction done.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..experiment import Series, stated_features
-from ..observe import figure_11, force_record, observe, twin
+from ..observe import force_record, observe, twin
 from ..scene import Scene, scene
 from ..state import rest
 from ..steady.curve.curve import Curve
@@ -20,10 +20,11 @@ from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
 from ..stop import Stop
-from .given import Given, behind, moved
+from .given import Given, delay_of, moved_back
 from .results import (
     SHOWN,
     Column,
+    CoupledRow,
     EnergyMaps,
     Observers,
     Rig,
@@ -37,49 +38,62 @@ from .results import (
 
 Progress = Callable[[float], None]
 #: Frequencies of figure 2 [Hz].
-SECTION_2 = np.arange(30.0, 3000.5, 10.0)
+SECTION_2_FREQUENCIES = np.arange(30.0, 3000.5, 10.0)
 #: Frequencies of figures 5, 6 and 9 [Hz].
-RIG = np.arange(20.0, 160.5, 2.0)
-#: Amplitudes [m]: of figure 5, the range the text states and its middle; of figure 6, that middle; of figure 9, those
-#: of the presets and one between, across the range 6 to 13 µm of the paper's model.
-STATED, MIDDLE, MODELLED = (6e-6, 7e-6, 8e-6), (7e-6,), (6e-6, 8e-6, 11e-6, 13e-6)
+RIG_FREQUENCIES = np.arange(20.0, 160.5, 2.0)
 #: The presets of figure 12 by the paper's frequency [Hz].
 STATES = {60.0: "fig12-60", 90.0: "fig12-90", 100.0: "fig12-100"}
+#: Drive amplitude of figure 6 [m], in the middle of the range that the text states for the shaker.
+RIG_AMPLITUDE = scene("rig").A0
+#: Amplitudes of figure 5 [m]: the range that the text states, about 6 to 8 µm, and the rig's between.
+STATED_AMPLITUDES = (6e-6, RIG_AMPLITUDE, 8e-6)
+#: Amplitudes of figure 9 [m]: those of the presets, and the largest that the text states, which lies between them.
+MODEL_AMPLITUDES = tuple(sorted({STATED_AMPLITUDES[-1], *(scene(name).A0 for name in STATES.values())}))
 #: Drive periods shown of figures 3a and 3b.
 ENERGY = {"fig3a": 4, "fig3b": 9}
-#: Samples a drive period: a pulse of the rig lasts 1/70 of one at 60 Hz; those of section 2 are slower.
-_TRAIN, _ENERGY = 960, 192
-#: Drive periods for which model (3) is followed from rest before it is shown.
-_FOLLOWED = 60
-#: Figure 11: the observer starts `perturbation` · A0 beside its chain and is followed for `periods` drive periods.
-FIGURE_11 = {"frequencies": (100.0,), "periods": 16, "perturbation": 1e-3}
+#: Samples a drive period of force trains: a pulse of the rig lasts 1/70 of one at 60 Hz.
+_TRAIN_SAMPLES = 960
+#: Samples a drive period of energy maps: pulses of section 2 are slower.
+_ENERGY_SAMPLES = 192
+#: Drive periods for which model (3) is followed from rest; the last of them are shown.
+FOLLOWED_PERIODS = 60
+#: Accuracy of model (3)'s steps; what a measured force leaves open between its samples is more.
+_OBSERVER_ACCURACY = 1e-4
+#: The paper's foundation, κ = k/(K√A0).
+KAPPA = 0.001
+#: Figure 11: drive frequency [Hz], which the text does not name; at 200 Hz as many multipliers are outside.
+COUPLED_FREQUENCY = 100.0
+#: Figure 11: first distance of the observer from its chain, in drive amplitudes.
+COUPLED_DISTANCE = 1e-3
+#: Figure 11: drive periods that are shown.
+COUPLED_PERIODS = 16
 
 
-def rig(name: str, fixture: bool = False, **changes: float) -> Rig:
-    """Figures 1, 4 and 8."""
-    return Rig(scene(name).evolve(**changes), fixture)
+def rig(name: str, fixture: bool = False) -> Rig:
+    """Figures 1, 4 and 8; `fixture` adds what stands around the chain, as figure 4 does."""
+    return Rig(scene(name), fixture)
 
 
 def transmission(given: Given, stop: Stop | None, progress: Progress) -> Transmission:
     """Figure 2."""
-    return Transmission(_curve(scene("sec2"), SECTION_2, stop, progress), given.curve)
+    return Transmission(_curve(scene("sec2"), SECTION_2_FREQUENCIES, stop, progress), given.curve)
 
 
 def energy(names: Sequence[str], stop: Stop | None) -> EnergyMaps:
     """Figure 3 or one of its parts."""
-    return EnergyMaps(tuple((settle(scene(name), samples=_ENERGY, stop=stop), ENERGY[name]) for name in names))
+    return EnergyMaps(tuple((settle(scene(name), samples=_ENERGY_SAMPLES, stop=stop), ENERGY[name]) for name in names))
 
 
 def shaker(given: Given) -> ShakerAmplitude:
     """Figure 5."""
-    return ShakerAmplitude(RIG, STATED, given.shaker)
+    return ShakerAmplitude(RIG_FREQUENCIES, STATED_AMPLITUDES, given.shaker)
 
 
 def response(given: Given, observed: bool, stop: Stop | None, progress: Progress) -> RigResponse:
     """Figures 6 and 9; `observed` adds model (3) and more amplitudes, as figure 9 does."""
-    amplitudes = MODELLED if observed else MIDDLE
+    amplitudes = MODEL_AMPLITUDES if observed else (RIG_AMPLITUDE,)
     part = 1.0 / (len(amplitudes) + 1)
-    curves = [_curve(scene("rig").evolve(A0=a, kappa=0.001), RIG, stop, _within(progress, i * part, part))
+    curves = [_curve(scene("rig").evolve(A0=a, kappa=KAPPA), RIG_FREQUENCIES, stop, _within(progress, i * part, part))
               for i, a in enumerate(amplitudes)]
     states = tuple((f, _state(name, stop)) for f, name in STATES.items()) if observed else ()
     panel = RigCurves(tuple(curves), stated_features(), states, given.curve)
@@ -96,9 +110,15 @@ def trains(frequencies: Sequence[float], given: Given, observed: bool, stop: Sto
     return Trains(tuple(columns))
 
 
-def observers(stop: Stop | None) -> Observers:
-    """Figure 11."""
-    return Observers(figure_11(**FIGURE_11, stop=stop))  # type: ignore[arg-type]
+def observers(stop: Stop | None, frequencies: Sequence[float] = (COUPLED_FREQUENCY,),
+              periods: int = COUPLED_PERIODS, distance: float = COUPLED_DISTANCE) -> Observers:
+    """Figure 11: at every frequency [Hz] a row without foundation, then one with κ = 0.001.
+
+    (a) One multiplier lies outside the unit circle, (b) the chain's orbit is stable and (c) the observer leaves it; (d)
+    all multipliers lie inside and (e, f) both first beads move alike.
+    """
+    chains = [scene(name).evolve(f=f) for f in frequencies for name in ("fig11-free", "fig11-founded")]
+    return Observers(tuple(CoupledRow(one.f, one.kappa, twin(one, distance, periods, stop=stop)) for one in chains))
 
 
 def column(named: float, series: Series | None, observed: bool, stop: Stop | None) -> Column:
@@ -107,30 +127,30 @@ def column(named: float, series: Series | None, observed: bool, stop: Stop | Non
     run, chain = found.run, found.run.scene
     index, time = repeated(run, SHOWN * chain.f)
     velocity = 2.0 * math.pi * chain.f * chain.A0 * np.cos(2.0 * math.pi * chain.f * time)
-    back = 0.0 if series is None else behind(series, chain.f, time, velocity, run.input_force[index])
-    when, force, words = _observer(chain, series, back, stop) if observed else (None, None, "")
+    delay = 0.0 if series is None else delay_of(series, chain.f, time, velocity, run.input_force[index])
+    when, force, words = _observer(chain, series, delay, stop) if observed else (None, None, "")
     return Column(named, found, time, velocity, run.input_force[index], run.output_force[index],
                   (run.overlap[index, 0] > 0.0).astype(int), when, force, words,
-                  None if series is None else moved(series, back))
+                  None if series is None else moved_back(series, delay))
 
 
-def _observer(chain: Scene, series: Series | None, back: float,
+def _observer(chain: Scene, series: Series | None, delay: float,
               stop: Stop | None) -> tuple[np.ndarray, np.ndarray, str]:
     """Model (3): time, output force and words. A measured input force drives it or, without one, model (5)'s."""
     if series is None:
-        pair = twin(chain, rest(chain), _FOLLOWED, _TRAIN, stop)
-        rows = min(len(pair.time), round(SHOWN * chain.f) * _TRAIN + 1)
+        pair = twin(chain, rest(chain), FOLLOWED_PERIODS, _TRAIN_SAMPLES, stop)
+        rows = min(len(pair.time), round(SHOWN * chain.f) * _TRAIN_SAMPLES + 1)
         return pair.time[:rows], pair.observer_output_force[-rows:], "fed with model (5)'s input force, from rest"
     if series.input_force is None:
         raise BadInput("Model (3) is pushed by the measured input force; the series has no column input_force_N.")
-    found = observe(chain.evolve(accuracy=1e-4), force_record(series.time, series.input_force), stop=stop)
-    time = series.time - back
+    found = observe(chain.evolve(accuracy=_OBSERVER_ACCURACY), force_record(series.time, series.input_force), stop=stop)
+    time = series.time - delay
     kept = (time >= 0.0) & (time <= SHOWN)
     return time[kept], found.output_force[kept], "fed with the measured input force, from rest"
 
 
 def _state(name: str, stop: Stop | None) -> Settled:
-    return settle(scene(name), samples=_TRAIN, stop=stop)
+    return settle(scene(name), samples=_TRAIN_SAMPLES, stop=stop)
 
 
 def _within(progress: Progress, begin: float, part: float) -> Progress:
