@@ -40,15 +40,20 @@ Progress = Callable[[float], None]
 SECTION_2 = np.arange(30.0, 3000.5, 10.0)
 #: Frequencies of figures 5, 6 and 9 [Hz].
 RIG = np.arange(20.0, 160.5, 2.0)
-#: Amplitudes [m]: of figure 5, the range the text states and its middle; of figure 6, that middle; of figure 9, those
-#: of the presets and one between, across the range 6 to 13 µm of the paper's model.
-STATED, MIDDLE, MODELLED = (6e-6, 7e-6, 8e-6), (7e-6,), (6e-6, 8e-6, 11e-6, 13e-6)
+#: Amplitudes of figure 5 [m]: the range that the text states, and its middle.
+STATED = (6e-6, 7e-6, 8e-6)
+#: Amplitude of figure 6 [m]: that middle.
+MIDDLE = (7e-6,)
+#: Amplitudes of figure 9 [m]: those of the presets and one between, across the range of the paper's model.
+MODELLED = (6e-6, 8e-6, 11e-6, 13e-6)
 #: The presets of figure 12 by the paper's frequency [Hz].
 STATES = {60.0: "fig12-60", 90.0: "fig12-90", 100.0: "fig12-100"}
 #: Drive periods shown of figures 3a and 3b.
 ENERGY = {"fig3a": 4, "fig3b": 9}
-#: Samples a drive period: a pulse of the rig lasts 1/70 of one at 60 Hz; those of section 2 are slower.
-_TRAIN, _ENERGY = 960, 192
+#: Samples a drive period of the rig's force trains: a pulse lasts 1/70 of a period at 60 Hz.
+_TRAIN = 960
+#: Samples a drive period of section 2's energies, whose pulses are slower.
+_ENERGY = 192
 #: Drive periods for which model (3) is followed from rest before it is shown.
 _FOLLOWED = 60
 #: Figure 11: the observer starts `perturbation` · A0 beside its chain and is followed for `periods` drive periods.

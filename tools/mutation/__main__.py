@@ -23,8 +23,10 @@ from .in_step import problems
 from .mutant import Mutant
 from .table import BROAD, DEMANDED, MUTANTS
 
-#: Seconds the named tests and all tests may take. A mutant that hangs is killed by the clock and listed so.
-_LIMIT, _BROAD_LIMIT = 150.0, 3600.0
+#: Time that the named tests may take [s]. A mutant that hangs is killed by the clock and listed so.
+_LIMIT = 150.0
+#: Time that all tests may take [s].
+_BROAD_LIMIT = 3600.0
 
 
 def main() -> int:
