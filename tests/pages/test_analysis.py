@@ -113,7 +113,9 @@ def test_a_chosen_value_stays_while_the_knobs_move_if_it_can() -> None:
     assert (shorter["x"], shorter["starts"]) == ("u1", "31")
 
 
-@pytest.mark.parametrize("text", ["self", "strobes?self=1", "strobes?knob=self", "basins?x=u9", "?", "strobes?" + 40 * "9" + "=1"])
-def test_a_question_of_a_damaged_link_is_refused(text: str) -> None:
-    with pytest.raises(BadInput):
+@pytest.mark.parametrize(("text", "sentence"), [
+    ("self", "Unknown question 'self'"), ("strobes?self=1", "Unknown field 'self'"), ("strobes?knob=self", "Unknown knob 'self'"),
+    ("basins?x=u9", "Unknown x 'u9'"), ("?", "Unknown question ''"), ("strobes?" + 40 * "9" + "=1", "Unknown field '9999")])
+def test_a_question_of_a_damaged_link_is_refused(text: str, sentence: str) -> None:
+    with pytest.raises(BadInput, match=sentence):
         read_question(text, CHAIN)
