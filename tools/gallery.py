@@ -23,8 +23,10 @@ from app.pictures.energies import ENERGY_COLOURS
 from app.pictures.theme import THEMES
 from granchain_core import Scene, scene, scene_names, settle
 
-#: Rows and colours of a map; a browser smooths nothing.
-ROWS, COLOURS = 72, 32
+#: Rows of a map; a browser smooths nothing.
+ROWS = 72
+#: Colours of a map.
+COLOURS = 32
 #: The edges of the map and of the force beside it, in units of the picture, which is 160 wide and 100 high.
 LEFT, RIGHT, TOP, BOTTOM = 12.0, 108.0, 24.0, 97.0
 FORCE_FROM, FORCE_TO = 116.0, 157.0

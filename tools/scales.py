@@ -2,8 +2,8 @@
 
 Every scene of `assets/scenes` is settled from rest at POINTS equally spaced frequencies of its slider, with the knobs
 of its preset, and at some more around each where a value is largest: a peak lies between them. The largest values over
-all become its table in `assets/scales.toml`. Run it when a scene is new or changed; without names all scenes are
-computed again:
+all become its table in `assets/scales.toml`, beside a digest of the preset. Run it when a scene is new or changed;
+without names all scenes are computed again:
 
     python -m tools.scales NAME …
 """
@@ -11,22 +11,29 @@ computed again:
 from __future__ import annotations
 
 import functools
+import hashlib
+import json
 import sys
 import tomllib
+from dataclasses import MISSING, fields
 from pathlib import Path
 
 import numpy as np
 
-from app.dashboard.scales import FILE
+from app.dashboard.scales import DIGEST, FILE
 from app.frames import Extremes, samples_for, settled_frames
 from app.session.session import slider_range
 from granchain_core import Scene, scene, scene_names, settle
 
-POINTS, AROUND = 150, 8
+#: Frequencies over the range of f, and around each at which a value is largest.
+POINTS = 150
+AROUND = 8
+#: Fields of a scene that no value follows from; f takes all values of its range, which is part of the digest.
+_NO_PHYSICS = ("name", "title", "look_at", "paper", "ranges", "preset", "f")
 
 _HEAD = """\
 # The largest values of every scene over its range of f, from rest, at the knobs of its preset, in SI units
-# (N, N, J, m, m). Written by `python -m tools.scales`; do not edit.
+# (N, N, J, m, m, N, N), and a digest of that preset. Written by `python -m tools.scales`; do not edit.
 """
 
 
@@ -42,6 +49,24 @@ def over_frequencies(chain: Scene, points: int = POINTS) -> Extremes:
     return found
 
 
+def digest_of(chain: Scene) -> str:
+    """A digest of what a scene's largest values follow from: its physics and its range of f.
+
+    A field at its default is left out, so that a new effect, which is absent by default, changes no digest.
+    """
+    defaults = {field.name: field.default for field in fields(chain) if field.default is not MISSING}
+    physics = {name: value for name, value in chain.to_json().items()
+               if name not in _NO_PHYSICS and (name not in defaults or value != defaults[name])}
+    text = json.dumps([physics, slider_range(chain, "f")], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def table(name: str, digest: str, values: dict[str, float]) -> str:
+    """A scene's table in the file."""
+    lines = (f"{field} = {value:.3g}" for field, value in values.items())
+    return "\n".join((f"[{name}]", f'{DIGEST} = "{digest}"', *lines)) + "\n"
+
+
 def _at(chain: Scene, frequency: float) -> Extremes:
     at = chain.evolve(f=frequency)
     return settled_frames(settle(at, samples=samples_for(at)).run).extremes
@@ -53,8 +78,12 @@ def main(chosen: list[str]) -> None:
     tables = [_HEAD]
     for name in scene_names():
         keep = chosen and name not in chosen
-        values = old[name].items() if keep else over_frequencies(scene(name)).items()
-        tables.append("\n".join((f"[{name}]", *(f"{field} = {value:.3g}" for field, value in values))) + "\n")
+        if keep:
+            values = dict(old[name])
+            digest = values.pop(DIGEST)
+        else:
+            values, digest = dict(over_frequencies(scene(name)).items()), digest_of(scene(name))
+        tables.append(table(name, digest, values))
         if not keep:
             print(tables[-1])
     Path(FILE).write_text("\n".join(tables), encoding="utf-8")

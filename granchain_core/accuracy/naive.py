@@ -19,9 +19,10 @@ from ..stop import Stop
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)
 #: Samples a period of the drawn force, a divisor of all these numbers of steps.
 _SAMPLES = 100
-#: Drive periods run from rest, and the last of them, which are shown: a 1:3 resonance pushes once in three. Without a
-#: drive it is one time 1/f.
-_RUN, _SHOWN = 10, 3
+#: Drive periods run from rest. Without a drive it is one time 1/f.
+_RUN = 10
+#: The last of them, which are shown: a 1:3 resonance pushes once in three.
+_SHOWN = 3
 #: Reference.
 _TRUE = adaptive_setting(1e-11)
 

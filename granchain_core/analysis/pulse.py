@@ -21,8 +21,10 @@ from ..scene.description import hertz_stiffness
 from ..tables import Column, Labelled, Table, axis, bead_axis, provenance
 from ..tables.provenance import Attribute
 
-#: Speed of the solitary wave [beads per time] over F^{1/6}, K = m = 1: of the discrete chain, and of the continuum.
-DISCRETE, CONTINUUM = 0.9055158, 2.0 / math.sqrt(5.0)
+#: Speed of the discrete chain's solitary wave [beads per time] over F^{1/6}, K = m = 1.
+DISCRETE = 0.9055158
+#: The same of the continuum.
+CONTINUUM = 2.0 / math.sqrt(5.0)
 #: Part of a contact's largest force below which a maximum is no pulse.
 _PART = 0.02
 

@@ -29,8 +29,10 @@ from ..tables.words import evidence_columns, state_columns
 
 #: Strobes closer than this part of the largest are one.
 _APART = 1e-3
-#: Most values of the knob, and most strobes at each.
-MOST_VALUES, MOST_STROBES = 20_000, 10_000
+#: Most values of the knob.
+MOST_VALUES = 20_000
+#: Most strobes at each.
+MOST_STROBES = 10_000
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,9 +15,11 @@ from .question import Answers, Guess, Question, Unclear
 from .series import Series, Shaker
 from .units import QUANTITIES, UNITS, VOLTS, bracketed_unit, factor_of
 
-#: A curve whose header names no unit is in Hz and N, as README says, unless these say otherwise: a frequency [Hz]
-#: below which all would lie, a force [N] that one would exceed.
-_TOO_SLOW, _TOO_STRONG = 5.0, 1e4
+#: A curve whose header names no unit is in Hz and N, as README says. The unit is asked for where all frequencies would
+#: be below this [Hz], since they may be in kHz,
+_TOO_SLOW = 5.0
+#: or where one force would exceed this [N].
+_TOO_STRONG = 1e4
 _WORDS = {"curve": "a curve", "shaker": "shaker amplitudes", "series": "a series"}
 _NEEDS = {"curve": "a curve needs frequency and force",
           "shaker": "shaker amplitudes need frequency and displacement, velocity or acceleration",

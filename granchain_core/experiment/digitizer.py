@@ -16,7 +16,10 @@ from typing import Any
 from ..errors import BadInput
 from .grid import Row
 
-_TAR_MARK, _TAR_PLACE = b"ustar", 257
+#: The mark of a tar archive (POSIX.1-1988, ustar).
+_TAR_MARK = b"ustar"
+#: Its place in the header [bytes].
+_TAR_PLACE = 257
 #: Largest project within an archive [bytes]: an archive states sizes that its content need not have.
 _MOST_PROJECT = 20_000_000
 

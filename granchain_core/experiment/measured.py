@@ -6,8 +6,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-#: Largest file with a measurement [bytes], and most rows of it.
-MOST_BYTES, MOST_ROWS = 50_000_000, 1_000_000
+#: Largest file with a measurement [bytes].
+MOST_BYTES = 50_000_000
+#: Most rows of it.
+MOST_ROWS = 1_000_000
 #: The words at the beginning of the note of data that were computed (granchain_core/virtual).
 VIRTUAL = "virtual experiment"
 

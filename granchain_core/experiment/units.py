@@ -7,8 +7,10 @@ import re
 
 from ..text import number_in
 
-#: Standard gravity [m/s²], pound-force and kilogram-force [N] (BIPM, The International System of Units, 2019).
-_GRAVITY, _POUND = 9.80665, 4.4482216152605
+#: Standard gravity [m/s²], and so a kilogram-force [N] (BIPM, The International System of Units, 2019).
+_GRAVITY = 9.80665
+#: Pound-force [N]: 0.45359237 kg times standard gravity.
+_POUND = 4.4482216152605
 #: Units by dimension, the SI unit first: factor to SI.
 UNITS: dict[str, dict[str, float]] = {
     "frequency": {"Hz": 1.0, "kHz": 1e3, "MHz": 1e6, "rad/s": 1.0 / (2.0 * math.pi), "rpm": 1.0 / 60.0},

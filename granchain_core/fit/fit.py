@@ -25,8 +25,10 @@ from .targets import CurveTarget, Evaluation, FeatureTarget
 
 #: Probability of a χ² as large, if the model were true, below which the verdict is that it cannot.
 CANNOT = 0.01
-#: Most parameters, and times that the search goes on from a better place that a profile found.
-MOST_FREE, _AGAIN = 30, 4
+#: Most parameters; every one has a profile, for which all others are searched again and again.
+MOST_FREE = 30
+#: Times that the search goes on from a better place that a profile found.
+_AGAIN = 4
 
 
 @dataclass(frozen=True, eq=False)

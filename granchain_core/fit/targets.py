@@ -34,8 +34,10 @@ ASSUMED = 0.05
 _SMALLEST = 1e-3
 #: Least relative scatter of repeats that is believed: closer agreement may be chance.
 _LEAST_SCATTER = 1e-4
-#: Samples of a model's train in a drive period, and most samples of a series that are compared.
-_TRAIN, _COMPARED = 768, 4000
+#: Samples of a model's train in a drive period.
+_TRAIN = 768
+#: Most samples of a series that are compared; a longer one is thinned out evenly.
+_COMPARED = 4000
 
 
 @dataclass(frozen=True, eq=False)

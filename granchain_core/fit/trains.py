@@ -13,8 +13,11 @@ from scipy.optimize import minimize_scalar
 
 from ..result import Run
 
-#: Shifts tried around the best of the coarse search, in its steps, and how finely the best of them is found.
-_AROUND, _FINE = 1.5, 1e-4
+#: How far around the best shift of the coarse search the best one is sought, in steps of that search: its neighbours
+#: are one step away.
+_AROUND = 1.5
+#: How finely the best shift is found, in the same steps.
+_FINE = 1e-4
 
 
 @dataclass(frozen=True, eq=False)

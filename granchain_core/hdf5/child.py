@@ -17,8 +17,10 @@ import numpy as np
 from . import plain
 from .plain import Refused, Stored
 
-#: Time that opening and reading may take, and one second more for each of this many bytes of the file.
-_SECONDS, _BYTES_A_SECOND = 10, 20_000_000
+#: Time that opening and reading may take [s].
+_SECONDS = 10
+#: One second more is allowed for each of this many bytes of the file [bytes/s].
+_BYTES_A_SECOND = 20_000_000
 #: Longest answer that is not numbers [bytes].
 _LONGEST = 64_000_000
 

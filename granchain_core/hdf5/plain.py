@@ -25,10 +25,14 @@ from h5py import h5a, h5d, h5g, h5l, h5o, h5s, h5t
 
 #: Largest attribute [bytes]: a scene of ten thousand different beads has about one million.
 _MOST_ATTRIBUTE = 16_000_000
-#: Most words in one dataset, and dimensions.
-_MOST_WORDS, _MOST_DIMENSIONS = 100_000, 3
-#: Most objects of a file that are listed, and groups within groups.
-_MOST_OBJECTS, _DEEPEST = 2000, 5
+#: Most words in one dataset.
+_MOST_WORDS = 100_000
+#: Most dimensions of one.
+_MOST_DIMENSIONS = 3
+#: Most objects of a file that are listed.
+_MOST_OBJECTS = 2000
+#: Most groups within groups.
+_DEEPEST = 5
 #: Size of the reference to a string of variable length [bytes].
 _REFERENCE = 16
 _NUMBERS = (h5t.FLOAT, h5t.INTEGER)

@@ -37,8 +37,9 @@ from .stepper import CallStart, empty_samples
 _LARGEST_TABLE = 200_000
 #: Tables that are kept: a branch of orbits makes ten chains in turn with the same number of steps.
 _TABLES_KEPT = 4
-#: Kernels that are called many times a second: a branch runs thousands of single periods.
-_RUN_STEPS, _PLACE = Entries(run_steps), Entries(place)
+# Kernels that are called many times a second: a branch runs thousands of single periods.
+_RUN_STEPS = Entries(run_steps)
+_PLACE = Entries(place)
 
 
 class FixedStep:

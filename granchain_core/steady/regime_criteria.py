@@ -26,9 +26,11 @@ _BOUNDED_GROWTH = 6.0
 #: Largest mean exponent per period of a quasi-periodic motion, and largest three standard errors of it. All but weak
 #: chaos is excluded.
 _LARGEST_NEUTRAL_EXPONENT = 0.01
-#: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
-#: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
-_SLOW_WINDOW, _SHRINK_FACTOR = 100, 0.98
+#: Periods in one of the three windows in which a slow approach must show.
+_SLOW_WINDOW = 100
+#: Changes shrink where the next window has less than this part of them: a closed curve sampled a hundred times shows
+#: its extent to about a per cent.
+_SHRINK_FACTOR = 0.98
 #: Largest changes of a departure that is still small, relative to the largest displacement and velocity.
 _LARGEST_DEPARTURE = 0.1
 #: Lyapunov exponent per period that no departure from an orbit sustains over the periods in which a motion may settle.

@@ -47,7 +47,7 @@ def test_an_effect_costs_the_difference_whatever_the_machine_does_meanwhile(monk
 def test_what_is_timed_are_the_steps_that_were_taken() -> None:
     """Real kernels, no bound on how fast: a step takes a positive time, and the numbers fit together."""
     found = effect_cost(Variant(CHAIN), Variant(CHAIN.evolve(dissipation="none")), CODE)
-    assert min(found.with_it, found.without) > 0.0 and found.spread >= 0.0
+    assert min(found.with_it, found.without) > 0.0
     assert found.percent == pytest.approx(100.0 * found.difference / found.without)
 
 

@@ -9,28 +9,38 @@ from granchain_core import BadInput, State, attractors, basins, scene
 from granchain_core.steady.settling.single_chain import steady_state
 from granchain_core.stop import Stop
 
-#: Two attractors with shares near a half (docs/diagram.md).
+#: A motion of period 4 and a quasi-periodic one, both with many starts in the plane of docs/analysis.md.
 SHARED = scene("sec2").evolve(f=1641.0, A0=0.53e-6)
+#: Relative difference of the largest forces of one motion, where no error is stated: those of the quasi-periodic one,
+#: over 100 periods, differ by 0.2 %. The forces of the two motions differ by a factor of four.
+_FORCE_DIFFERENCE = 0.01
 
 
 def test_each_start_ends_where_its_cell_says() -> None:
-    u, v = np.array([-4e-7, 0.0, 4e-7]), np.array([-4e-3, 0.0, 4e-3])
+    u, v = np.array([-1e-6, 0.0, 1e-6]), np.array([-0.01, 0.0, 0.01])
     found = basins(SHARED, ("u1", u), ("v11", v))
     assert found.number.shape == (3, 3) and found.shares.sum() == pytest.approx(1.0)
-    for row, column in ((0, 0), (1, 1), (2, 1)):
+    assert [(one.regime.name, one.regime.period) for one in found.attractors] == [("periodic", 4), ("quasi-periodic", None)]
+    cells = [(0, 0), (0, 1), (1, 1), (1, 2)]
+    assert {int(found.number[cell]) for cell in cells} == {0, 1}
+    for row, column in cells:
         state = np.zeros((2, 11))
         state[0, 0], state[1, 10] = u[column], v[row]
         alone = steady_state(SHARED, State(*state), Stop())
         named = found.attractors[found.number[row, column]]
         assert (alone.regime.name, alone.regime.period) == (named.regime.name, named.regime.period)
+        errors = (named.error_estimate, alone.error_estimate)
+        difference = _FORCE_DIFFERENCE if None in errors else sum(errors)
+        assert difference <= _FORCE_DIFFERENCE
+        assert alone.maxima[1] == pytest.approx(named.max_output_force, rel=difference)
 
 
-def test_the_attractors_are_among_those_of_random_starts() -> None:
-    chain = scene("sec2").evolve(N=2, f=2000.0)
-    found, all_of_them = basins(chain, ("u1", [0.0, 2e-7]), ("u2", [0.0, 2e-7])), attractors(chain, 8)
-    known = [one.max_output_force for one in all_of_them]
-    for one in found.attractors:
-        assert min(abs(one.max_output_force / force - 1.0) for force in known) < 1e-3
+def test_the_attractors_are_those_of_random_starts() -> None:
+    found = basins(SHARED, ("u1", [-1e-6, 1e-6]), ("v11", [-0.01, 0.01])).attractors
+    known = {one.regime.name: one.max_output_force for one in attractors(SHARED, 8)}
+    assert len(found) == len(known) == 2
+    for one in found:
+        assert one.max_output_force == pytest.approx(known[one.regime.name], rel=_FORCE_DIFFERENCE)
 
 
 def test_what_is_no_plane_is_refused() -> None:

@@ -46,13 +46,16 @@ def test_only_a_place_of_the_list_is_found(wrong: object) -> None:
     assert listed("orbit", ["first", "second"], 1) == "second"
 
 
-@pytest.mark.parametrize("message", [
-    {"do": "branches-start", "period": True}, {"do": "branches-start", "period": 9},
-    {"do": "branches-orbit", "arm": False, "place": 0}, {"do": "branches-double", "place": True},
-    {"do": "map-load", "number": True}, {"do": "stability-section", "bead": True, "phase": 0}])
-def test_what_is_no_number_gets_its_sentence(dashboard: Dashboard, message: dict[str, Any]) -> None:
+@pytest.mark.parametrize(("message", "sentence"), [
+    ({"do": "branches-start", "period": True}, "period of a branch 'True' is not a whole number"),
+    ({"do": "branches-start", "period": 9}, "period of a branch '9' is not a whole number"),
+    ({"do": "branches-orbit", "arm": False, "place": 0}, "That branch is no longer on the page"),
+    ({"do": "branches-double", "place": True}, "That special point is no longer on the page"),
+    ({"do": "map-load", "number": True}, "That attractor is no longer on the page"),
+    ({"do": "stability-section", "bead": True, "phase": 0}, "bead 'True' is not a whole number")])
+def test_what_is_no_number_gets_its_sentence(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
     dashboard.received(message)
-    assert "is not a whole number" in dashboard.session.sentence or "no longer on the page" in dashboard.session.sentence
+    assert sentence in dashboard.session.sentence
 
 
 def test_a_click_on_the_curve_without_a_frequency_gets_the_knobs_sentence(dashboard: Dashboard) -> None:

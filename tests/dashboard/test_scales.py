@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import pytest
 
-from app.dashboard.scales import FILE, PictureScales
+from app.dashboard.scales import DIGEST, FILE, PictureScales
 from app.frames import samples_for, settled_frames
 from app.parts.chain import energy_labels, frames_message
 from app.session.session import Session
 from granchain_core import Scene, scene, scene_names, settle
-from tools.scales import over_frequencies
+from tools.scales import digest_of, over_frequencies
 
 
 def frames_at(chain: Scene):
@@ -49,9 +49,23 @@ def test_every_scene_has_a_scale() -> None:
     assert sorted(tables) == sorted(scene_names())
 
 
+def test_a_scale_is_that_of_the_present_preset() -> None:
+    tables = tomllib.loads(FILE.read_text(encoding="utf-8"))
+    changed = [name for name in scene_names() if tables[name][DIGEST] != digest_of(scene(name))]
+    assert not changed, f"run `python -m tools.scales {' '.join(changed)}`: these presets have changed since"
+
+
+def test_a_digest_is_of_the_physics_and_of_the_range_of_f() -> None:
+    chain = scene("sec2")
+    others = [chain.evolve(A0=1.01 * chain.A0), chain.evolve(wall="rigid"), replace(chain, ranges=(("f", 100.0, 200.0),))]
+    assert len({digest_of(one) for one in (chain, *others)}) == 4
+    assert digest_of(replace(chain, name="mine", title="Mine", look_at="", paper="")) == digest_of(chain)
+
+
 def test_the_scale_of_a_scene_is_what_its_motion_needs() -> None:
     """Computed afresh at every frequency; the file keeps three figures."""
     told = tomllib.loads(FILE.read_text(encoding="utf-8"))["sec2"]
+    told.pop(DIGEST)
     assert told == pytest.approx(dict(over_frequencies(scene("sec2")).items()), rel=5e-3)
 
 

@@ -9,7 +9,7 @@ import pytest
 from granchain_core import BadInput, NumbersFailed, Scene, State, scene, settled
 from granchain_core.diagram import boundaries, diagram
 from granchain_core.diagram.boundary import BoundaryPoint, boundary_curves, boundary_point
-from granchain_core.orbits import periodic_orbit
+from granchain_core.orbits import continue_branch, periodic_orbit
 
 pytestmark = pytest.mark.quick
 
@@ -59,7 +59,7 @@ def test_on_one_side_of_a_neimark_sacker_point_the_motion_is_quasi_periodic(
 def test_beyond_a_fold_there_is_no_such_orbit(points: dict[str, BoundaryPoint]) -> None:
     at, (shown, start, period) = points["fold"].x, near("fold")
     assert periodic_orbit(shown.evolve(f=at - 0.5), period, start).stable
-    with pytest.raises(NumbersFailed):
+    with pytest.raises(NumbersFailed, match="found no orbit of 5 drive periods"):
         periodic_orbit(shown.evolve(f=at + 5.0), period, start)
 
 
@@ -86,6 +86,24 @@ def test_a_fold_is_followed(points: dict[str, BoundaryPoint]) -> None:
     assert abs(curve[0].multiplier - 1.0) <= 1e-6 and curve[0].x < curve[1].x
 
 
+@pytest.mark.parametrize(("kind", "start", "end", "period"), [
+    ("neimark_sacker", 1245.0, 1226.0, 1), ("period_doubling", 508.0, 515.0, 1), ("fold", 1951.0, 1956.0, 5)])
+def test_the_point_is_where_the_branch_encloses_one(kind: str, start: float, end: float, period: int) -> None:
+    """A branch encloses the change of stability by two orbits; the secants of the boundary know nothing of them."""
+    branch = continue_branch(scene("sec2"), "f", start, end, period)
+    [special] = [one for one in branch.special if one.kind == kind]
+    begun = branch.points[0]  # 1.4 to 9 Hz from the special point
+    found = boundary_point(branch.axis.scene_at(begun.knob), kind, branch.state(begun), period)
+    low, high = special.interval
+    assert high - low < 2e-5 * special.knob
+    before, after = (np.abs(one.multipliers[max(special.before.unstable, special.after.unstable) - 1])
+                     for one in (special.before, special.after))
+    # the boundary's |μ| is 1 to 1e-6; at a fold the knob turns, and such an error of μ moves it by the square of that
+    unsure = 0.0 if kind == "fold" else 1e-6 * (high - low) / abs(after - before)
+    assert unsure < high - low
+    assert low - unsure <= found.x <= high + unsure
+
+
 def test_wrong_requests_are_one_sentence() -> None:
     shown, start, _ = near("period_doubling")
     with pytest.raises(BadInput, match="Unknown kind of boundary 'hopf'"):
@@ -94,7 +112,7 @@ def test_wrong_requests_are_one_sentence() -> None:
         boundary_point(shown, "fold", start, x="f", y="f")
     with pytest.raises(BadInput, match="begins at a value above 0"):
         boundary_point(shown, "fold", start, x="f", y="k")
-    with pytest.raises(NumbersFailed):
+    with pytest.raises(NumbersFailed, match=r"lost the branch|No fold was found"):
         boundary_point(scene("sec2"), "fold", periodic_orbit(scene("sec2")).state)
 
 

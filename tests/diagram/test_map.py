@@ -16,7 +16,7 @@ import pytest
 import xarray
 
 from app.cli import main
-from granchain_core import BadInput, resonance_curve, scene
+from granchain_core import BadInput, resonance_curve, scene, settle
 from granchain_core.checkpoints import folder_of
 from granchain_core.diagram import Axis, Diagram, Grid, diagram
 from granchain_core.diagram.blocks import Blocks
@@ -76,6 +76,9 @@ def test_an_axis_that_reaches_zero_switches_its_effect_off_there() -> None:
 def test_scenes_that_batches_cannot_run_are_settled_one_by_one() -> None:
     found = diagram(scene("sec2").evolve(tension="cut"), ("f", [340.0]), ("A0", [5e-7, 6e-7]))
     assert [CELL_REGIMES[code] for code in found.cells["regime"]] == ["periodic", "periodic"]
+    for number, cell in enumerate(found.cells):
+        assert cell["max_output_force"] == pytest.approx(settle(found.grid.cell(number)).run.max_output_force,
+                                                         rel=2.0 * cell["error_estimate"])
 
 
 def test_the_first_cells_are_spread_over_the_whole_diagram() -> None:

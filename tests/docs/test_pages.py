@@ -86,7 +86,7 @@ def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
     if "scene" in parsed and parsed.scene != "drag" and "dissipation=three-quarters" not in parsed.set:
         changes = dict(setting.split("=") for setting in parsed.set)
         if changes.get("f") == "13OO":  # the readme's wrong value
-            with pytest.raises(BadInput):
+            with pytest.raises(BadInput, match="13OO"):
                 scene(parsed.scene).evolve(**changes)
         else:
             scene(parsed.scene).evolve(**changes)

@@ -1,4 +1,6 @@
-"""What docs/regimes.md says of regimes are the constants of the code; the multipliers of two pages are computed."""
+"""What docs/regimes.md says of regimes are the constants of the code, and no page names a constant that is not there;
+the multipliers of two pages are computed.
+"""
 
 from __future__ import annotations
 
@@ -57,10 +59,8 @@ def test_every_number_with_a_name_in_these_files_is_on_the_page() -> None:
     """A new threshold is one that the page does not have yet."""
     for file in {file for _, _, file in ROWS}:
         module = importlib.import_module("granchain_core." + file.replace("/", "."))
-        source = Path(str(module.__file__)).read_text(encoding="utf-8")
-        named = {name.id for statement in ast.parse(source).body if isinstance(statement, ast.Assign)
-                 for target in statement.targets for name in ast.walk(target) if isinstance(name, ast.Name)}
-        numbers = {name for name in named if name.isupper() and isinstance(getattr(module, name), int | float)}
+        named = constants(Path(str(module.__file__)))
+        numbers = {name for name in named if isinstance(getattr(module, name), int | float)}
         missing = {name for name in numbers - NO_THRESHOLDS if f"`{name}`" not in REGIMES}
         assert not missing, f"{file}.py: {missing}"
 
@@ -75,6 +75,31 @@ def test_the_thresholds_of_a_response_are_those_of_the_code() -> None:
         assert float(Fraction(printed)) == pytest.approx(getattr(module, name), rel=1e-15)
     assert {name for _, name, file in rows if file == "steady/curve/resonance"} == {
         name for name, value in vars(resonance).items() if name.isupper() and isinstance(value, float)}
+
+
+def constants(file: Path) -> set[str]:
+    """Names in capitals that a file gives a value at its top level."""
+    return {name.id for statement in ast.parse(file.read_text(encoding="utf-8")).body
+            if isinstance(statement, ast.Assign | ast.AnnAssign) for name in ast.walk(statement)
+            if isinstance(name, ast.Name) and isinstance(name.ctx, ast.Store) and name.id.isupper()}
+
+
+@pytest.mark.parametrize("page", sorted((ROOT / "docs").glob("*.md")), ids=lambda page: page.stem)
+def test_a_constant_that_a_page_names_is_in_the_file_beside_it(page: Path) -> None:
+    """“`NAME` in `file.py`”; the path begins at the root or in `granchain_core`."""
+    text = " ".join(page.read_text(encoding="utf-8").split())
+    for name, file in re.findall(r"`(_?[A-Z][A-Z_]+)` (?:in|of) `([\w/]+\.py)`", text):
+        path = next(place for place in (ROOT / "granchain_core" / file, ROOT / file) if place.exists())
+        assert name in constants(path), f"{file} has no {name}"
+
+
+@pytest.mark.parametrize("page", ["orbits", "branches", "observers", "diagram"])
+def test_a_constant_that_a_page_names_without_a_file_exists(page: str) -> None:
+    named = set(re.findall(r"`(_?[A-Z][A-Z_]{2,})`", (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")))
+    if named:
+        every = set[str]().union(*(constants(path) for folder in ("granchain_core", "app")
+                                   for path in (ROOT / folder).rglob("*.py")))
+        assert named <= every, named - every
 
 
 def test_a_batch_keeps_the_strobes_on_which_a_decision_is_based() -> None:

@@ -103,5 +103,8 @@ def test_a_measured_velocity_or_displacement_drives_the_chain(tmp_path: Path, ca
 def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 2
     assert sentence in capsys.readouterr().err
-    with pytest.raises(BadInput):
+
+
+def test_times_of_a_velocity_ascend() -> None:
+    with pytest.raises(BadInput, match="times must ascend"):
         Signal.from_velocity([0.0, 0.0], [1.0, 1.0])

@@ -207,10 +207,6 @@ def test_what_is_wrong_is_refused(content: str | bytes, answers: Answers | None,
     assert not isinstance(refused.value, Unclear)
 
 
-def test_there_are_more_than_sixty() -> None:
-    assert len(CURVES) + len(ASKED) + len(REFUSED) >= 60
-
-
 @pytest.mark.parametrize(("header", "velocity", "displacement", "entered", "arrived"), [
     ("time_s,velocity_m_s,input_force_N,output_force_N", 10, None, 10, 10),
     ("time (s),shaker velocity (mm/s),F_in (mN)", 1e-2, None, 1e-2, None),

@@ -55,7 +55,7 @@ def test_a_nan_in_the_periods_kernel_is_caught_too(method):
     engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 1)
     engine.periods(2)
     engine.y[4] = np.nan
-    with pytest.raises(NumbersFailed):
+    with pytest.raises(NumbersFailed, match="bead 4 stopped being a finite number"):
         engine.periods(1)
 
 

@@ -28,7 +28,7 @@ def test_tangents_in_w_and_tangents_in_v_with_saltation_are_one_derivative(chang
     stroboscopic_map = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(3).standard_normal(2 * shown.N)
     first, second = stroboscopic_map(x).derivative, stroboscopic_map.derivative_by_saltation(x)
-    assert len(stroboscopic_map.changes) > 0 or "F0" in changes
+    assert len(stroboscopic_map.changes) > 0  # contacts open and close: else there is nothing to jump
     assert np.abs(first - second).max() < 1e-9 * np.abs(first).max()
 
 

@@ -11,7 +11,7 @@ from chains import reference, reference_names, reference_scene
 from app.cli import main
 from granchain_core import run
 
-#: The issue's own list: 1e-8 of the largest displacement, asked for 1e-9.
+#: Solutions that must be stored: section 2's chain and the rig, with and without springs to the ground.
 REQUIRED = ["sec2-340", "sec2-340-founded", "sec2-500", "sec2-500-founded", "sec2-1130", "sec2-1130-founded", "rig-60"]
 OTHERS = sorted(set(reference_names()) - set(REQUIRED) - {"sec2-340-none"})
 
@@ -30,7 +30,7 @@ def test_displacements_agree_to_1e_8_at_every_sample(name):
                  record=true["record"]["scene"]["periods"], samples=8)
     assert result.status == "done"
     np.testing.assert_allclose(result.time, true["time"], rtol=1e-14)  # sample numbers over f: rounding only
-    assert worst(result.displacement, true["displacement"]) < 1e-8  # the issue's own figure
+    assert worst(result.displacement, true["displacement"]) < 1e-8  # ten times the accuracy asked for
     # velocities and forces are functions of the same state; 1e-8 times their order-one sensitivity
     assert worst(result.velocity, true["velocity"], 1) < 2e-8
     for found, stored in ((result.output_force, "output_total"), (result.output_force_elastic, "output_elastic"),
@@ -43,11 +43,13 @@ def test_asked_for_more_it_comes_nearer(name):
     """At 1e-11 the difference is below 1e-11 too, the figure to which the reference itself is trusted."""
     true = reference(name)
     result = run(reference_scene(name).evolve(accuracy=1e-11), 0, true["record"]["scene"]["periods"], 8)
-    # Kuwabara–Kono has no dashpot at onset to calm what rounding does there: it ends near 3e-12 and says not reached
-    assert worst(result.displacement, true["displacement"]) < 1.2e-11
+    error = worst(result.displacement, true["displacement"])
+    # Kuwabara–Kono has no dashpot at onset to calm what rounding does there: it ends near 4e-12, the others below 1e-12
+    assert error < 1.2e-11
     # the difference of two such computations is near their rounding; what is stated is no less than the rounding of all
-    # steps as it may have grown (granchain_core/integrate/stated.py)
-    assert result.status == "done" or result.error_estimate < 1e-9
+    # steps as it may have grown (granchain_core/integrate/stated.py), in half of these scenes 3e-11 to 2.2e-10
+    assert error <= result.error_estimate < 1e-9
+    assert (result.status == "done") == (result.error_estimate <= 1e-11)
 
 
 def test_undamped_chain_is_as_near_as_its_instability_lets_it_be():

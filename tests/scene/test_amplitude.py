@@ -49,13 +49,14 @@ def test_what_is_no_drive(text: str, sentence: str) -> None:
         read_amplitude(text)
 
 
-@pytest.mark.parametrize("data", [
-    None, {}, {"formula": "table", "values": [1e-6], "frequencies": [], "source": ""},
-    {"formula": 1, "values": [1e-6], "frequencies": [], "source": ""},
-    {"formula": "table", "values": [True, 2.0], "frequencies": [1, 2], "source": ""},
-    {"formula": "table", "values": [1e-6, 1e-6], "frequencies": [2, 1], "source": ""}])
-def test_a_damaged_description_is_refused(data: Any) -> None:
-    with pytest.raises(BadInput):
+@pytest.mark.parametrize(("data", "sentence"), [
+    (None, "has formula, values"), ({}, "has formula, values"),
+    ({"formula": "table", "values": [1e-6], "frequencies": [], "source": ""}, "as many amplitudes as frequencies"),
+    ({"formula": 1, "values": [1e-6], "frequencies": [], "source": ""}, "has a formula, numbers"),
+    ({"formula": "table", "values": [True, 2.0], "frequencies": [1, 2], "source": ""}, "has a formula, numbers"),
+    ({"formula": "table", "values": [1e-6, 1e-6], "frequencies": [2, 1], "source": ""}, "which ascend")])
+def test_a_damaged_description_is_refused(data: Any, sentence: str) -> None:
+    with pytest.raises(BadInput, match=sentence):
         Amplitude.from_json(data)
 
 

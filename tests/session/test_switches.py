@@ -61,7 +61,7 @@ def test_without_damping_there_is_no_tension_to_cut() -> None:
 
 @pytest.mark.parametrize("name", ["wall", "", ACCOUNT_SWITCH, "D"])
 def test_what_is_no_effect_of_a_knob_is_refused(name: str) -> None:
-    with pytest.raises(BadInput):
+    with pytest.raises(BadInput, match=f"no switchable effect '{name}'"):
         changes(name, True, scene("sec2"), {})
 
 

@@ -143,13 +143,15 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: Dashboard) ->
     assert host.said == [] and host.failures == []
 
 
-def test_work_gives_way_to_a_moving_knob(host: Dashboard, task: Task) -> None:
-    host.awaiting_picture = True
+def test_work_gives_way_to_a_moving_knob(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The picture is awaited three times that the work looks for it, then it is there."""
+    looks: list[bool] = []
+    monkeypatch.setattr(Dashboard, "awaiting_picture", property(lambda _: looks.append(True) or len(looks) < 4))
+    host = Dashboard()
+    task = Task(host, Queue("test", 1), host.say)  # type: ignore[arg-type]
     task.start(lambda job: job.give_way())
-    time.sleep(0.1)
-    assert host.callbacks == []
-    host.awaiting_picture = False
     host.run_callbacks_until(lambda: not task.running)
+    assert len(looks) == 4 and host.said == [("done", "")]
 
 
 def test_who_gives_way_for_long_looks_ever_more_rarely(host: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -72,7 +72,7 @@ def test_a_file_that_is_none_of_ours_is_refused(tmp_path: Path) -> None:
     other.write_bytes(b"not HDF5")
     with pytest.raises(BadInput, match=r"not a run written by granchain"):
         load(other)
-    with pytest.raises(BadInput):
+    with pytest.raises(BadInput, match="No such file"):
         load(tmp_path / "missing.h5")
 
 

@@ -18,9 +18,16 @@ FREE = (Free("A0", 2.5e-7, 1e-6), Free("D", 50.0, 200.0), Free("k", 1e5, 1.6e6))
 #: The truth lies between these places of the bounds.
 _LOW, _HIGH = 0.25, 0.75
 FREQUENCIES = np.linspace(500.0, 1800.0, 14)
-#: Drive frequency of the series [Hz], its periods and samples a period.
-_F, _PERIODS, _SAMPLES = 1100.0, 6, 64
-CURVE_NOISE, SERIES_NOISE = 0.03, 0.02
+#: Drive frequency of the series [Hz].
+_F = 1100.0
+#: Its drive periods.
+_PERIODS = 6
+#: Its samples a drive period.
+_SAMPLES = 64
+#: Standard deviation of a curve's noise, relative to each force.
+CURVE_NOISE = 0.03
+#: Standard deviation of a series' noise, relative to its largest force.
+SERIES_NOISE = 0.02
 
 
 def drawn(kind: str, seed: int) -> tuple[np.ndarray, CurveTarget | SeriesTarget]:

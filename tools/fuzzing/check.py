@@ -22,12 +22,16 @@ from .properties import SAMPLES, distance
 from .scenes import Draw
 
 PERIODS = 2
-#: Seconds a run may take. After twice that plus the floor it counts as hung, and its stop flag is raised.
-BUDGET, FLOOR = 5.0, 5.0
+#: Time that a run may take [s].
+BUDGET = 5.0
+#: After twice the budget plus this [s] a run counts as hung, and its stop flag is raised.
+FLOOR = 5.0
 #: Relative error of a displacement that matters.
 SILENT = 1e-3
-#: What rounding alone may change, and how far it may be magnified beyond what a change of tolerance shows.
-_ROUNDING, _MAGNIFIED = 1e-10, 1e3
+#: Relative change that rounding alone may make.
+_ROUNDING = 1e-10
+#: How far rounding may be magnified beyond what a change of tolerance shows.
+_MAGNIFIED = 1e3
 #: An energy account is a quadrature along the motion: it was seen to close to 17 times the error of the displacements.
 _ENERGY = 50.0
 #: Seconds SciPy takes, in both its runs, for one step of the adaptive method: a scene that would take too long is not

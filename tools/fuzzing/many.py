@@ -10,9 +10,13 @@ from multiprocessing import get_context
 from .check import Verdict, check
 from .scenes import Draw, draw
 
-#: Seconds that SciPy may take for one scene, and each of the other solvers.
-SCIPY, OTHERS = 1.0, 4.0
-_EVERY_SCIPY, _EVERY_OTHERS = 3, 16
+#: Time that SciPy may take for one scene [s].
+SCIPY = 1.0
+#: Time that each of the other solvers may take for one scene [s].
+OTHERS = 4.0
+#: SciPy is asked for each third scene, the others for each sixteenth: they are slower.
+_EVERY_SCIPY = 3
+_EVERY_OTHERS = 16
 
 
 def warm(structures: list[tuple[str, str, bool, bool]]) -> None:

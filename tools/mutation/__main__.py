@@ -5,8 +5,9 @@
 
 The tests named in the table are first run on the unchanged core, then with each mutant. One that survives them is
 run against all tests of the core before it counts as survived. With --seed the order is drawn, so that --minutes gives
-a sample of the table. --check runs nothing and lists the entries that no longer fit the source; where there are any,
-nothing else is begun either. --work keeps the copy and the compiled kernels of the unchanged core for the next time.
+a sample of the table. --check runs nothing and lists the entries that no longer fit the source or the tests' names;
+where there are any, nothing else is begun either. --work keeps the copy and the compiled kernels of the unchanged core
+for the next time.
 """
 
 from __future__ import annotations
@@ -23,8 +24,10 @@ from .in_step import problems
 from .mutant import Mutant
 from .table import BROAD, DEMANDED, MUTANTS
 
-#: Seconds the named tests and all tests may take. A mutant that hangs is killed by the clock and listed so.
-_LIMIT, _BROAD_LIMIT = 150.0, 3600.0
+#: Time that the named tests may take [s]. A mutant that hangs is killed by the clock and listed so.
+_LIMIT = 150.0
+#: Time that all tests may take [s].
+_BROAD_LIMIT = 3600.0
 
 
 def main() -> int:
@@ -32,7 +35,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="*", default=[], help="mutants with one of these words in their name")
     parser.add_argument("--list", action="store_true", help="the table without running anything")
-    parser.add_argument("--check", action="store_true", help="whether the table is in step with the source, in a second")
+    parser.add_argument("--check", action="store_true", help="whether the table is in step with source and tests")
     parser.add_argument("--minutes", type=float, default=1e9, help="begin no mutant after this")
     parser.add_argument("--seed", type=int, help="draw the order")
     parser.add_argument("--work", type=Path, help="folder for the copy, kept")

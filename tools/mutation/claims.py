@@ -35,7 +35,7 @@ STEADY = (
 )
 
 STATED = (
-    Mutant("error-factor", "integrate/safety_factors.py", "REGULAR, IRREGULAR = 1.5, 3.0", "REGULAR, IRREGULAR = 0.015, 0.03",
+    Mutant("error-factor", "integrate/safety_factors.py", "\nREGULAR = 1.5", "\nREGULAR = 0.015",
            "the stated error is a hundredth of what was seen", k.HONESTY),
     Mutant("same-steps-compared", _METHODS,
            "while finer.steps_per_period(scaled, samples) == self.steps_per_period(scaled, samples):",

@@ -1,8 +1,14 @@
-"""Whether the table of mutants is in step with the core: the text each changes is there, and the tests it names."""
+"""Whether the table of mutants is in step with the core: the text each changes is there, and the tests it names.
+
+For the latter pytest collects the tests, since a name may be that of a parameter.
+"""
 
 from __future__ import annotations
 
 import ast
+import re
+import subprocess
+import sys
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,8 +25,7 @@ def problems() -> list[str]:
               for group, members in DEMANDED.items() for name in members if name not in names]
     for one in MUTANTS:
         found += _text_problems(one)
-    for words in {BROAD, *(one.killers for one in MUTANTS), *(one.blind for one in MUTANTS)}:
-        found += _test_problems(words)
+    found += _test_problems({BROAD, *(one.killers for one in MUTANTS), *(one.blind for one in MUTANTS if one.blind)})
     return found
 
 
@@ -80,14 +85,46 @@ def _is_there(name: str) -> bool:
     return place.name in bound
 
 
-def _test_problems(words: tuple[str, ...]) -> Iterator[str]:
-    """Whether the test files and functions that pytest is given exist."""
-    for word in words:
-        if not word.startswith("tests/"):
-            continue
-        file, _, name = word.partition("::")
-        function = name.partition("[")[0]
-        if not (ROOT / file).exists():
-            yield f"there is no {file}"
-        elif function and f"def {function}(" not in (ROOT / file).read_text(encoding="utf-8"):
-            yield f"{file} has no {function}"
+def _test_problems(lists: set[tuple[str, ...]]) -> Iterator[str]:
+    """Whether the tests that pytest is given exist: files, functions, and those that `-k` chooses among them."""
+    places = {word for words in lists for word in words if word.startswith("tests/")}
+    files = sorted({word.partition("::")[0] for word in places})
+    missing = [file for file in files if not (ROOT / file).exists()]
+    yield from (f"there is no {file}" for file in missing)
+    collected, problem = _collected([file for file in files if file not in missing])
+    if problem:
+        yield problem
+        return
+    there = {place: [one for one in collected if _is_of(place, one)] for place in sorted(places)}
+    yield from (f"there is no test {place}" for place, tests in there.items()
+                if not tests and place.partition("::")[0] not in missing)
+    for words in sorted(lists):
+        if "-k" in words:
+            tests = [one for word in words if word in there for one in there[word]]
+            yield from _choice_problems(words[words.index("-k") + 1], tests)
+
+
+def _collected(files: list[str]) -> tuple[list[str], str]:
+    """The tests in these files and folders, as pytest names them; or why they cannot be told."""
+    done = subprocess.run([sys.executable, "-m", "pytest", "--collect-only", "-q", "-o", "addopts=", "-p",
+                           "no:cacheprovider", *files], cwd=ROOT, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        return [], f"pytest does not collect the tests: {(done.stdout + done.stderr)[-2000:]}"
+    return [line for line in done.stdout.splitlines() if "::" in line], ""
+
+
+def _is_of(place: str, test: str) -> bool:
+    """Whether a test is that place, or one of those in it."""
+    return test == place or (test.startswith(place) and test[len(place)] in "/:[")
+
+
+def _choice_problems(expression: str, tests: list[str]) -> Iterator[str]:
+    """Whether each word of an expression of `-k` is part of a test's name, and the whole chooses at least one."""
+    words = set(re.findall(r"[^\s()]+", expression)) - {"and", "or", "not"}
+    names = [one.lower() for one in tests]
+    unknown = sorted(word for word in words if not any(word.lower() in name for name in names))
+    yield from (f"{word!r} of {expression!r} is in no test's name" for word in unknown)
+    chooses = re.sub(r"[^\s()]+", lambda match: match[0] if match[0] in ("and", "or", "not")
+                     else f"({match[0].lower()!r} in name)", expression)
+    if not unknown and not any(eval(chooses, {"name": name}) for name in names):
+        yield f"{expression!r} chooses no test"

@@ -21,8 +21,10 @@ SHORTEST = 1e-7
 _TURN_OF_STEP = np.radians(8.0)
 #: Distance of its orbit from the predicted one, as a fraction of the step.
 _MISS_OF_STEP = 0.02
-#: Largest factors by which a step grows and shrinks.
-_GROW, _SHRINK = 2.0, 0.5
+#: Largest factor by which a step grows.
+_GROW = 2.0
+#: Smallest factor by which it shrinks.
+_SHRINK = 0.5
 #: Cosine of the turn beyond which a step is rejected.
 BENT = np.cos(np.radians(30.0))
 #: Largest distance from the predicted to the corrected point, as a fraction of the step.

@@ -23,8 +23,10 @@ from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
 #: Most steps of the fixed-step method while settling: 6 s for eleven beads, at 60 ns a step.
 MOST_SETTLING_STEPS = 100_000_000
-#: Periods until the motion is first looked at for a period, and at least between two looks.
-_FIRST_LOOK, _BETWEEN_LOOKS = 2, 8
+#: Drive periods until the motion is first looked at for a period.
+_FIRST_LOOK = 2
+#: Fewest drive periods between two looks; later an eighth of those that were run.
+_BETWEEN_LOOKS = 8
 
 
 class Settling:

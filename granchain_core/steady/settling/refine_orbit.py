@@ -12,8 +12,10 @@ from ..regime_criteria import changes
 from .advance import Settling
 from .reduced_rank import reduced_rank, within_reach
 
-#: Parts of the error asked for: of the integration over an orbit, and of the distance left to the orbit.
-INTEGRATION_PART, _DISTANCE_PART = 0.1, 0.3
+#: Part of the error asked for that the integration over an orbit may have, at the first try.
+INTEGRATION_PART = 0.1
+#: Part of the error asked for that the distance left to the orbit may have.
+_DISTANCE_PART = 0.3
 #: An orbit is computed to this relative accuracy at worst, even if the scene asks for less.
 LEAST_ACCURATE = 1e-4
 #: Smallest error of one period that is asked of a method: below it is rounding.
