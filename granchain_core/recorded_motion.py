@@ -35,6 +35,14 @@ class Motion(Labelled):
         velocity: np.ndarray
         force: np.ndarray
 
+        @property
+        def displacement_error(self) -> float | None: ...
+
+    @property
+    def error_estimate(self) -> float | None:
+        """`displacement_error` by the name that it has in the command line's JSON."""
+        return self.displacement_error
+
     @property
     def kinetic_energy(self) -> np.ndarray:
         """Kinetic energy of every bead (T, N) [J]."""

@@ -172,7 +172,7 @@ def _run_on(scene: Scene, state: State, stop: Stop | None) -> tuple[State, np.nd
 
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
     """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
-    best = min((one.result for one in group), key=lambda result: result.error_estimate or 0.0)
+    best = min((one.result for one in group), key=lambda result: result.output_force_error or 0.0)
     first, maxima = group[0], best.maxima
     if first.result.regime.period is None:
         maxima = np.max([one.result.maxima for one in group], axis=0)

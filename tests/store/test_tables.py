@@ -6,7 +6,7 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -128,6 +128,16 @@ def test_errors_and_regimes_stand_beside_the_numbers() -> None:
     assert run.regime.item() == result("Run").regime.name and float(run.error_estimate_displacement) > 0.0  # type: ignore[attr-defined]
     runs = result("Runs").to_pandas()
     assert list(runs["wall"]) == ["bead", "rigid", "bead"] and list(runs["N"]) == [2, 2, 3] and runs["max_output_force"].is_unique
+
+
+def test_error_estimate_is_the_error_that_the_command_line_calls_so() -> None:
+    """Of the displacements of a motion, of the output force of a point of a curve and of an attractor."""
+    for kind in ("Run", "Driven", "Observation"):
+        motion: Any = result(kind)
+        assert motion.error_estimate == motion.displacement_error > 0.0, kind
+    curve, found = (cast("Any", result(kind)) for kind in ("Curve", "Attractors"))
+    for one in (curve.points[0], found[0]):
+        assert one.error_estimate == one.force_errors.output > 0.0
 
 
 @pytest.mark.parametrize("kind", RESULTS)
