@@ -11,7 +11,7 @@ import numpy as np
 from .integrate import Counts
 from .integrate.engine import Engine
 from .kernels.samples import Samples
-from .recorded_motion import Motion, motion_columns
+from .recorded_motion import RecordedMotion, motion_columns
 from .regime import Regime
 from .scene import Scene
 from .scene.validity import overlap_warnings
@@ -141,7 +141,7 @@ class HasForces(LargestForces, Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Run(Motion):
+class Run(RecordedMotion):
     """A recorded motion: T samples of N beads and N + 1 contacts, in SI.
 
     Attributes

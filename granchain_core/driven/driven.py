@@ -18,7 +18,7 @@ from ..integrate import fixed_step_setting
 from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
-from ..recorded_motion import MOST_RECORDED, Motion, motion_columns
+from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
 from ..state import State, rest
@@ -30,7 +30,7 @@ from .signal import Signal
 
 
 @dataclass(frozen=True, eq=False)
-class Driven(Motion):
+class Driven(RecordedMotion):
     """The motion of a chain at the T knots of its signal, in SI.
 
     Attributes

@@ -42,7 +42,7 @@ class ChainInPieces:
         self._time = time
         self._stop = stop
         self._log = new_log()
-        self._spans = np.diff(time) * scaled.scales.rate
+        self._spans = np.diff(time) * scaled.scales.phi
         self._pieces = pieces
         self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / scaled.step).astype(np.int64)
 

@@ -22,7 +22,7 @@ from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR, REGULAR
 from ..integrate.stated import relative_difference
-from ..recorded_motion import MOST_RECORDED, Motion, elastic_output, motion_columns
+from ..recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns
 from ..result import Cost
 from ..scene import Scene
 from ..state import State, rest
@@ -43,7 +43,7 @@ class Residual:
 
 
 @dataclass(frozen=True, eq=False)
-class Observation(Motion):
+class Observation(RecordedMotion):
     """The motion of an observer at the T samples of its input, in SI.
 
     Attributes
