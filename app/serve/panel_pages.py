@@ -1,4 +1,4 @@
-"""Scripts and style sheets, which are the same for every page, but which Panel works out anew each time."""
+"""Scripts and style sheets, worked out once: they are the same for every page, but Panel works them out for each."""
 
 from __future__ import annotations
 

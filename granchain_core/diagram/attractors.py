@@ -1,7 +1,7 @@
 """The search for all steady states of one setting: from rest, from sweeps up and down, and from random states.
 
-All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable
-orbit, where a slow departure looks like a steady state, is displaced and run further.
+All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable orbit, where a
+slow departure looks like a steady state, is displaced and run further.
 """
 
 from __future__ import annotations

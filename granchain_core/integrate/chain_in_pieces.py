@@ -1,4 +1,4 @@
-"""A scaled chain whose driver has a force or a motion in pieces, one polynomial between two samples.
+"""A scaled chain with a given force or a given motion of its driver in pieces, one polynomial between two samples.
 
 A measured force pushes it (observe/pushed_chain.py), or its driver moves as a signal says (driven/moved_chain.py).
 """

@@ -1,8 +1,8 @@
 """The steps of a walk along a branch: where the next orbit is expected, and how long the step after it is.
 
-A step is as long as keeps the branch's turn and its distance from the prediction small. Both are measured on the step
-before, so the length does not depend on how Newton's method found the orbit. After a step that failed, the next does
-not grow: what made it fail usually lies just ahead.
+The length of a step keeps two things small: the turn of the branch, and the distance of the orbit from its prediction.
+Both are measured on the step before, so the length does not depend on how Newton's method found the orbit. After a step
+that failed, the next does not grow: what made it fail usually lies just ahead.
 """
 
 from __future__ import annotations
