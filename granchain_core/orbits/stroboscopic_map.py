@@ -26,7 +26,7 @@ from ..stop import Stop
 #: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.
 TOLERANCE = 1e-13
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
-BACK = 1e-8
+RETURN_DISTANCE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)

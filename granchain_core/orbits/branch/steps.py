@@ -12,21 +12,21 @@ import numpy as np
 from .between import across
 
 #: First step in arclength.
-FIRST = 0.02
+FIRST_STEP = 0.02
 #: Longest step.
-LONGEST = 0.2
+LONGEST_STEP = 0.2
 #: Shortest step.
-SHORTEST = 1e-7
+SHORTEST_STEP = 1e-7
 #: Angle by which the branch turns in a step of the length aimed at.
 _TURN_OF_STEP = np.radians(8.0)
 #: Distance of its orbit from the predicted one, as a fraction of the step.
 _MISS_OF_STEP = 0.02
 #: Largest factors by which a step grows and shrinks.
-_GROW, _SHRINK = 2.0, 0.5
+_GROWTH_FACTOR, _SHRINK_FACTOR = 2.0, 0.5
 #: Cosine of the turn beyond which a step is rejected.
-BENT = np.cos(np.radians(30.0))
+LEAST_COSINE = np.cos(np.radians(30.0))
 #: Largest distance from the predicted to the corrected point, as a fraction of the step.
-OFF = 0.3
+LARGEST_CORRECTION = 0.3
 
 
 def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
@@ -37,7 +37,7 @@ def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
         way = float(np.linalg.norm(z - before[0]))
         second = (6.0 * (before[0] - z) / way + 2.0 * before[1] + 4.0 * tangent) / way
         sideways = 0.5 * step**2 * across(second, tangent)
-        if np.linalg.norm(sideways) < OFF * step:
+        if np.linalg.norm(sideways) < LARGEST_CORRECTION * step:
             guess += sideways
     return guess
 
@@ -49,5 +49,6 @@ def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
     from there had failed.
     """
     angle = max(float(np.arccos(min(1.0, cosine))), 1e-9)
-    wanted = min(_TURN_OF_STEP / angle, np.sqrt(_MISS_OF_STEP * step / max(off, 1e-9 * step)), 1.0 if failed else _GROW)
-    return min(LONGEST, max(_SHRINK, float(wanted)) * step)
+    most = 1.0 if failed else _GROWTH_FACTOR
+    wanted = min(_TURN_OF_STEP / angle, np.sqrt(_MISS_OF_STEP * step / max(off, 1e-9 * step)), most)
+    return min(LONGEST_STEP, max(_SHRINK_FACTOR, float(wanted)) * step)
