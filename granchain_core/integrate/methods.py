@@ -30,8 +30,10 @@ _FIXED_STEP_ERROR = 7e-6
 #: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
 #: tests.numerics.stated_errors`).
 _ERROR_SPREAD = 8.0
-#: The adaptive method's first tolerance per step: this part of the accuracy asked for, and at most so large.
-_TOLERANCE_PER_ACCURACY, _LARGEST_TOLERANCE = 0.1, 1e-3
+#: The adaptive method's first tolerance per step, as a part of the accuracy asked for.
+_TOLERANCE_PER_ACCURACY = 0.1
+#: Largest first tolerance per step.
+_LARGEST_TOLERANCE = 1e-3
 #: Smallest tolerance of a step that is still followed by a finer one.
 _SMALLEST_TOLERANCE = 1e-15
 

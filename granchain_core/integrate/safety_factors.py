@@ -14,9 +14,11 @@ from __future__ import annotations
 #: IRREGULAR: it does not, as at contact events with the other methods, with tension cut, and between the samples of a
 #: measured force.
 REGULAR, IRREGULAR = 1.5, 3.0
-#: Largest forces of a run, on top of the factor above: where no force jumps, and where one does, whose error varies
-#: from one step size to the next. Found by trial (`python -m tests.numerics.forces run`).
-RUN_FORCES, RUN_FORCES_THAT_JUMP = 1.5, 3.0
+#: Largest forces of a run, on top of the factor above, where no force jumps. Found by trial (`python -m
+#: tests.numerics.forces run`), as is the next.
+RUN_FORCES = 1.5
+#: The same where a force jumps: its error varies from one step size to the next.
+RUN_FORCES_THAT_JUMP = 3.0
 #: Largest forces on a periodic orbit, in place of both factors above: only two computations are compared, and their
 #: change is enlarged by 1/(1 − |μ|) as well (`orbit_force_errors`).
 ORBIT_FORCES = 2.0

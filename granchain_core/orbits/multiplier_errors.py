@@ -21,9 +21,11 @@ from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
 #: Tolerance of the coarser map over that of the map.
 _COARSER_FACTOR = 10.0
-#: Factor of caution on the change that is seen, and the part of the bound that is stated at least: the bound was 15 to
-#: 80 times the change in the scenes that were looked at (tests/orbits/test_multiplier_errors.py).
-_CAUTION_FACTOR, _LEAST_PART = 2.0, 0.25
+#: Factor of caution on the change that is seen.
+_CAUTION_FACTOR = 2.0
+#: Part of the bound that is stated at least: the bound was 15 to 80 times the change in the scenes that were examined
+#: (tests/orbits/test_multiplier_errors.py).
+_LEAST_PART = 0.25
 
 
 def derivative_change(scene: Scene, period: int, state: State, derivative: np.ndarray,

@@ -17,12 +17,16 @@ from ..regime import Regime
 
 #: Standard errors within which a mean exponent counts as not known.
 STANDARD_ERRORS = 3.0
-#: Mean exponents per period above which a motion may be chaotic, and within which it may be quasi-periodic, however
-#: small the standard error: the error that a finite record leaves falls as 1/periods.
-_LEAST_CHAOTIC_EXPONENT, _LARGEST_NEUTRAL_EXPONENT = 0.01, 5e-4
-#: Periods in one of the three windows in which a slow approach must show, and how much changes shrink from one to
-#: the next. A closed curve sampled a hundred times shows its extent to about a per cent.
-_SLOW_WINDOW, _SHRINK_FACTOR = 100, 0.98
+#: Mean exponent per period above which a motion may be chaotic, however small the standard error: the error that a
+#: finite record leaves falls as 1/periods.
+_LEAST_CHAOTIC_EXPONENT = 0.01
+#: Mean exponent per period within which a motion may be quasi-periodic, however small the standard error.
+_LARGEST_NEUTRAL_EXPONENT = 5e-4
+#: Periods in each of the three windows in which a slow approach must show. A closed curve sampled a hundred times shows
+#: its extent to about a per cent.
+_SLOW_WINDOW = 100
+#: Changes shrink if those of a window are less than this part of those of the window before.
+_SHRINK_FACTOR = 0.98
 #: Largest changes of a departure that is still small, relative to the largest displacement and velocity.
 _LARGEST_DEPARTURE = 0.1
 #: Lyapunov exponent per period that no departure from an orbit sustains over the periods in which a motion may settle.

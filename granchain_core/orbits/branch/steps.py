@@ -21,8 +21,10 @@ SHORTEST_STEP = 1e-7
 _TURN_OF_STEP = np.radians(8.0)
 #: Distance of its orbit from the predicted one, as a fraction of the step.
 _MISS_OF_STEP = 0.02
-#: Largest factors by which a step grows and shrinks.
-_GROWTH_FACTOR, _SHRINK_FACTOR = 2.0, 0.5
+#: Largest factor from one step to the next.
+_GROWTH_FACTOR = 2.0
+#: Smallest factor from one step to the next.
+_SHRINK_FACTOR = 0.5
 #: Cosine of the turn beyond which a step is rejected.
 LEAST_COSINE = np.cos(np.radians(30.0))
 #: Largest distance from the predicted to the corrected point, as a fraction of the step.

@@ -31,8 +31,10 @@ _POINTS_BEFORE_CLOSING = 4
 #: An orbit that is back within this, relatively, after a part of its period is refused: where the branches of both
 #: periods meet, an orbit of the shorter one is found with an error far above its residual.
 _SHORTER_PERIOD_DISTANCE = 1e-6
-#: Orbits that the walk is ahead of the search for special points, and threads that search.
-_ORBITS_AHEAD, _THREADS = 4, 2
+#: Orbits by which the walk is ahead of the search for special points.
+_ORBITS_AHEAD = 4
+#: Threads that search.
+_THREADS = 2
 
 
 @dataclass
