@@ -147,7 +147,7 @@ def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
 
 
 def differences(step: StoryStep, shown: Run) -> list[str]:
-    """What of a run is not as the step tells, in sentences."""
+    """How a run differs from what the step says, in sentences."""
     found, expected = [], step.expect
     regime = shown.regime.name if shown.regime.driven else UNDRIVEN
     if (regime, shown.regime.period) != (expected.regime, expected.period):

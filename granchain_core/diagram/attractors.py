@@ -152,7 +152,7 @@ def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> 
 
 
 def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
-    """The state in which a sweep of the frequency from `factor` times it arrives."""
+    """The state at the end of a sweep that begins at `factor` times the frequency."""
     state = rest(scene)
     for step in range(_SWEEP_POINTS):
         if stop:

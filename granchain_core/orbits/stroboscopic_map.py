@@ -96,18 +96,20 @@ class StroboscopicMap:
     def derivative_by_saltation(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
 
-        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests use it. It must
-        stay importable, because every process that reads compiled kernels imports their types.
+        Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Only tests use it, but its
+        tangent's class belongs to the core: the list of compiled versions of `run_flow` names the class, and a process
+        that reads the list imports it.
+
         Raises `BadInput` for a damping that is not the linear dashpot's.
         """
         scaled = self.engine.scaled
         if scaled.slots.dissipation is not None and not isinstance(scaled.slots.dissipation, LinearDashpot):
             raise BadInput(f"dissipation = {scaled.scene.dissipation} has no constant saltation; the second route "
                            "knows linear and none.")
-        before = velocity_from_w(scaled, x)
+        before = velocity_jacobian(scaled, x)
         tangent = new_velocity_tangent(before, scaled.bodies, float(jumps))
         self._run(x, tangent)
-        return np.linalg.solve(velocity_from_w(scaled, self.inner(self.engine.y)), tangent.matrix)
+        return np.linalg.solve(velocity_jacobian(scaled, self.inner(self.engine.y)), tangent.matrix)
 
     def end(self, x: np.ndarray) -> np.ndarray:
         """The state n periods after x, without tangents: with none of them, by the kernel that has their code."""
@@ -132,7 +134,7 @@ class StroboscopicMap:
         return float(trace)
 
 
-def velocity_from_w(scaled: ScaledChain, x: np.ndarray) -> np.ndarray:
+def velocity_jacobian(scaled: ScaledChain, x: np.ndarray) -> np.ndarray:
     """Derivative (2N, 2N) of (u, v) with respect to (u, w) at state x, phase 0, for the linear dashpot or none."""
     n = scaled.beads
     matrix = np.eye(2 * n)

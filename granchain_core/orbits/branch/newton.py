@@ -91,7 +91,7 @@ class Equations(Protocol):
 class Newton:
     """The iteration from one start: the point `z` it has come to, J, and the residuals of all maps.
 
-    `z` goes at most `farthest`. `steps` are those of the quick map.
+    `z` goes at most `farthest` from the start. `steps` is the number of steps in a period of the quick map.
     """
 
     def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray, farthest: float = np.inf) -> None:

@@ -151,7 +151,7 @@ class Walk(Iterator[BranchPoint]):
     def _next_orbit(self, last: Ending) -> tuple[Ending, np.ndarray | None]:
         """The next orbit, and whether the branch ends there; `NumbersFailed` where the step is too long.
 
-        It comes with its contact events where forces and contacts are still to be found. The next step is set.
+        With it come its contact events, where its forces and contacts are still to be found. Sets the next step.
         """
         equations, step, here = self.equations, self._step, last.point
         guess = predicted(step, self._z(here), here.tangent, self._before_last)
