@@ -152,7 +152,7 @@ def samples_for(scene: Scene) -> int:
     Without a drive a picture is one time 1/f, and has the rows of the periods that it would show otherwise.
     """
     shown = 1 if scene.is_driven else PERIODS
-    needed = _ROW_STEP * round(shown * _ROWS_PER_CONTACT_TIME * scales_of(scene).rate / scene.f / _ROW_STEP)
+    needed = _ROW_STEP * round(shown * _ROWS_PER_CONTACT_TIME * scales_of(scene).phi / scene.f / _ROW_STEP)
     return int(min(max(needed, _FEWEST_ROWS), _MOST_ROWS))
 
 

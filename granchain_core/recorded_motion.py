@@ -24,7 +24,7 @@ _COLUMNS = {  # by name: (axes, unit, meaning)
 }
 
 
-class Motion(Labelled):
+class RecordedMotion(Labelled):
     """A result with the motion of a chain over time, and the forces at its two ends.
 
     `displacement` (T, N) [m] and `velocity` (T, N) [m/s] of the beads, `force` (T, N + 1) [N] of the contacts.
@@ -34,6 +34,14 @@ class Motion(Labelled):
         displacement: np.ndarray
         velocity: np.ndarray
         force: np.ndarray
+
+        @property
+        def displacement_error(self) -> float | None: ...
+
+    @property
+    def error_estimate(self) -> float | None:
+        """`displacement_error` by the name that it has in the command line's JSON."""
+        return self.displacement_error
 
     @property
     def kinetic_energy(self) -> np.ndarray:
@@ -56,7 +64,7 @@ class Motion(Labelled):
         return elastic_output(self.scene, self.displacement[:, -1])
 
 
-def motion_columns(motion: Motion) -> dict[str, Column]:
+def motion_columns(motion: RecordedMotion) -> dict[str, Column]:
     """The columns over time that a motion has: a run all of them, an observation those without a driver."""
     return {name: Column(values, axes, unit, meaning) for name, (axes, unit, meaning) in _COLUMNS.items()
             if (values := getattr(motion, name, None)) is not None}

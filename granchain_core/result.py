@@ -11,7 +11,7 @@ import numpy as np
 from .integrate import Counts
 from .integrate.engine import Engine
 from .kernels.samples import Samples
-from .recorded_motion import Motion, motion_columns
+from .recorded_motion import RecordedMotion, motion_columns
 from .regime import Regime
 from .scene import Scene
 from .scene.validity import overlap_warnings
@@ -141,7 +141,7 @@ class HasForces(LargestForces, Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Run(Motion):
+class Run(RecordedMotion):
     """A recorded motion: T samples of N beads and N + 1 contacts, in SI.
 
     Attributes
@@ -170,9 +170,9 @@ class Run(Motion):
     force_errors : ForceErrors
         Stated relative errors of these three suprema, `input`, `output`, `elastic`: numerical error only, an empirical
         bound (docs/design.md), not a proof; None where none is stated.
-    error_estimate : float or None
+    displacement_error : float or None
         Stated largest error of any displacement over the largest displacement: numerical error only, an empirical
-        bound (docs/design.md), not a proof; None where none is stated.
+        bound (docs/design.md), not a proof; None where none is stated. Also called `error_estimate`.
     energy_residual : float or None
         |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
         energy; None where no account was kept.
@@ -209,7 +209,7 @@ class Run(Motion):
     max_output_force_elastic: float
     status: str
     regime: Regime
-    error_estimate: float | None
+    displacement_error: float | None
     energy_residual: float | None
     cost: Cost
     start: str = AT_REST
@@ -237,7 +237,7 @@ class Run(Motion):
                   for name, error, force in zip(RUN_ERRORS, self.force_errors.row, kinds, strict=True)}
         return {**force_columns(forces, (), "over the recorded time"), **errors,
                 "error_estimate_displacement": Column(
-                    np.array(or_nan(self.error_estimate)), (), "1",
+                    np.array(or_nan(self.displacement_error)), (), "1",
                     "largest error of a displacement over the largest displacement, NaN if unknown"),
                 "regime": Column(np.array(self.regime.name, dtype=object), (), "", "what kind of motion it is"),
                 "period": Column(np.array(self.regime.period or 0), (), "1",
@@ -245,7 +245,7 @@ class Run(Motion):
 
     def attributes(self) -> dict[str, Attribute]:
         """Largest forces with their errors, regime, status, start, warnings and cost, and where they come from."""
-        return {**provenance(self.scene, self.cost.method, self.error_estimate),
+        return {**provenance(self.scene, self.cost.method, self.displacement_error),
                 "status": self.status, "start": self.start,
                 "warnings": json.dumps(overlap_warnings(self.scene, self.overlap.max(axis=0))),
                 "energy_residual": or_nan(self.energy_residual), "samples_per_period": self.samples,
@@ -255,7 +255,8 @@ class Run(Motion):
 
     def summary(self) -> list[str]:
         """Regime, largest forces and errors."""
-        reached = "no error stated" if self.error_estimate is None else f"relative error {self.error_estimate:.1e}"
+        error = self.displacement_error
+        reached = "no error stated" if error is None else f"relative error {error:.1e}"
         return [self.regime.sentence, *said_forces(self),
                 f"{len(self.time)} samples; displacements: {reached}; {self.status.replace('-', ' ')}"]
 
@@ -306,7 +307,7 @@ def run_from(engine: Engine, samples: Samples, first_sample: int, regime: Regime
         displacement=samples.displacement, velocity=samples.velocity, force=samples.force,
         drive_displacement=scene.drive_amplitude * np.sin(2 * np.pi * inside / engine.samples),
         max_input_force=float(maxima[0]), max_output_force=float(maxima[1]), max_output_force_elastic=float(maxima[2]),
-        status=status, regime=regime, error_estimate=error, energy_residual=residual(samples.energy), cost=cost,
+        status=status, regime=regime, displacement_error=error, energy_residual=residual(samples.energy), cost=cost,
         start=start, force_errors=ForceErrors.of(force_errors), jumps=_jumps(engine, first_sample),
     )
 

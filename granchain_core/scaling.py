@@ -51,13 +51,13 @@ class Scales:
     """Units of the scaled equations in SI: length [m], rate φ [1/s], force [N]."""
 
     length: float
-    rate: float
+    phi: float
     force: float
 
     @property
     def velocity(self) -> float:
         """Unit of velocity [m/s]."""
-        return self.length * self.rate
+        return self.length * self.phi
 
     @property
     def energy(self) -> float:
@@ -195,14 +195,14 @@ class ScaledChain:
 
 def scales_of(scene: Scene) -> Scales:
     """The scene's scales."""
-    rate = math.sqrt(scene.K * math.sqrt(scene.A0) / scene.bead(1).mass)
-    return Scales(scene.A0, rate, scene.K * scene.A0**1.5)
+    phi = math.sqrt(scene.K * math.sqrt(scene.A0) / scene.bead(1).mass)
+    return Scales(scene.A0, phi, scene.K * scene.A0**1.5)
 
 
 def _dissipation(scene: Scene, scales: Scales) -> Any:
     """λ = D/(mφ), for an overlap-dependent law at one length unit of overlap."""
     law = LAWS[scene.dissipation]
-    strength = scene.D / (scene.bead(1).mass * scales.rate)
+    strength = scene.D / (scene.bead(1).mass * scales.phi)
     return law.slot(strength * (scales.length / scene.reference_overlap) ** law.exponent)
 
 
@@ -225,7 +225,7 @@ for _effect in EFFECTS:
 def scale_chain(scene: Scene, balance: bool = False) -> ScaledChain:
     """Scaled arrays and slots of `scene`; `balance` adds the energy account to the equations."""
     scales = scales_of(scene)
-    beta = 2 * math.pi * scene.f / scales.rate
+    beta = 2 * math.pi * scene.f / scales.phi
     inverse_mass = np.zeros(scene.N + 2)
     inverse_mass[1:-1] = scene.bead(1).mass / scene.masses()
     filled = {effect.slot: _FILLED[effect.slot](scene, scales) for effect in effects_of(scene)}
@@ -242,7 +242,7 @@ def scale_like(known: ScaledChain, scene: Scene) -> ScaledChain:
     """`scale_chain(scene)`; if it differs from the known one only by its frequency, both share their arrays."""
     if known.slots.balance is not None or vars(known.scene) | {"f": scene.f} != vars(scene):
         return scale_chain(scene)
-    beta = 2 * math.pi * scene.f / known.scales.rate
+    beta = 2 * math.pi * scene.f / known.scales.phi
     driver = known.slots.driver._replace(beta=beta)
     return ScaledChain(scene, known.scales, known.slots._replace(driver=driver), beta).own()
 

@@ -65,7 +65,7 @@ def _json(found: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
     return {"scene": found.scene.name, "knobs": found.scene.knobs, "random_states": arguments.random_states,
             "seed": arguments.seed, "attractors": [{
                 "regime": one.regime.name, "period": one.regime.period, "stable": one.stable,
-                **forces_json(one), "error_estimate": one.error_estimate,
+                **forces_json(one), "error_estimate": one.force_errors.output,
                 "error_estimate_elastic": one.force_errors.elastic, "error_estimate_input": one.force_errors.input,
                 "share": one.share if tried else None, "share_error": one.share_error if tried else None,
                 "starts": [origin.name for origin in one.origins]} for one in found]}

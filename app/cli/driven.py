@@ -37,7 +37,7 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     found = in_background(lambda stop: drive(chosen, signal, stop=stop))
     if found.status != "done":
         say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
-            f"{found.error_estimate:.1e} of the largest displacement.")
+            f"{found.displacement_error:.1e} of the largest displacement.")
     if arguments.out:
         from granchain_core.store import save
 

@@ -23,7 +23,7 @@ def forces_json(found: LargestForces) -> dict[str, Any]:
 def errors_json(found: Run | Driven) -> dict[str, Any]:
     """The relative errors of displacements and of each largest force, and the residual of the energy account."""
     errors = found.force_errors
-    return {"error_estimate": found.error_estimate, "error_estimate_output": errors.output,
+    return {"error_estimate": found.displacement_error, "error_estimate_output": errors.output,
             "error_estimate_input": errors.input, "error_estimate_elastic": errors.elastic,
             "energy_residual": found.energy_residual}
 
@@ -39,8 +39,9 @@ def errors_in_words(found: Run | Driven) -> str:
     errors = found.force_errors
     inward, outward, elastic = ("none stated" if e is None else f"{e:.1e}"
                                 for e in (errors.input, errors.output, errors.elastic))
-    return (f"relative errors: displacement {found.error_estimate:.1e}, output force {outward} (elastic {elastic}), "
-            f"input force {inward}; {energy_in_words(found.energy_residual)}; {cost_in_words(found.cost)}")
+    return (f"relative errors: displacement {found.displacement_error:.1e}, "
+            f"output force {outward} (elastic {elastic}), input force {inward}; "
+            f"{energy_in_words(found.energy_residual)}; {cost_in_words(found.cost)}")
 
 
 def energy_in_words(residual: float | None) -> str:

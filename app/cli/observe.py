@@ -87,5 +87,5 @@ def _json(seen: Observation) -> dict[str, Any]:
             **forces_json(seen),
             "residual": None if seen.residual is None else asdict(seen.residual),
             "residual_elastic": None if seen.residual_elastic is None else asdict(seen.residual_elastic),
-            "error_estimate": seen.error_estimate, "integration_error": seen.integration_error,
+            "error_estimate": seen.displacement_error, "integration_error": seen.integration_error,
             "interpolation_error": seen.interpolation_error, "cost": asdict(seen.cost)}

@@ -122,7 +122,7 @@ def _warn(result: Run, budget: float) -> None:
 
     for warning in warnings(result):
         say(warning)
-    asked, error = result.scene.accuracy, result.error_estimate
+    asked, error = result.scene.accuracy, result.displacement_error
     if result.status == "accuracy-not-reached":
         say(f"The accuracy asked for, {asked:g}, was not reached: the error may be {error:.1e} of the largest "
             "displacement.")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from granchain_core.steady.curve.resonance import STRONG
+from granchain_core.steady.curve.resonance import STRONG_PART
 
 from ..parts.component import Component, text
 from ..pictures.curve import LABELS
@@ -30,4 +30,5 @@ class CurveBar(Component):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "chapters": [], "stated": [],
-                                          "kinds": KINDS, "strong": STRONG, "driven": True, "rig": False}, **params)
+                                          "kinds": KINDS, "strong": STRONG_PART, "driven": True, "rig": False},
+                         **params)

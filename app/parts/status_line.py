@@ -7,7 +7,7 @@ from typing import Any
 from granchain_core import Run, Settled
 from granchain_core.integrate import METHODS
 from granchain_core.regime import NEVER_REPEATING, Regime, modulus_words
-from granchain_core.steady.curve.resonance import STOPS, Place, place_words, push_words, pushes
+from granchain_core.steady.curve.resonance import STOP_BAND_PART, Place, place_words, push_words, pushes
 
 from ..format import duration, short_error
 from ..scripts import module
@@ -18,7 +18,8 @@ _PLACES = {
     "peak": "Resonance: a peak of the curve, where more arrives at the wall than at frequencies beside it.",
     "valley": "Anti-resonance: a valley of the curve, where less arrives at the wall than at frequencies beside it.",
     "flank": "Flank: between a peak of the curve and the valley beside it.",
-    "stop band": f"Stop band: above the last peak, less than {100 * STOPS:.0f} % of the input force reaches the wall.",
+    "stop band": f"Stop band: above the last peak, less than {100 * STOP_BAND_PART:.0f} % of the input force reaches "
+                 "the wall.",
 }
 #: What the name of a regime means that is not periodic.
 _REGIME_MEANINGS = {
@@ -102,7 +103,7 @@ def error_words(error: float | None, before: str = "") -> str:
 
 def accuracy_words(run: Run) -> str:
     """The accuracy asked for and reached."""
-    reached = error_words(run.error_estimate, "reached ")
+    reached = error_words(run.displacement_error, "reached ")
     return f"asked {short_error(run.scene.accuracy)} · {reached}{_worse_forces(run)}"
 
 
@@ -116,14 +117,14 @@ def _worse_forces(run: Run) -> str:
     errors = [(error, name) for error, name in ((run.force_errors.output, "output force"),
                                                 (run.force_errors.input, "input force")) if error is not None]
     worst, name = max(errors, default=(0.0, ""))
-    if run.error_estimate is None or worst <= min(run.scene.accuracy, _ALIKE_FACTOR * run.error_estimate):
+    if run.displacement_error is None or worst <= min(run.scene.accuracy, _ALIKE_FACTOR * run.displacement_error):
         return ""
     return f" ({name} {short_error(worst)})"
 
 
 def why_no_error(run: Run) -> str:
     """Why no error of the displacements is stated; empty where one is."""
-    if run.error_estimate is not None:
+    if run.displacement_error is not None:
         return ""
     if run.regime.name in NEVER_REPEATING:
         grows = "grows in every period" if run.regime.name == "chaotic" else "adds up from period to period"
@@ -143,7 +144,7 @@ def force_hint(run: Run) -> str:
 def errors_hint(run: Run) -> str:
     """The error of each quantity: displacements, and the three largest forces."""
     errors = [f"{name} {error_words(error)}" for name, error in (
-        ("displacements", run.error_estimate), ("largest output force", run.force_errors.output),
+        ("displacements", run.displacement_error), ("largest output force", run.force_errors.output),
         ("its elastic part", run.force_errors.elastic), ("largest input force", run.force_errors.input))]
     return ("“Asked” is the knob ε, “reached” the relative error of the displacements, and the time that of the "
             "computation, longer where the machine has other things to do. Relative errors of the numerical solution: "

@@ -1,4 +1,4 @@
-"""Scripts and style sheets, which are the same for every page, but which Panel works out anew each time."""
+"""Scripts and style sheets, worked out once: they are the same for every page, but Panel works them out for each."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from panel.io.resources import patch_stylesheet
 def remember_resources() -> None:
     """Ask Panel once for the scripts that a page loads, and once per kind of part where its style sheets are.
 
-    It goes through all models of a page for both, a tenth of an opening. All pages of this server have the same parts.
-    Where a release works them out elsewhere, it is asked each time.
+    Panel goes through all models of a page for both, which takes a tenth of an opening; all pages of this server have
+    the same parts. Where a release works them out elsewhere, Panel is asked each time.
     """
     bundle: Callable[..., Any] | None = getattr(pages, "bundle_resources", None)
     patch: Callable[[Model, str], None] | None = getattr(pages, "patch_model_css", None)

@@ -1,7 +1,7 @@
 """Shared results: computed once for all visitors who wait, and cached in bounded memory.
 
-A class whose pages all stand at the same knobs costs as much as one visitor. A computation ends when the last visitor
-who waits for it has moved on or left.
+A lecture hall whose pages all have the same knobs costs as much as one visitor. A computation ends when the last
+visitor who waits for it has moved on or left.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Guided stories, read from assets/stories/*.toml: scenes to look at, a question, and an answer.
 
-Its numbers are those of the file, which tests/session/test_story_files.py computes.
-The format is documented in docs/stories.md. Nothing in a file is trusted: what is wrong is a sentence that says where.
+The numbers of a story are those of its file; tests/session/test_story_files.py computes them again. docs/stories.md
+has the format. Nothing in a file is trusted: a mistake becomes a sentence that says where it is.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ def state_before(step: StoryStep, stop: Stop | None = None) -> State | None:
 
 
 def differences(step: StoryStep, shown: Run) -> list[str]:
-    """What of a run is not as the step tells, in sentences."""
+    """How a run differs from what the step says, in sentences."""
     found, expected = [], step.expect
     regime = shown.regime.name if shown.regime.driven else UNDRIVEN
     if (regime, shown.regime.period) != (expected.regime, expected.period):

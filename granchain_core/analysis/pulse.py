@@ -105,7 +105,7 @@ class Pulse(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Where it comes from."""
-        return dict(provenance(self.scene, self.run.cost.method, self.run.error_estimate))
+        return dict(provenance(self.scene, self.run.cost.method, self.run.displacement_error))
 
     def summary(self) -> list[str]:
         """Force, speed and width in the middle of the chain."""

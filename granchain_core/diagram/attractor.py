@@ -85,7 +85,7 @@ class Attractor:
 
     @property
     def error_estimate(self) -> float | None:
-        """Relative error of the output force; None where none is stated."""
+        """`force_errors.output` by the name that it has in the command line's JSON."""
         return self.force_errors.output
 
     @property
@@ -122,7 +122,7 @@ class Attractors(list[Attractor], Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Where they come from."""
-        errors = [one.error_estimate for one in self if one.error_estimate is not None]
+        errors = [one.force_errors.output for one in self if one.force_errors.output is not None]
         return dict(provenance(self.scene, attractor_methods(self.scene, self), max(errors) if errors else None))
 
     def summary(self) -> list[str]:

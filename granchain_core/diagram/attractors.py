@@ -1,7 +1,7 @@
 """The search for all steady states of one setting: from rest, from sweeps up and down, and from random states.
 
-All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable
-orbit, where a slow departure looks like a steady state, is displaced and run further.
+All starts are settled in batches; sameness.py merges equal results. A start that ends on an unstable orbit, where a
+slow departure looks like a steady state, is displaced and run further.
 """
 
 from __future__ import annotations
@@ -28,13 +28,13 @@ from .compute import settle_on_all_cores
 from .sameness import SECTION_SETTING, Found, found, merged
 
 #: Frequencies of a sweep before the one asked for.
-_SWEEP = 8
+_SWEEP_POINTS = 8
 #: Drive periods at each of them.
 _PASS_PERIODS = 150
 #: Distance from the frequency asked for at which a sweep begins, relative to it.
 _SWEEP_RANGE = 0.08
 #: Size of the box of random states, in units of the largest displacements and velocities of the motion from rest.
-_BOX = 1.5
+_BOX_SIZE = 1.5
 #: Displacement from an unstable orbit, relative to the motion.
 _DEPARTURE = 1e-2
 #: Drive periods before the next check: enough to leave an orbit with |μ| = 1.003.
@@ -142,7 +142,7 @@ def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> 
     """Rest, the ends of both sweeps, and random states."""
     _, strobes, velocity = _run_on(scene, rest(scene), stop)
     dice = np.random.default_rng(seed)
-    size = _BOX * np.abs(strobes).max(axis=(0, 2)) * (scene.A0, velocity)
+    size = _BOX_SIZE * np.abs(strobes).max(axis=(0, 2)) * (scene.A0, velocity)
     size = np.maximum(size, (scene.A0, 2.0 * math.pi * scene.f * scene.A0))
     origins = [Origin("rest", rest(scene)), Origin("up", _swept(scene, 1.0 - _SWEEP_RANGE, stop)),
                Origin("down", _swept(scene, 1.0 + _SWEEP_RANGE, stop))]
@@ -153,12 +153,12 @@ def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> 
 
 
 def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
-    """The state in which a sweep of the frequency from `factor` times it arrives."""
+    """The state at the end of a sweep that begins at `factor` times the frequency."""
     state = rest(scene)
-    for step in range(_SWEEP):
+    for step in range(_SWEEP_POINTS):
         if stop:
             break
-        f = scene.f * (factor + (1.0 - factor) * step / _SWEEP)
+        f = scene.f * (factor + (1.0 - factor) * step / _SWEEP_POINTS)
         state, _, _ = _run_on(scene.evolve(f=f), state, stop)
     return state
 
@@ -173,7 +173,7 @@ def _run_on(scene: Scene, state: State, stop: Stop | None) -> tuple[State, np.nd
 
 def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
     """The attractor of a group: forces with the least error, or in an irregular group the largest of any member."""
-    best = min((one.result for one in group), key=lambda result: result.error_estimate or 0.0)
+    best = min((one.result for one in group), key=lambda result: result.output_force_error or 0.0)
     first, maxima = group[0], best.maxima
     if first.result.regime.period is None:
         maxima = np.max([one.result.maxima for one in group], axis=0)

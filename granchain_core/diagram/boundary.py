@@ -192,7 +192,7 @@ def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y
 
 def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,
               slope: np.ndarray) -> tuple[np.ndarray, float, complex]:
-    """The point of the branch a step further, or half of it, …, with its condition."""
+    """The point of the branch one step further, with its condition; a step that fails is halved."""
     shorter = step
     for _ in range(_MOST_HALVINGS):
         try:

@@ -116,10 +116,10 @@ class Grid:
         return np.asarray(1 << np.minimum(_level(i), _level(j)))
 
     def coarse_first(self) -> np.ndarray:
-        """Numbers of all cells so that the picture is there early: every 2^k-th in both directions, then every half.
+        """Numbers of all cells, the coarsest net first, so that the picture is there early; the next is twice as fine.
 
-        In each net those with the longest drive period in the chain's own time, f/A0^{1/4}, come first: they cost most,
-        and one of them begun last would leave the other cores waiting.
+        In each net the cells with the longest drive period in the chain's own time, f/A0^{1/4}, come first: they cost
+        most, and one of them begun last would leave the other cores waiting.
         """
         i, j = np.divmod(np.arange(self.size), self.shape[1])
         knob = {self.y.knob: self.y.array[i], self.x.knob: self.x.array[j]}

@@ -51,7 +51,7 @@ class Found:
         """How far its section may be from the true one, relative to the largest displacement or w."""
         if self.orbit is not None:
             return _ORBIT_DIFFERENCE / max(1e-3, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
-        return min(_LARGEST_DIFFERENCE, self.result.error_estimate or 0.0)
+        return min(_LARGEST_DIFFERENCE, self.result.output_force_error or 0.0)
 
     @property
     def unstable(self) -> bool:

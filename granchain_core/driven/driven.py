@@ -18,7 +18,7 @@ from ..integrate import fixed_step_setting
 from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
-from ..recorded_motion import MOST_RECORDED, Motion, motion_columns
+from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
 from ..state import State, rest
@@ -30,7 +30,7 @@ from .signal import Signal
 
 
 @dataclass(frozen=True, eq=False)
-class Driven(Motion):
+class Driven(RecordedMotion):
     """The motion of a chain at the T knots of its signal, in SI.
 
     Attributes
@@ -47,7 +47,7 @@ class Driven(Motion):
         Largest forces from the start to the end [N], between the knots too.
     force_errors : ForceErrors
         Relative errors of these forces.
-    error_estimate : float
+    displacement_error : float
         Largest error of any displacement over the largest displacement.
     energy_residual : float
         |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
@@ -75,7 +75,7 @@ class Driven(Motion):
     max_output_force: float
     max_output_force_elastic: float
     force_errors: ForceErrors
-    error_estimate: float
+    displacement_error: float
     energy_residual: float
     status: str
     cost: Cost
@@ -99,7 +99,7 @@ class Driven(Motion):
 
     def attributes(self) -> dict[str, Attribute]:
         """The signal, largest forces with their errors, status, energy and cost, and where it comes from."""
-        return {**provenance(self.scene, self.cost.method, self.error_estimate), "status": self.status,
+        return {**provenance(self.scene, self.cost.method, self.displacement_error), "status": self.status,
                 "drive": self.signal.words, "energy_residual": self.energy_residual,
                 "cost": json.dumps(asdict(self.cost)), **{name: getattr(self, name) for name in MAXIMA},
                 **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
@@ -107,7 +107,7 @@ class Driven(Motion):
     def summary(self) -> list[str]:
         """The signal, largest forces and errors."""
         return [f"driver: {self.signal.words}", *said_forces(self),
-                f"{len(self.time)} knots; displacements: relative error {self.error_estimate:.1e}; "
+                f"{len(self.time)} knots; displacements: relative error {self.displacement_error:.1e}; "
                 f"{self.status.replace('-', ' ')}"]
 
 
@@ -147,7 +147,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     >>> from granchain_core import Signal, drive, scene
     >>> chain = scene("sec2").evolve(N=3)
     >>> found = drive(chain, Signal.chirp(chain.A0, 500.0, 1500.0, 0.01))
-    >>> found.displacement.shape[1], found.error_estimate <= chain.accuracy
+    >>> found.displacement.shape[1], found.displacement_error <= chain.accuracy
     (3, True)
     """
     if len(signal.time) * scene.N > MOST_RECORDED:
@@ -177,6 +177,6 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     inward, outward, elastic = (float(one) for one in maxima * scales.force)
     return Driven(scene, signal, now.displacement * scales.length, now.velocity * scales.velocity,
                   now.force * scales.force, inward, outward, elastic,
-                  force_errors=ForceErrors.of(np.array(errors)), error_estimate=float(error),
+                  force_errors=ForceErrors.of(np.array(errors)), displacement_error=float(error),
                   energy_residual=balance, status="done" if done else "accuracy-not-reached",
                   cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP))

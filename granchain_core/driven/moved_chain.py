@@ -20,6 +20,6 @@ class MovedChain(ChainInPieces):
     def __init__(self, scene: Scene, signal: Signal, stop: Stop) -> None:
         driven = scale_chain(scene, balance=True)
         scaled = replace(driven, slots=driven.slots._replace(driver=Moved(np.zeros(3))))
-        pieces = signal.quadratics() / driven.scales.length / driven.scales.rate ** np.arange(3)
+        pieces = signal.quadratics() / driven.scales.length / driven.scales.phi ** np.arange(3)
         overlap = float(np.ptp(signal.displacement)) / driven.scales.length
         super().__init__(scaled, signal.time, pieces, overlap, stop)

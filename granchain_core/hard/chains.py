@@ -40,8 +40,8 @@ class Bench:
                  static: np.ndarray | None = None, cut: bool = False, method: str = ADAPTIVE,
                  tolerance: float = 1e-13, refine: float = 1.0) -> None:
         base: Scene = scene("sec2").evolve(N=beads)
-        rate = Engine(base, adaptive_setting(1e-3)).scaled.scales.rate
-        self.engine = Engine(base.evolve(f=rate / time), Setting(method, refine, tolerance), samples)
+        phi = Engine(base, adaptive_setting(1e-3)).scaled.scales.phi
+        self.engine = Engine(base.evolve(f=phi / time), Setting(method, refine, tolerance), samples)
         scaled = self.engine.scaled
         masses = np.zeros(beads + 2)
         masses[1:-1] = 1.0 if inverse_mass is None else inverse_mass

@@ -43,10 +43,10 @@ class PlainChain:
     def of(cls, scene: Scene) -> PlainChain:
         """The plain form of a scene; its dissipation must be the linear dashpot or none, its tension allowed."""
         mass, stiffness, length = scene.bead(1).mass, scene.K, scene.A0
-        rate = np.sqrt(stiffness * np.sqrt(length) / mass)
-        damping = scene.D / (mass * rate) if scene.dissipation == "linear" else 0.0
+        phi = np.sqrt(stiffness * np.sqrt(length) / mass)
+        damping = scene.D / (mass * phi) if scene.dissipation == "linear" else 0.0
         return cls(scene.masses() / mass, scene.contact_stiffness() / stiffness, scene.static_overlap() / length,
-                   damping, scene.k / (stiffness * np.sqrt(length)), 2.0 * np.pi * scene.f / rate)
+                   damping, scene.k / (stiffness * np.sqrt(length)), 2.0 * np.pi * scene.f / phi)
 
     @property
     def period(self) -> float:

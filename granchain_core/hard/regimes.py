@@ -115,8 +115,8 @@ def chain_claims(count: int) -> tuple[int, int]:
         largest = float(np.abs(found.run.displacement).max())
         apart = float(np.abs(orbit.state.displacement - found.state.displacement).max()) / largest
         checked += 1
-        assert found.regime.distance is not None and found.run.error_estimate is not None
-        outside += apart > found.run.error_estimate
+        assert found.regime.distance is not None and found.run.displacement_error is not None
+        outside += apart > found.run.displacement_error
     return checked, outside
 
 

@@ -1,4 +1,4 @@
-"""A scaled chain whose driver has a force or a motion in pieces, one polynomial between two samples.
+"""A scaled chain with a given force or a given motion of its driver in pieces, one polynomial between two samples.
 
 A measured force pushes it (observe/pushed_chain.py), or its driver moves as a signal says (driven/moved_chain.py).
 """
@@ -42,7 +42,7 @@ class ChainInPieces:
         self._time = time
         self._stop = stop
         self._log = new_log()
-        self._spans = np.diff(time) * scaled.scales.rate
+        self._spans = np.diff(time) * scaled.scales.phi
         self._pieces = pieces
         self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / scaled.step).astype(np.int64)
 

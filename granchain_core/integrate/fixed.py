@@ -1,11 +1,11 @@
 """Stepping with a fixed step, a whole number of steps per drive period.
 
-Their kernels test for numbers that are not finite once a sample or a period, because the test costs as much as a bead.
+The kernels test for numbers that are not finite once a sample or a period, because the test costs as much as a bead.
 When one is found, the period is repeated from its start and bisected until the step is known; in that step the failure
 has not spread yet, and its earliest stage identifies the bead where it began.
 
 A period of a long chain, or of a slow drive, may take minutes. It is computed in parts, so that it can be cancelled at
-any instant and others may go first; parts.py has them.
+any instant and other computations may go first (parts.py).
 """
 
 from __future__ import annotations

@@ -82,13 +82,14 @@ class Setting:
 class StepCost:
     """Seconds per accepted step: `fixed`, plus `each` for every contact, rejected steps included.
 
-    For error control: `rate` steps per unit of scaled time at tolerance 1e-8, growing with tolerance^(−`power`).
+    For error control: `steps_per_time` steps in a unit of scaled time at tolerance 1e-8, growing with
+    tolerance^(−`power`).
     Measured on `sec2` and `rig`.
     """
 
     fixed: float
     each: float
-    rate: float = 0.0
+    steps_per_time: float = 0.0
     power: float = 0.0
 
 
@@ -195,15 +196,15 @@ METHODS: dict[str, Method] = {
             name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
             adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Dop853Stepper),
-            cost=StepCost(2.5e-6, 480e-9, rate=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
+            cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
         Method(
             name="dop853-root", title="Dormand–Prince 8 in w, in the root of an overlap next to contact events",
             order_smooth=8.0, order=7.0, adaptive=True, symplectic=False,
             restrictions="accuracy to about 1e-12; no energy account; chains of up to 30 beads with a driver that is "
                          "harmonic or at rest, without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/model.md",
-            stepper=_adaptive(Regularised), cost=StepCost(500e-9, 20e-9, rate=4.0, power=0.1), usual_error=1.0,
-            keeps_account=False),
+            stepper=_adaptive(Regularised), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
+            usual_error=1.0, keeps_account=False),
     )
 }
 

@@ -22,7 +22,7 @@ from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR, REGULAR
 from ..integrate.stated import relative_difference
-from ..recorded_motion import MOST_RECORDED, Motion, elastic_output, motion_columns
+from ..recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns
 from ..result import Cost
 from ..scene import Scene
 from ..state import State, rest
@@ -43,7 +43,7 @@ class Residual:
 
 
 @dataclass(frozen=True, eq=False)
-class Observation(Motion):
+class Observation(RecordedMotion):
     """The motion of an observer at the T samples of its input, in SI.
 
     Attributes
@@ -59,8 +59,8 @@ class Observation(Motion):
     max_output_force, max_output_force_elastic : float
         Largest force on the wall and its elastic part [N].
     integration_error, interpolation_error : float
-        Relative errors of the displacements by the steps and by the interpolation between samples; `error_estimate`
-        is their sum.
+        Relative errors of the displacements by the steps and by the interpolation between samples; their sum
+        is `displacement_error`, also called `error_estimate`.
     status : str
         "done" or "accuracy-not-reached".
     cost : Cost
@@ -104,7 +104,7 @@ class Observation(Motion):
         return float(self.input_force.max())
 
     @property
-    def error_estimate(self) -> float:
+    def displacement_error(self) -> float:
         """Both errors together."""
         return self.integration_error + self.interpolation_error
 
@@ -124,7 +124,7 @@ class Observation(Motion):
         residuals: dict[str, Attribute] = {
             name: json.dumps(asdict(found)) for name in ("residual", "residual_elastic")
             if (found := getattr(self, name)) is not None}
-        return {**provenance(self.scene, self.cost.method, self.error_estimate), "status": self.status,
+        return {**provenance(self.scene, self.cost.method, self.displacement_error), "status": self.status,
                 "integration_error": self.integration_error, "interpolation_error": self.interpolation_error,
                 "input": "; ".join((self.record.understood, *self.record.notes)),
                 "cost": json.dumps(asdict(self.cost)), **residuals}

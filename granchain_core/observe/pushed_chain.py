@@ -22,6 +22,6 @@ class PushedChain(ChainInPieces):
         driven = scale_chain(scene)
         scales = driven.scales
         scaled = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
-        pieces = record.cubics() / scales.force / scales.rate ** np.arange(4)
+        pieces = record.cubics() / scales.force / scales.phi ** np.arange(4)
         overlap = (float(np.abs(record.force).max()) / scales.force) ** (2.0 / 3.0)
         super().__init__(scaled, record.time, pieces, overlap, stop, counts)

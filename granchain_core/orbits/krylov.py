@@ -71,7 +71,7 @@ def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observ
             vectors: bool = False) -> Any:
     """The `count` multipliers of largest modulus at the fixed point x, in any order.
 
-    With `vectors` a pair: they, and their eigenvectors (2N, count).
+    With `vectors` a pair: the multipliers, and their eigenvectors (2N, count).
 
     Raises `NumbersFailed` where they do not converge.
     """

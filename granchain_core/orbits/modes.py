@@ -1,12 +1,12 @@
 """Floquet modes: eigenvectors of the monodromy matrix as motions of the chain over one orbit.
 
-A disturbance δx of an orbit of n drive periods T obeys δx(nT) = M δx(0). With M v = μ v it comes back as μ times
-itself, and in between it is the difference of two neighbouring motions:
+A disturbance δx of an orbit of n drive periods obeys δx(n/f) = M δx(0). With M v = μ v it comes back as μ times
+itself, and in between it is the difference of two neighbouring motions, by the adaptive method:
 
     δu(t) = [u(t; x0 + ε v) − u(t; x0 − ε v)] / 2ε
 
-by the adaptive method. Its noise (about 1e-13) grows with 1/ε and the shift of contact events with ε; between the
-two, at ε = 1e-5, about 1e-8 is left. The difference of δx(nT) and μ δx(0) is measured for each mode (`closure`).
+Its error has two parts: the method's noise (about 1e-13) over ε, and the shift of contact events, which grows with ε.
+At ε = 1e-5 about 1e-8 is left. The difference of δx(n/f) and μ δx(0) is measured for each mode (`closure`).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class Mode:
     """One mode of an orbit: the real motion is Re(c · displacement) for any complex c.
 
     `displacement` (n·samples + 1, N) is complex where the multiplier is, with 1 its largest modulus; `closure` is the
-    largest difference of δx(nT) and μ δx(0), displacements and w, over the largest entry of δx(0).
+    largest difference of δx(n/f) and μ δx(0), displacements and w, over the largest entry of δx(0).
     """
 
     multiplier: complex

@@ -23,7 +23,7 @@ from .stroboscopic_map import TOLERANCE, StroboscopicMap
 _COARSER_FACTOR = 10.0
 #: Factor of caution on the change that is seen.
 _CAUTION_FACTOR = 2.0
-#: Part of the bound that is stated at least: the bound was 15 to 80 times the change in the scenes that were looked at
+#: Part of the bound that is stated at least: the bound was 15 to 80 times the change in the scenes that were examined
 #: (tests/orbits/test_multiplier_errors.py).
 _LEAST_PART = 0.25
 

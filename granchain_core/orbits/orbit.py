@@ -1,9 +1,9 @@
 """Periodic orbits by Newton's method on the stroboscopic map, with their Floquet multipliers.
 
-A fixed point of the n-period map is an orbit whether it is stable or not; its multipliers, the eigenvalues of the
-map's derivative, decide it. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016,
-is a second chain pushed by the first one's input force: linearised about the first its tangents are the chain's own
-without the driver's contact, so its multipliers come from the same orbit.
+A fixed point of the n-period map is an orbit, stable or not: that is decided by its multipliers, the eigenvalues of
+the map's derivative. A forced orbit has no trivial multiplier 1. The observer of model (4), Zhang et al. 2016, is a
+second chain pushed by the first one's input force. Linearised about the first chain's motion, its tangents are those of
+the first chain without the driver's contact, so its multipliers come from the same orbit.
 """
 
 from __future__ import annotations

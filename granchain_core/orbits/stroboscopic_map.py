@@ -28,7 +28,7 @@ TOLERANCE = 1e-13
 #: The method, in the provenance of results.
 FLOW_METHOD = "tangent flow (DOP853 in regularised time)"
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
-BACK = 1e-8
+RETURN_DISTANCE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)

@@ -107,8 +107,8 @@ def _estimate(scaled: ScaledChain, setting: Setting, periods: int, samples: int,
         cost = METHODS[one.method].cost
         if METHODS[one.method].adaptive:
             # with contacts open most of the time, as at low frequency, steps are longer
-            rate = cost.rate * (1e-8 / max(one.tolerance, 1e-16)) ** cost.power
-            count = periods * max(16.0, scaled.period * rate)
+            steps_per_time = cost.steps_per_time * (1e-8 / max(one.tolerance, 1e-16)) ** cost.power
+            count = periods * max(16.0, scaled.period * steps_per_time)
         else:
             count = float(periods * one.steps_per_period(scaled, samples))
         steps += count

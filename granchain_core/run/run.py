@@ -110,7 +110,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     ('done', 'periodic', 1)
     >>> result.displacement.shape, result.force.shape
     ((17, 2), (17, 3))
-    >>> result.error_estimate < 1e-5
+    >>> result.displacement_error < 1e-5
     True
     """
     _check_sizes(scene, periods, record, samples)

@@ -35,7 +35,7 @@ def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float,
 
     `change` (3,) is the relative change of the forces from one computation to a finer one. If both began in the same
     state, `contraction` is the contraction factor per orbit (|μ|, or else the decay seen): an error
-    e of the n-period map moves its fixed point by e/(1 − contraction), and the forces with it. If each ran on its own
+    ε of the n-period map moves its fixed point by ε/(1 − contraction), and the forces with it. If each ran on its own
     orbit, it is 0. `distance` (3,) is what the distance left contributes (`force_distances`), and `further` errors
     (3,), such as those at jumps, are added. `least` is the typical error of the finer computation: two may agree by
     chance.

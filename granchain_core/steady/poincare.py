@@ -1,6 +1,6 @@
 """The Poincaré section: a chain's state once per drive period, at any phase of the drive.
 
-A driven chain's section at phase p is the set of states at t = (j + p)T, j = 0, 1, …: n points for a period-n orbit, a
+A driven chain's section at phase p is the set of states at t = (j + p)/f, j = 0, 1, …: n points for a period-n orbit, a
 closed curve for a quasi-periodic motion, a cloud with structure for a chaotic one. The motion is recorded at many
 phases of each period at once, so that another phase or bead needs no new run.
 """

@@ -40,6 +40,6 @@ class SteadyState:
         return ForceErrors.of(self.errors)
 
     @property
-    def error_estimate(self) -> float | None:
+    def output_force_error(self) -> float | None:
         """Relative error of the output force, infinite where that force is zero; None where none is stated."""
         return None if self.errors is None else float(self.errors[1])

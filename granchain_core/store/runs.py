@@ -70,7 +70,7 @@ def _read(file: File) -> Run:
         status=one_of("status", file.text("status"), STATUSES),
         start=_start(file),
         regime=_regime(file), cost=_cost(file), jumps=_read_jumps(file, scene.N),
-        error_estimate=or_none(file.number("accuracy_reached")),
+        displacement_error=or_none(file.number("accuracy_reached")),
         energy_residual=or_none(file.number("energy_residual")),
         force_errors=ForceErrors(*(or_none(file.number(name, absent=np.nan)) for name in RUN_ERRORS)),
         **arrays, **largest,  # type: ignore[arg-type]  # names of its fields

@@ -19,9 +19,11 @@ Attribute = str | int | float
 
 
 def provenance(scene: Scene, method: str, reached: float | None) -> dict[str, Attribute]:
-    """The attributes that every result carries; `reached` is the accuracy, None where there is none to state.
+    """The attributes that every result carries.
 
-    `accuracy_asked` is the scene's own; batches of curves and maps do not use it.
+    `reached` is the relative error of the displacements of a motion, or the largest one of an output force in a table
+    of steady states; None where none is stated. `accuracy_asked` is the scene's own; batches of curves and maps do not
+    use it.
     """
     found = {
         **made(), "scene_name": scene.name, "scene": json.dumps(scene.to_json()), "scene_digest": scene.digest,

@@ -76,6 +76,12 @@ def test_kernels_take_few_arguments() -> None:
     assert many == {}
 
 
+def test_an_error_is_read_by_a_name_with_one_meaning() -> None:
+    """`error_estimate` is the error of the displacements of one result and that of the output force of another."""
+    assert [_dotted(path) for path in ALL for node in ast.walk(parsed(path))
+            if isinstance(node, ast.Attribute) and node.attr == "error_estimate"] == []
+
+
 def _dotted(path: Path) -> str:
     return ".".join(path.relative_to(ROOT).with_suffix("").parts)
 

@@ -34,9 +34,9 @@ def test_rest_up_and_down_lead_to_three_attractors(many: list[Attractor]) -> Non
     frequencies = MANY * np.linspace(0.92, 1.08, 9)
     for direction, one in (("rest", rest), ("down", down)):
         point = resonance_curve(scene("sec2"), frequencies, direction).points[4]
-        assert point.error_estimate is not None and one.error_estimate is not None
+        assert point.force_errors.output is not None and one.force_errors.output is not None
         assert one.max_output_force == pytest.approx(point.max_output_force,
-                                                     rel=point.error_estimate + one.error_estimate)
+                                                     rel=point.force_errors.output + one.force_errors.output)
 
 
 def test_every_start_leads_to_one_attractor_and_shares_add_up(many: list[Attractor]) -> None:
@@ -54,7 +54,7 @@ def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
         origin = next(o for o in one.origins if o.name.startswith("random"))
         alone = settled(one.scene, origin.state)
         assert alone.regime.period == one.regime.period
-        assert alone.run.max_output_force == pytest.approx(one.max_output_force, rel=2e-4)  # its error_estimate
+        assert alone.run.max_output_force == pytest.approx(one.max_output_force, rel=2e-4)  # its stated error
 
 
 def test_periodic_ones_are_converged_orbits_and_stable(many: list[Attractor]) -> None:
@@ -64,7 +64,7 @@ def test_periodic_ones_are_converged_orbits_and_stable(many: list[Attractor]) ->
         assert periodic_orbit(one.scene, one.regime.period, one.state).residual <= 1e-9
     irregular = [one for one in many if not one.regime.period]
     for one in irregular:
-        assert one.stable is None and one.regime.lyapunov is not None and one.error_estimate is None
+        assert one.stable is None and one.regime.lyapunov is not None and one.force_errors.output is None
 
 
 def test_the_same_seed_gives_the_same_answer_and_another_seed_the_same_attractors(many: list[Attractor]) -> None:

@@ -48,7 +48,7 @@ def test_every_cell_is_the_curves_point_at_its_amplitude(found: Diagram) -> None
             cell = found.cells[number]
             # the same numbers but for the rounding of the batch: far below the error that is claimed
             assert cell["max_output_force"] == pytest.approx(point.max_output_force, rel=1e-7)
-            assert np.isnan(cell["error_estimate"]) == (point.error_estimate is None)
+            assert np.isnan(cell["error_estimate"]) == (point.force_errors.output is None)
 
 
 def test_scaled_cells_are_the_same(found: Diagram) -> None:

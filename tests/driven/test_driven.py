@@ -38,7 +38,7 @@ def test_errors_and_energy_are_those_of_finer_computations() -> None:
     signal = Signal.chirp(CHAIN.A0, 800.0, 1600.0, 0.01)
     rough, fine = drive(CHAIN.evolve(accuracy=1e-5), signal), drive(CHAIN.evolve(accuracy=1e-8), signal)
     difference = np.abs(rough.displacement - fine.displacement).max() / np.abs(fine.displacement).max()
-    assert difference <= rough.error_estimate <= 1e-5
+    assert difference <= rough.displacement_error <= 1e-5
     assert fine.energy_residual < 1e-7 and fine.energy_residual < rough.energy_residual
     assert abs(rough.max_output_force - fine.max_output_force) <= rough.force_errors.output * fine.max_output_force
 

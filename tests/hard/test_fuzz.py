@@ -92,15 +92,15 @@ def test_a_silent_error_is_noticed() -> None:
 
 
 def test_an_error_that_is_stated_is_not_silent() -> None:
-    assert faults(lambda result: replace(moved(result, 1e-2), error_estimate=2e-2, status="accuracy-not-reached")) == set()
+    assert faults(lambda result: replace(moved(result, 1e-2), displacement_error=2e-2, status="accuracy-not-reached")) == set()
 
 
 def test_a_stated_error_that_is_too_small_is_noticed() -> None:
-    assert "bound" in faults(lambda result: replace(result, error_estimate=1e-3 * result.error_estimate))
+    assert "bound" in faults(lambda result: replace(result, displacement_error=1e-3 * result.displacement_error))
 
 
 def test_done_without_being_it_is_noticed() -> None:
-    assert faults(lambda result: replace(result, error_estimate=0.5)) == {"done, and stated above what was asked"}
+    assert faults(lambda result: replace(result, displacement_error=0.5)) == {"done, and stated above what was asked"}
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])

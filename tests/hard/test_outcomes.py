@@ -29,7 +29,7 @@ from granchain_core.store import load, save
 def test_done_with_its_figures() -> None:
     result = run(scene("sec2"), periods=1, record=1, samples=8)
     assert result.status == "done"
-    assert result.cost.steps > 0 and result.error_estimate is not None and result.energy_residual is not None
+    assert result.cost.steps > 0 and result.displacement_error is not None and result.energy_residual is not None
 
 
 def test_cancelled() -> None:
@@ -42,7 +42,7 @@ def test_cancelled() -> None:
 def test_accuracy_not_reached_in_chaos() -> None:
     result = run(scene("sec2").evolve(dissipation="none", N=3, f=1000.0, accuracy=1e-5), periods=40, record=2, samples=4)
     assert result.status == "accuracy-not-reached"
-    assert result.error_estimate > 1e-5
+    assert result.displacement_error > 1e-5
 
 
 @pytest.mark.parametrize("knobs", [{"N": 10_000, "f": 0.1}, {"f": 0.1, "D": 3e4}, {"N": 10_000, "f": 10.0, "A0": 1e-4}])
@@ -94,7 +94,7 @@ def test_a_finer_computation_that_does_not_fit_is_not_begun(monkeypatch: pytest.
     monkeypatch.setattr(sys.modules["granchain_core.run.run"], "_REFINED_COST_RATIO", 1e9)
     result = run(scene("sec2"), periods=20, record=1, samples=8)
     assert result.status == "over-budget"
-    assert result.error_estimate > result.scene.accuracy
+    assert result.displacement_error > result.scene.accuracy
 
 
 def test_not_finite_says_bead_time_and_step() -> None:

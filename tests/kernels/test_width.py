@@ -18,7 +18,7 @@ OTHER = """
 import json, sys
 from granchain_core import resonance_curve, scene
 found = resonance_curve(scene("sec2"), json.loads(sys.argv[1]), workers=1)
-print(json.dumps([[p.regime.name, p.regime.period, p.max_output_force, p.error_estimate] for p in found.points]))
+print(json.dumps([[p.regime.name, p.regime.period, p.max_output_force, p.force_errors.output] for p in found.points]))
 """
 
 
@@ -29,10 +29,10 @@ def test_both_sizes_of_a_batch_give_the_same_curve() -> None:
     here = resonance_curve(scene("sec2"), FREQUENCIES, workers=1).points
     for mine, (regime, period, force, error) in zip(here, json.loads(said), strict=True):
         assert (mine.regime.name, mine.regime.period) == (regime, period)
-        if mine.error_estimate is None or error is None:  # 130 Hz is quasi-periodic: a maximum of no period
-            assert mine.error_estimate is error
+        if mine.force_errors.output is None or error is None:  # 130 Hz is quasi-periodic: a maximum of no period
+            assert mine.force_errors.output is error
             continue
-        assert mine.max_output_force == pytest.approx(force, rel=mine.error_estimate + error)
+        assert mine.max_output_force == pytest.approx(force, rel=mine.force_errors.output + error)
 
 
 def test_the_size_of_a_batch_is_the_machines_or_the_one_chosen(monkeypatch: pytest.MonkeyPatch) -> None:

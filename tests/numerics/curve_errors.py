@@ -68,7 +68,7 @@ def points(count: int, seed: int, base: str) -> Iterator[Point]:
         top = true_force(r.scene, r.state, r.regime.period)
         if top is not None:
             unit = r.scene.K * r.scene.A0**1.5
-            yield Point(abs(r.maxima[1] / unit / top - 1.0), r.error_estimate, r.scene, r.regime.period)
+            yield Point(abs(r.maxima[1] / unit / top - 1.0), r.output_force_error, r.scene, r.regime.period)
 
 
 def main() -> None:

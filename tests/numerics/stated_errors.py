@@ -88,7 +88,7 @@ def judge(chosen: Scene) -> Verdict | None:
     except NumbersFailed:
         return None
     largest = np.abs(true).max()
-    return Verdict(chosen, float(np.abs(found.displacement - true).max() / largest), found.error_estimate,
+    return Verdict(chosen, float(np.abs(found.displacement - true).max() / largest), found.displacement_error,
                    chosen.accuracy, float(np.abs(true - nearly).max() / largest), found.status)
 
 

@@ -96,8 +96,8 @@ def test_one_motion_has_one_name_from_curve_and_page(f: float) -> None:
     assert (pictured.regime.name, pictured.regime.period) == (drawn.regime.name, drawn.regime.period) == ("periodic", 1)
     assert pictured.regime.multiplier == pytest.approx(
         float(np.abs(periodic_orbit(chain, 1, pictured.state).multipliers[0])), abs=2e-5)
-    assert drawn.error_estimate is not None and pictured.run.error_estimate is not None
-    bound = drawn.error_estimate + 1.5 * pictured.run.error_estimate  # F ∝ δ^{3/2}
+    assert drawn.force_errors.output is not None and pictured.run.displacement_error is not None
+    bound = drawn.force_errors.output + 1.5 * pictured.run.displacement_error  # F ∝ δ^{3/2}
     assert drawn.max_output_force == pytest.approx(pictured.run.max_output_force, rel=bound + 1e-6)
 
 

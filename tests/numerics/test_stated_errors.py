@@ -69,7 +69,7 @@ def same_steps() -> Run:
 
 def test_two_computations_by_the_same_steps_are_no_evidence():
     """An error of exactly nothing is never true: no double-precision motion is that good."""
-    assert same_steps().error_estimate > 0.0
+    assert same_steps().displacement_error > 0.0
 
 
 def test_computations_with_the_same_steps_are_not_compared():
@@ -82,7 +82,7 @@ def test_computations_with_the_same_steps_are_not_compared():
     assert finer > halved == setting.steps_per_period(scaled, stated_errors.SAMPLES)
     true = stated_errors.reference(chain, 3e-15)
     result = run(chain, periods=0, record=stated_errors.PERIODS, samples=stated_errors.SAMPLES)
-    assert 0.0 < np.abs(result.displacement - true).max() / np.abs(true).max() <= result.error_estimate <= chain.accuracy
+    assert 0.0 < np.abs(result.displacement - true).max() / np.abs(true).max() <= result.displacement_error <= chain.accuracy
 
 
 @pytest.mark.parametrize("base", ["sec2", "rig"])

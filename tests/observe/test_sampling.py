@@ -26,8 +26,8 @@ def test_the_observer_follows_its_chain_to_the_error_it_states(known) -> None:  
     for samples in RATES:
         r = records[samples]
         seen = observe(shown, r.time, r.force, r.output, start=r.start)
-        assert error(seen.displacement, r.displacement) <= seen.error_estimate
-        assert seen.error_estimate < 0.1  # a bound that says something
+        assert error(seen.displacement, r.displacement) <= seen.displacement_error
+        assert seen.displacement_error < 0.1  # a bound that says something
         assert seen.residual is not None and seen.residual.relative < 0.01
         assert np.array_equal(seen.input_force, r.force)
 
@@ -80,5 +80,5 @@ def test_an_observer_without_foundation_does_not_hide_what_it_loses() -> None:
     free = scene("fig11-free")
     r = recorded(free, 2000)
     seen = observe(free, r.time, r.force, start=r.start)
-    assert error(seen.displacement, r.displacement) <= seen.error_estimate
+    assert error(seen.displacement, r.displacement) <= seen.displacement_error
     assert seen.interpolation_error > 0.01  # its multiplier 4.4 a period makes much of little

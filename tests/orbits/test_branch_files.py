@@ -12,7 +12,7 @@ import xarray
 from app.cli import main
 from granchain_core import BadInput, Cancelled, scene
 from granchain_core.orbits import Branch, Continuation, begin_branch, continue_branch, switch_to_doubled
-from granchain_core.orbits.branch.steps import SHORTEST
+from granchain_core.orbits.branch.steps import SHORTEST_STEP
 from granchain_core.stop import Stop
 from granchain_core.store import load_branch, save_branch
 
@@ -108,7 +108,7 @@ def test_a_branch_that_cannot_be_followed_says_so_with_residuals(monkeypatch: py
 
     monkeypatch.setattr(BranchEquations, "solve_near", nothing)
     assert list(Continuation(branch)) == [] and branch.arms[0].ended == "lost"
-    assert branch.arms[0].step < SHORTEST
+    assert branch.arms[0].step < SHORTEST_STEP
     for words in ("could not be followed beyond f = 2000 Hz", "1e-3, 2e-3", "residuals at the last orbit"):
         assert words in branch.arms[0].reason
 

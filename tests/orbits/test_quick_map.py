@@ -12,7 +12,7 @@ from granchain_core.orbits import Branch, KnobAxis, continue_branch
 from granchain_core.orbits.branch import point as points
 from granchain_core.orbits.branch import quick
 from granchain_core.orbits.branch.equations import BranchEquations
-from granchain_core.orbits.branch.steps import LONGEST, next_step, predicted
+from granchain_core.orbits.branch.steps import LONGEST_STEP, next_step, predicted
 from granchain_core.orbits.stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 from granchain_core.scaling import scale_chain
 from granchain_core.steady.returns import relative_change
@@ -113,7 +113,7 @@ def test_steps_follow_the_turn_and_the_distance_from_the_prediction() -> None:
     assert next_step(0.01, 0.0, turned, failed=False) == pytest.approx(0.005)
     assert next_step(0.01, 0.01 * 0.04, straight, failed=False) == pytest.approx(0.01 / np.sqrt(2.0))
     assert next_step(0.01, 0.003, turned, failed=True) == pytest.approx(0.005)
-    assert next_step(LONGEST, 0.0, straight, failed=False) == LONGEST
+    assert next_step(LONGEST_STEP, 0.0, straight, failed=False) == LONGEST_STEP
 
 
 def test_an_orbit_needs_one_exact_derivative(monkeypatch: pytest.MonkeyPatch) -> None:

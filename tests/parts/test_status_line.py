@@ -22,17 +22,17 @@ def picture() -> Settled:
     (ForceErrors(2e-4, 3e-7, 4e-7), " (input force 2e-4)"),
     (ForceErrors(None, 3e-5, None), " (output force 3e-5)"), (ForceErrors(), "")])
 def test_a_force_less_sure_than_the_displacements_is_told_beside_them(picture: Settled, errors: ForceErrors, said: str) -> None:
-    run = replace(picture.run, force_errors=errors, error_estimate=1e-7)
+    run = replace(picture.run, force_errors=errors, displacement_error=1e-7)
     assert accuracy_words(run) == f"asked 1e-6 · reached 1e-7{said}"
 
 
 def test_a_force_that_misses_what_was_asked_is_told_however_near_it_is_to_the_displacements(picture: Settled) -> None:
-    run = replace(picture.run, force_errors=ForceErrors(1e-7, 3e-6, 1e-7), error_estimate=8e-7)
+    run = replace(picture.run, force_errors=ForceErrors(1e-7, 3e-6, 1e-7), displacement_error=8e-7)
     assert accuracy_words(run) == "asked 1e-6 · reached 8e-7 (output force 3e-6)"
 
 
 def test_where_no_error_is_stated_none_is_told_for_the_forces(picture: Settled) -> None:
-    run = replace(picture.run, force_errors=ForceErrors(1e-2, 1e-2, 1e-2), error_estimate=None)
+    run = replace(picture.run, force_errors=ForceErrors(1e-2, 1e-2, 1e-2), displacement_error=None)
     assert accuracy_words(run) == "asked 1e-6 · not estimated"
 
 

@@ -48,8 +48,8 @@ def test_asked_for_more_it_comes_nearer(name):
     assert error < 1.2e-11
     # the difference of two such computations is near their rounding; what is stated is no less than the rounding of all
     # steps as it may have grown (granchain_core/integrate/stated.py), in half of these scenes 3e-11 to 2.2e-10
-    assert error <= result.error_estimate < 1e-9
-    assert (result.status == "done") == (result.error_estimate <= 1e-11)
+    assert error <= result.displacement_error < 1e-9
+    assert (result.status == "done") == (result.displacement_error <= 1e-11)
 
 
 def test_undamped_chain_is_as_near_as_its_instability_lets_it_be():
@@ -61,7 +61,7 @@ def test_undamped_chain_is_as_near_as_its_instability_lets_it_be():
     error = worst(result.displacement[:trusted], true["displacement"][:trusted])
     # rounding 1e-16 and the smallest tolerance 1e-14, each times the sensitivity of 5e4 and some hundred events
     assert error < 1e-7
-    assert error <= result.error_estimate
+    assert error <= result.displacement_error
 
 
 def test_the_command_line_writes_the_same_numbers(tmp_path):

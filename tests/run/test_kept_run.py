@@ -28,7 +28,7 @@ def computed(kept: RunCheckpoints | None, method: str | None = None, stop: Stop 
 def assert_same(one: Run, other: Run) -> None:
     for name in ("displacement", "velocity", "force"):
         assert getattr(one, name).tobytes() == getattr(other, name).tobytes()
-    for name in ("max_input_force", "max_output_force", "max_output_force_elastic", "error_estimate", "force_errors",
+    for name in ("max_input_force", "max_output_force", "max_output_force_elastic", "displacement_error", "force_errors",
                  "energy_residual", "regime", "status"):
         assert getattr(one, name) == getattr(other, name), name
     assert one.jumps.force.tobytes() == other.jumps.force.tobytes()

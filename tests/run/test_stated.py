@@ -85,7 +85,7 @@ CHANCE = [
 def test_scenes_in_which_two_computations_agreed_by_chance_are_bounded(knobs, thrown) -> None:
     chosen = replace(scene("sec2").evolve(**knobs), start_velocity=thrown)
     found, true = run(chosen, periods=0, record=3, samples=16), located(chosen, 0, 3, 16).displacement
-    assert np.abs(found.displacement - true).max() <= found.error_estimate * np.abs(true).max()
+    assert np.abs(found.displacement - true).max() <= found.displacement_error * np.abs(true).max()
 
 
 class Clock:

@@ -75,7 +75,7 @@ def test_a_draft_claims_no_errors_and_agrees_where_it_is_periodic() -> None:
     periodic = [point for point in drafted if point.regime.name == "periodic"]
     assert len(periodic) > 8
     for point in drafted:
-        assert point.error_estimate is None
+        assert point.force_errors.output is None
         assert point.regime.name in ("periodic", "unsettled")
     for point in periodic:
         assert whole[point.frequency].regime.period == point.regime.period

@@ -162,7 +162,7 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     stated = []
     for decay in (0.1, 0.9):
         monkeypatch.setattr(regime_criteria.Regime, "contraction", decay)
-        stated.append(recording.recorded_orbit(settling, 16, 0.0, "rest").run.error_estimate)
+        stated.append(recording.recorded_orbit(settling, 16, 0.0, "rest").run.displacement_error)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 

@@ -41,8 +41,8 @@ def test_every_point_of_the_curve_has_its_regime_and_an_error_where_one_can_be_c
     assert len(curve.points) == 298
     assert not any(p.failure for p in curve.points)
     for p in curve.points:
-        assert (p.error_estimate is None) == (p.regime.name != "periodic"), p.frequency
-    claimed = np.array([p.error_estimate for p in curve.points if p.error_estimate is not None])
+        assert (p.force_errors.output is None) == (p.regime.name != "periodic"), p.frequency
+    claimed = np.array([p.force_errors.output for p in curve.points if p.force_errors.output is not None])
     assert len(claimed) > 150
     assert np.median(claimed) < 1e-3
 
@@ -56,7 +56,7 @@ def test_errors_claimed_on_the_curve_bound_the_true_ones(curve):
             continue  # two attractors: nothing to compare
         true = found.run.max_output_force_elastic
         compared += 1
-        honest += abs(p.max_output_force_elastic - true) <= p.error_estimate * p.max_output_force + 1e-5 * true
+        honest += abs(p.max_output_force_elastic - true) <= p.force_errors.output * p.max_output_force + 1e-5 * true
     assert compared >= 10
     assert honest >= 0.95 * compared
 

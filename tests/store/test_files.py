@@ -26,7 +26,7 @@ def test_a_run_comes_back_bit_by_bit(tmp_path: Path, result) -> None:  # type: i
     for name in ("time", "displacement", "velocity", "force", "drive_displacement", "kinetic_energy", "output_force",
                  "output_force_elastic"):
         assert (getattr(again, name) == getattr(result, name)).all(), name
-    for name in ("scene", "regime", "cost", "status", "samples", "error_estimate", "energy_residual",
+    for name in ("scene", "regime", "cost", "status", "samples", "displacement_error", "energy_residual",
                  "max_input_force", "max_output_force", "max_output_force_elastic"):
         assert getattr(again, name) == getattr(result, name), name
 

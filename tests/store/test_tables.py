@@ -6,7 +6,7 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -147,6 +147,16 @@ def test_a_result_names_the_method_that_computed_it(kind: str, method: str) -> N
 def test_chains_that_share_no_batch_and_have_no_orbit_do_not_name_them() -> None:
     found = granchain_core.attractors(CHAIN.evolve(tension="cut"), random_states=0)
     assert found.attributes()["method"] == f"{ALONE} start by start"
+
+
+def test_error_estimate_is_the_error_that_the_command_line_calls_so() -> None:
+    """Of the displacements of a motion, of the output force of a point of a curve and of an attractor."""
+    for kind in ("Run", "Driven", "Observation"):
+        motion: Any = result(kind)
+        assert motion.error_estimate == motion.displacement_error > 0.0, kind
+    curve, found = (cast("Any", result(kind)) for kind in ("Curve", "Attractors"))
+    for one in (curve.points[0], found[0]):
+        assert one.error_estimate == one.force_errors.output > 0.0
 
 
 @pytest.mark.parametrize("kind", RESULTS)

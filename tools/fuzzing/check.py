@@ -149,7 +149,7 @@ def _outcome(draw: Draw, chosen: Scene, compute: Callable[..., Run], budget: flo
 
 
 def _finite(verdict: Verdict, found: Run) -> None:
-    for name in ("displacement", "velocity", "force", "max_output_force", "error_estimate", "energy_residual"):
+    for name in ("displacement", "velocity", "force", "max_output_force", "displacement_error", "energy_residual"):
         value: Any = getattr(found, name)
         if value is None or not np.isfinite(value).all():
             verdict.faults.append((f"{name} is not finite", 1.0))
@@ -165,7 +165,7 @@ def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
         verdict.steps = engine.counts.steps
     true = kept[1].displacement * chosen.A0
     verdict.known = distance(kept[0].displacement, kept[1].displacement)
-    verdict.stated = float("nan") if found.error_estimate is None else found.error_estimate
+    verdict.stated = float("nan") if found.displacement_error is None else found.displacement_error
     verdict.error = distance(found.displacement, true)
     _bounded(verdict, "", verdict.error, verdict.known)
     if found.status == "done" and not verdict.stated <= chosen.accuracy:

@@ -84,7 +84,7 @@ OBSERVED = (
     Mutant("force-overshoots", "observe/record.py", "from scipy.interpolate import PchipInterpolator  #",
            "from scipy.interpolate import CubicSpline as PchipInterpolator  #",
            "between samples a measured force is above both, or below 0", k.SAMPLING),
-    Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.rate ** np.arange(4)", "/ scales.rate ** np.zeros(4)",
+    Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
     Mutant("loss-between-samples", "observe/observation.py", "=IRREGULAR * relative_difference(", "=1e-3 * IRREGULAR * relative_difference(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),

@@ -140,9 +140,9 @@ class AccuracyPage(Page):
         if now is None:
             return ""
         words = f"This page uses {now.method}, {now.label}: error {short_error(now.error)} against the reference"
-        if picture is None or picture.run.error_estimate is None:
+        if picture is None or picture.run.displacement_error is None:
             return f"{words}."
-        stated = picture.run.error_estimate
+        stated = picture.run.displacement_error
         side = " on the safe side" if stated >= now.error else ""
         return f"{words}; the status line has no reference and states an estimate{side}, {short_error(stated)}."
 

@@ -34,7 +34,7 @@ def described_attractor(attractor: Attractor) -> dict[str, Any]:
     """One attractor for the list: category, words, force, share, and which named starts lead to it."""
     regime = attractor.regime
     period = regime.period
-    error = attractor.error_estimate
+    error = attractor.force_errors.output
     kind = "" if attractor.orbit is None else response(attractor.orbit).sentence
     words = [f"period {period}" if period else regime.name]
     if kind:

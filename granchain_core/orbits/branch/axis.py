@@ -1,8 +1,8 @@
 """The knob of a branch: which knobs are continuous, and the coordinate used for continuation.
 
 A branch is a curve of points z = (x/√(2N), p): x is the scaled state (u, w) at drive phase 0 in the scales of its own
-scene, so that a new amplitude A0, which changes the scales, leaves it of order one; p is a logarithmic or linear
-coordinate of the knob. The length of an arc is that of z.
+scene, so that a new amplitude A0, which changes the scales, leaves x of order one; p is a logarithmic or linear
+coordinate of the knob. Arclength is measured in z.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..orbit import sorted_multipliers
 from .equations import BranchEquations, Solved
-from .newton import ROUGH, Near, Newton
+from .newton import ROUGH_TOLERANCE, Near, Newton
 from .point import BranchPoint, branch_point, rough_point
 
 
@@ -48,7 +48,7 @@ class Between:
         if a.turning == b.turning and a.unstable == b.unstable:
             tangent = self.equations.tangent_by(newton.matrix, a.tangent)
         else:
-            derivative = newton.flow(ROUGH).derivative
+            derivative = newton.flow(ROUGH_TOLERANCE).derivative
             multipliers = sorted_multipliers(derivative)
             tangent = self.equations.tangent_of(derivative, slope, a.tangent)
             self._remember(arclength, Near(derivative, slope))

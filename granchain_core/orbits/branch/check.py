@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from .branch import Branch
-from .newton import ACCEPTED
+from .newton import ACCEPTED_RESIDUAL
 from .point import BranchPoint
-from .steps import LONGEST
+from .steps import LONGEST_STEP
 from .walk import Arm
 
 #: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
@@ -37,7 +37,7 @@ def check_branch(branch: Branch) -> list[str]:
 
 def _orbit_wrong(branch: Branch, point: BranchPoint) -> list[str]:
     where, found = branch.axis.text(point.knob), []
-    if not point.residual <= ACCEPTED:
+    if not point.residual <= ACCEPTED_RESIDUAL:
         found.append(f"residual {point.residual:.1e} at {where}")
     smallest, largest = np.abs(point.multipliers[-1]), max(1.0, float(np.abs(point.multipliers[0])))
     unsure = len(point.multipliers) * _TANGENT_ERROR * largest / smallest if smallest > 0.0 else np.inf
@@ -50,7 +50,7 @@ def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
     a, b, found = arm.points[i - 1], arm.points[i], []
     where = f"between {branch.axis.text(a.knob)} and {branch.axis.text(b.knob)}"
     moved = np.append((b.x - a.x) / np.sqrt(len(a.x)), branch.axis.coordinate(b.knob) - branch.axis.coordinate(a.knob))
-    if np.linalg.norm(moved) > _DISTANCE_FACTOR * LONGEST or not b.arclength > a.arclength:
+    if np.linalg.norm(moved) > _DISTANCE_FACTOR * LONGEST_STEP or not b.arclength > a.arclength:
         found.append(f"neighbours are {np.linalg.norm(moved):.2g} apart {where}")
     between = [s for s in arm.special if a.arclength <= s.before.arclength and s.after.arclength <= b.arclength
                and s.before.arclength < b.arclength]

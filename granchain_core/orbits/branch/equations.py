@@ -15,9 +15,9 @@ import numpy as np
 from ...scaling import scale_chain, scale_like
 from ...steady.returns import least_period
 from ...stop import Stop
-from ..stroboscopic_map import BACK, TOLERANCE, Flow, StroboscopicMap
+from ..stroboscopic_map import RETURN_DISTANCE, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
-from .newton import ROUGH, Near, Newton
+from .newton import ROUGH_TOLERANCE, Near, Newton
 from .quick import QuickMap, quick_steps
 
 #: One-sided difference ε in p of the exact map. Its error by curvature is ε P_pp/2, that by the noise of the steps
@@ -85,7 +85,7 @@ class BranchEquations:
     def quick_end(self, x: np.ndarray, value: float, steps: int) -> np.ndarray:
         """Where the quick map leads from x, or a rough flow where there are 0 steps."""
         if steps == 0:
-            return self.reused_map(value, ROUGH).end(x)
+            return self.reused_map(value, ROUGH_TOLERANCE).end(x)
         quick: QuickMap | None = getattr(self._reused, "quick", None)
         if quick is None:
             quick = self._reused.quick = QuickMap(self.period, self.stop)
@@ -98,7 +98,7 @@ class BranchEquations:
         change = self.quick_end(x, above, steps) - self.quick_end(x, below, steps)
         return change / (self.axis.coordinate(above) - self.axis.coordinate(below))
 
-    def least_period(self, x: np.ndarray, value: float, back: float = BACK) -> int:
+    def least_period(self, x: np.ndarray, value: float, back: float = RETURN_DISTANCE) -> int:
         """The drive periods after which the orbit through x is `back` again, relatively, at most `period`."""
         return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back)
 

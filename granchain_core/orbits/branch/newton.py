@@ -23,17 +23,17 @@ from ...steady.returns import relative_change
 from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
 #: Tolerance of the rough map, the flow where exactness is not needed.
-ROUGH = 1e-10
-#: Residual above which the rough map is computed with the tolerance `_ROUGHEST`.
-_COARSE = 1e-3
+ROUGH_TOLERANCE = 1e-10
+#: Residual above which the rough map is computed with the tolerance `_ROUGHEST_TOLERANCE`.
+_ROUGHEST_ABOVE = 1e-3
 #: That tolerance; the map is then good to 1e-6 (measured: 7e-7 on the branch of sec2 over f).
-_ROUGHEST = 1e-7
+_ROUGHEST_TOLERANCE = 1e-7
 #: Relative residual at which Newton's method stops.
-GOOD = 1e-11
+RESIDUAL_GOAL = 1e-11
 #: Largest residual that is accepted where rounding does not let it fall that far.
-ACCEPTED = 1e-10
+ACCEPTED_RESIDUAL = 1e-10
 #: The quick map is left at this residual: its own error is as large.
-ENOUGH = 1e-8
+QUICK_RESIDUAL = 1e-8
 #: Largest residual at which a derivative from nearby is used.
 _LARGEST_WITH_REUSED = 3e-3
 #: A step that does not lower the residual to this part of it is followed by a derivative.
@@ -41,7 +41,7 @@ _SLOW_DECREASE = 0.4
 #: A step with its own derivative that does not lower the residual to this part of it fails: a shorter step along the
 #: branch is safer than a way that may lead to another branch (Deuflhard 2004, Newton Methods for Nonlinear Problems).
 _FAILED_DECREASE = 0.5
-#: The exact map with its derivative is computed where its residual should be below this part of `GOOD`.
+#: The exact map with its derivative is computed where its residual should be below this part of `RESIDUAL_GOAL`.
 _SAFETY = 0.3
 #: Most derivatives of the rough and of the exact map each.
 _MOST_DERIVATIVES = 6
@@ -91,7 +91,7 @@ class Equations(Protocol):
 class Newton:
     """The iteration from one start: the point `z` it has come to, J, and the residuals of all maps.
 
-    `z` goes at most `farthest`. `steps` are those of the quick map.
+    `z` goes at most `farthest` from the start. `steps` is the number of steps in a period of the quick map.
     """
 
     def __init__(self, equations: Equations, z: np.ndarray, normal: np.ndarray, farthest: float = np.inf) -> None:
@@ -105,11 +105,11 @@ class Newton:
         if self._reuse_derivative(near):
             return
         for _ in range(_MOST_DERIVATIVES):
-            coarse = not self.residuals or self.residuals[-1] > _COARSE
-            flow = self.flow(_ROUGHEST if coarse else ROUGH)
+            coarse = not self.residuals or self.residuals[-1] > _ROUGHEST_ABOVE
+            flow = self.flow(_ROUGHEST_TOLERANCE if coarse else ROUGH_TOLERANCE)
             before = self.residuals[-1]
             self.matrix = self.equations.matrix(flow.derivative, near.slope, self.normal)
-            if before <= ENOUGH or self._steps_without_derivative(flow.end):
+            if before <= QUICK_RESIDUAL or self._steps_without_derivative(flow.end):
                 return
             if not self.residuals[-1] <= _FAILED_DECREASE * before:
                 break
@@ -122,10 +122,10 @@ class Newton:
         defect = end - quick
         for _ in range(_MOST_CORRECTED_STEPS):
             before = self.residuals[-1]
-            if before <= _SAFETY * GOOD:
+            if before <= _SAFETY * RESIDUAL_GOAL:
                 break
             moved = self._checked_step(end)
-            if before * ratio <= _SAFETY * GOOD:
+            if before * ratio <= _SAFETY * RESIDUAL_GOAL:
                 break
             end = self._quick_end(defect)
             ratio = self.residuals[-1] / before
@@ -134,11 +134,11 @@ class Newton:
             self._broyden_update(end, moved)
         for number in range(_MOST_DERIVATIVES):
             flow = self.flow(TOLERANCE)
-            if self.residuals[-1] <= GOOD or (number and self.residuals[-1] > 0.3 * self.residuals[-2]):
+            if self.residuals[-1] <= RESIDUAL_GOAL or (number and self.residuals[-1] > 0.3 * self.residuals[-2]):
                 break
             self.matrix = self.equations.matrix(flow.derivative, self.matrix[:-1, -1], self.normal)
             self._checked_step(flow.end)
-        if not self.residuals[-1] <= ACCEPTED:
+        if not self.residuals[-1] <= ACCEPTED_RESIDUAL:
             raise self._failure()
         return flow
 
@@ -151,9 +151,10 @@ class Newton:
         """
         rough = slope is not None
         for _ in range(_MOST_STEPS):
-            flow = self.flow(ROUGH if rough else TOLERANCE)
+            flow = self.flow(ROUGH_TOLERANCE if rough else TOLERANCE)
             residual = self.residuals[-1]
-            if not rough and (residual <= GOOD or (len(self.residuals) > 2 and residual > 0.3 * self.residuals[-2])):
+            stalled = len(self.residuals) > 2 and residual > 0.3 * self.residuals[-2]
+            if not rough and (residual <= RESIDUAL_GOAL or stalled):
                 break
             slope = self.equations.knob_slope(self.z, flow.end, TOLERANCE) if slope is None else slope
             self.matrix = self.equations.matrix(flow.derivative, slope, self.normal)
@@ -163,7 +164,7 @@ class Newton:
                 if self.residuals.pop() < _LARGEST_REUSE:
                     self._step(again)
             rough = False
-        if not self.residuals[-1] <= ACCEPTED:
+        if not self.residuals[-1] <= ACCEPTED_RESIDUAL:
             raise self._failure()
         return flow
 
@@ -178,7 +179,7 @@ class Newton:
             if first > _LARGEST_WITH_REUSED:
                 return False
             self.matrix = self.equations.matrix(near.derivative, near.slope, self.normal)
-            found = first <= ENOUGH or self._steps_without_derivative(end)
+            found = first <= QUICK_RESIDUAL or self._steps_without_derivative(end)
             if not found and not self.residuals[-1] < first:
                 self.z, self._known = self.start, None
             return found
@@ -193,10 +194,10 @@ class Newton:
             moved = self._checked_step(end)
             end = self._quick_end()
             residual = self.residuals[-1]
-            if residual > ENOUGH and not residual <= _SLOW_DECREASE * before:
+            if residual > QUICK_RESIDUAL and not residual <= _SLOW_DECREASE * before:
                 return False
             self._broyden_update(end, moved)
-            if residual <= ENOUGH:
+            if residual <= QUICK_RESIDUAL:
                 return True
 
     def _broyden_update(self, end: np.ndarray, moved: np.ndarray) -> None:

@@ -1,6 +1,7 @@
 """Checkpoints of a branch (checkpoints.py): finished orbits on disk as JSON, exact to the last bit.
 
-A piece is what one arm has grown by: the number of its first new orbit and special point, these, and how it goes on.
+A piece is what an arm has gained: its new orbits and special points, the numbers of the first of each, and the step
+with which it goes on or the reason why it ended.
 """
 
 from __future__ import annotations

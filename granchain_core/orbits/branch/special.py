@@ -26,7 +26,7 @@ from .point import BranchPoint
 BIFURCATIONS = ("fold", "period_doubling", "neimark_sacker")
 SPECIAL_KINDS = (*BIFURCATIONS, "grazing")
 #: An interval is narrow enough at this width relative to the knob, or to a thousandth of the range's larger end.
-WIDTH = 1e-5
+RELATIVE_WIDTH = 1e-5
 #: The tangents at both ends of a bracket meet within this factor times its length, because the branch turns by at most
 #: 30° in a step (walk.py).
 _TANGENT_REACH = 1.25
@@ -105,7 +105,7 @@ def _width(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 
 def _wanted(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
-    return WIDTH * max(abs(a.knob), abs(b.knob), 1e-3 * axis.high)
+    return RELATIVE_WIDTH * max(abs(a.knob), abs(b.knob), 1e-3 * axis.high)
 
 
 def _interval(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> tuple[float, float]:

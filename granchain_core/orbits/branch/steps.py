@@ -1,8 +1,8 @@
 """The steps of a walk along a branch: where the next orbit is expected, and how long the step after it is.
 
-A step is as long as keeps the branch's turn and its distance from the prediction small. Both are measured on the step
-before, so the length does not depend on how Newton's method found the orbit. After a step that failed, the next does
-not grow: what made it fail usually lies just ahead.
+The length of a step keeps two things small: the turn of the branch, and the distance of the orbit from its prediction.
+Both are measured on the step before, so the length does not depend on how Newton's method found the orbit. After a step
+that failed, the next does not grow: what made it fail usually lies just ahead.
 """
 
 from __future__ import annotations
@@ -12,23 +12,23 @@ import numpy as np
 from .between import across
 
 #: First step in arclength.
-FIRST = 0.02
+FIRST_STEP = 0.02
 #: Longest step.
-LONGEST = 0.2
+LONGEST_STEP = 0.2
 #: Shortest step.
-SHORTEST = 1e-7
+SHORTEST_STEP = 1e-7
 #: Angle by which the branch turns in a step of the length aimed at.
 _TURN_OF_STEP = np.radians(8.0)
 #: Distance of its orbit from the predicted one, as a fraction of the step.
 _MISS_OF_STEP = 0.02
-#: Largest factor by which a step grows.
-_GROW = 2.0
-#: Smallest factor by which it shrinks.
-_SHRINK = 0.5
+#: Largest factor from one step to the next.
+_GROWTH_FACTOR = 2.0
+#: Smallest factor from one step to the next.
+_SHRINK_FACTOR = 0.5
 #: Cosine of the turn beyond which a step is rejected.
-BENT = np.cos(np.radians(30.0))
+LEAST_COSINE = np.cos(np.radians(30.0))
 #: Largest distance from the predicted to the corrected point, as a fraction of the step.
-OFF = 0.3
+LARGEST_CORRECTION = 0.3
 
 
 def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
@@ -39,7 +39,7 @@ def predicted(step: float, z: np.ndarray, tangent: np.ndarray,
         way = float(np.linalg.norm(z - before[0]))
         second = (6.0 * (before[0] - z) / way + 2.0 * before[1] + 4.0 * tangent) / way
         sideways = 0.5 * step**2 * across(second, tangent)
-        if np.linalg.norm(sideways) < OFF * step:
+        if np.linalg.norm(sideways) < LARGEST_CORRECTION * step:
             guess += sideways
     return guess
 
@@ -51,5 +51,6 @@ def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
     from there had failed.
     """
     angle = max(float(np.arccos(min(1.0, cosine))), 1e-9)
-    wanted = min(_TURN_OF_STEP / angle, np.sqrt(_MISS_OF_STEP * step / max(off, 1e-9 * step)), 1.0 if failed else _GROW)
-    return min(LONGEST, max(_SHRINK, float(wanted)) * step)
+    most = 1.0 if failed else _GROWTH_FACTOR
+    wanted = min(_TURN_OF_STEP / angle, np.sqrt(_MISS_OF_STEP * step / max(off, 1e-9 * step)), most)
+    return min(LONGEST_STEP, max(_SHRINK_FACTOR, float(wanted)) * step)

@@ -24,7 +24,7 @@ from .equations import BranchEquations, Solved
 from .newton import Near, formatted
 from .point import BranchPoint, recorded, unrecorded
 from .special import SpecialPoint, special_between
-from .steps import BENT, FIRST, OFF, SHORTEST, next_step, predicted
+from .steps import FIRST_STEP, LARGEST_CORRECTION, LEAST_COSINE, SHORTEST_STEP, next_step, predicted
 
 #: Points from the seed on before the branch may close on itself.
 _POINTS_BEFORE_CLOSING = 4
@@ -49,7 +49,7 @@ class Arm:
     direction: int
     points: list[BranchPoint]
     special: list[SpecialPoint] = field(default_factory=list)
-    step: float = FIRST
+    step: float = FIRST_STEP
     ended: str = ""
     reason: str = ""
 
@@ -111,7 +111,7 @@ class Walk(Iterator[BranchPoint]):
 
     @property
     def _goes_on(self) -> bool:
-        return self._step >= SHORTEST and not (self._ahead and self._ahead[-1].ending.ended)
+        return self._step >= SHORTEST_STEP and not (self._ahead and self._ahead[-1].ending.ended)
 
     @property
     def _last_two(self) -> list[BranchPoint]:
@@ -151,15 +151,15 @@ class Walk(Iterator[BranchPoint]):
     def _next_orbit(self, last: Ending) -> tuple[Ending, np.ndarray | None]:
         """The next orbit, and whether the branch ends there; `NumbersFailed` where the step is too long.
 
-        It comes with its contact events where forces and contacts are still to be found. The next step is set.
+        With it come its contact events, where its forces and contacts are still to be found. Sets the next step.
         """
         equations, step, here = self.equations, self._step, last.point
         guess = predicted(step, self._z(here), here.tangent, self._before_last)
-        solved = equations.solve_near(guess, here.tangent, last.near, OFF * step)
+        solved = equations.solve_near(guess, here.tangent, last.near, LARGEST_CORRECTION * step)
         self._refuse_shorter(solved)
         tangent = equations.tangent(solved, here.tangent)
         cosine = float(tangent @ here.tangent)
-        if cosine < BENT:
+        if cosine < LEAST_COSINE:
             raise NumbersFailed(f"the branch turns by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step",
                                 "no-convergence")
         chord = float(np.linalg.norm(solved.z - self._z(here)))
@@ -202,7 +202,7 @@ class Walk(Iterator[BranchPoint]):
                    "it bends ever more sharply" if self._failure is None else str(self._failure))
         arm.step, arm.ended = self._step, "lost"
         arm.reason = (f"the branch could not be followed beyond {self.equations.axis.text(last.knob)} although "
-                      f"steps were shortened to {SHORTEST:g}: {failure.rstrip('.')}; residuals at the last orbit: "
+                      f"steps were shortened to {SHORTEST_STEP:g}: {failure.rstrip('.')}; residuals at the last orbit: "
                       f"{formatted(last.residuals)}")
 
     def _refuse_shorter(self, solved: Solved) -> None:

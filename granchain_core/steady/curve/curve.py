@@ -56,7 +56,7 @@ class CurvePoint:
     --------
     >>> from granchain_core import resonance_curve, scene
     >>> point = resonance_curve(scene("sec2").evolve(N=2), [2000.0]).points[0]
-    >>> point.status, point.regime.period, point.error_estimate < 1e-3
+    >>> point.status, point.regime.period, point.force_errors.output < 1e-3
     ('done', 1, True)
     """
 
@@ -79,7 +79,7 @@ class CurvePoint:
 
     @property
     def error_estimate(self) -> float | None:
-        """Relative error of the output force; None where none is stated."""
+        """`force_errors.output` by the name that it has in the command line's JSON."""
         return self.force_errors.output
 
 
@@ -144,7 +144,7 @@ class Curve(Labelled):
         Only points that were settled alone were computed to `accuracy_asked`, and at best to `CURVE_ACCURACY`.
         """
         method = settling_methods(self.scene, "point")
-        reached = [p.error_estimate for p in self.points if p.error_estimate is not None]
+        reached = [p.force_errors.output for p in self.points if p.force_errors.output is not None]
         return {**provenance(self.scene, method, max(reached) if reached else None), "start": self.start,
                 "wall_s": self.wall_s, **amplitude_attribute(self.amplitude)}
 

@@ -17,9 +17,9 @@ import numpy as np
 from ...result import Run
 
 #: A push is strong if its largest force is above this part of the largest push.
-STRONG = 0.7
+STRONG_PART = 0.7
 #: A push ends where the force falls below this part of the largest push.
-ENDED = 0.05
+END_PART = 0.05
 #: A peak or valley counts if it differs from both neighbouring extrema by this part of the larger: a valley is at least
 #: 20 % below both neighbouring peaks.
 PROMINENCE = 0.2
@@ -31,7 +31,7 @@ _VALLEY_PART = 0.1
 #: A state whose force differs by this part from the curve's at its frequency is not on the curve.
 _CURVE_DIFFERENCE = 0.1
 #: Less than this part of the input force at the wall: nothing travels through the chain.
-STOPS = 0.15
+STOP_BAND_PART = 0.15
 
 
 @dataclass(frozen=True)
@@ -55,13 +55,13 @@ def pushes(run: Run) -> tuple[int, int] | None:
     largest = float(force.max())
     if largest <= 0.0:
         return None
-    quiet = np.flatnonzero(force < ENDED * largest)
+    quiet = np.flatnonzero(force < END_PART * largest)
     if len(quiet) == 0:
         return None
     force = np.roll(force, -quiet[0])  # the orbit is closed, so start at a sample without a push
-    pushed = np.concatenate([[False], force >= ENDED * largest, [False]])
+    pushed = np.concatenate([[False], force >= END_PART * largest, [False]])
     begins, ends = np.flatnonzero(pushed[1:] & ~pushed[:-1]), np.flatnonzero(~pushed[1:] & pushed[:-1])
-    strong = sum(float(force[a:b].max()) >= STRONG * largest for a, b in zip(begins, ends, strict=True))
+    strong = sum(float(force[a:b].max()) >= STRONG_PART * largest for a, b in zip(begins, ends, strict=True))
     periods = round((len(run.time) - 1) / run.samples)
     common = gcd(strong, periods)
     return strong // common, periods // common
@@ -81,7 +81,7 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     if abs(here - output) > _CURVE_DIFFERENCE * max(here, output):
         return Place("")
     turns, peaks, valleys = _shape(tuple(F.tolist()))
-    if transmission < STOPS:
+    if transmission < STOP_BAND_PART:
         return Place("stop band" if not any(f[i] >= at for i in peaks) and peaks else "")
     before, after = [i for i in turns if f[i] <= at], [i for i in turns if f[i] > at]
     if not before or not after or F[before[-1]] == F[after[0]]:

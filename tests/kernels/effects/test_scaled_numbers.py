@@ -62,7 +62,7 @@ def test_unlike_beads_move_as_the_equations_say(law: str, seed: int) -> None:
     found = [contact_force.py_func(slots, y, dy, space.e, c) for c in range(row - 1)]
     np.testing.assert_allclose(np.array(found) * scales.force, total, **near)
     np.testing.assert_allclose(dy[1 : row - 1] * scales.velocity, v, atol=1e-12 * np.abs(v).max())
-    np.testing.assert_allclose(masses * dy[row + 1 : -1] * scales.velocity * scales.rate,
+    np.testing.assert_allclose(masses * dy[row + 1 : -1] * scales.velocity * scales.phi,
                                elastic[:-1] - elastic[1:] - chosen.k * u, **near)
     energy = (0.4 * K * overlap**2.5).sum() + (0.5 * masses * v**2).sum() + (0.5 * chosen.k * u**2).sum()
     assert stored_energy.py_func(slots, y, dy) * scales.energy == pytest.approx(energy, rel=1e-12)
@@ -74,7 +74,7 @@ def test_the_damping_named_by_the_knob_is_that_at_the_reference_overlap(law: str
     """g = D (δ/δ_ref)^p N s/m at every drive amplitude, whatever the unit of length is."""
     chosen = scene("sec2").evolve(dissipation=law, A0=A0, D=31.0)
     scaled = scale_chain(chosen)
-    unit = chosen.bead(1).mass * scaled.scales.rate  # of damping
+    unit = chosen.bead(1).mass * scaled.scales.phi  # of damping
     for overlap in (1e-8, 3e-6):
         found = damping(scaled.slots.dissipation, overlap / scaled.scales.length) * unit
         assert found == pytest.approx(31.0 * (overlap / chosen.reference_overlap) ** power, rel=1e-12)

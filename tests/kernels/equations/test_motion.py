@@ -78,11 +78,11 @@ def test_forces_velocities_and_accelerations_are_those_of_the_paper(law, tension
         np.testing.assert_allclose(total * scales.force, expected, **near)
         np.testing.assert_allclose(dy[1 : chosen.N + 1] * scales.velocity, v, rtol=1e-12, atol=1e-12 * np.abs(v).max())
         m = chosen.bead(1).mass
-        slope = dy[chosen.N + 3 : -1] * scales.length * scales.rate**2
+        slope = dy[chosen.N + 3 : -1] * scales.length * scales.phi**2
         if tension == "allowed":
             only_elastic = [(elastic[i] - elastic[i + 1] - chosen.k * u[i]) / m for i in range(chosen.N)]
             np.testing.assert_allclose(slope, only_elastic, rtol=1e-11, atol=1e-11 * np.abs(only_elastic).max())
-        assert acceleration_from_w(scaled, theta, y, compiled) * scales.length * scales.rate**2 == pytest.approx(
+        assert acceleration_from_w(scaled, theta, y, compiled) * scales.length * scales.phi**2 == pytest.approx(
             equations.acceleration(chosen, u, v, time), rel=2e-5, abs=2e-5 * max(np.abs(expected)) / m)
 
 

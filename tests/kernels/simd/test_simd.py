@@ -79,8 +79,8 @@ def test_a_curve_in_batches_is_what_each_frequency_gives_by_itself() -> None:
     for point in iter_curve(scene("sec2"), frequencies):
         alone = CurvePoint.of(steady_state(scene("sec2").evolve(f=point.frequency), None, Stop()))
         assert point.regime.period == alone.regime.period
-        assert point.error_estimate is not None and alone.error_estimate is not None
-        allowed = point.error_estimate + alone.error_estimate
+        assert point.force_errors.output is not None and alone.force_errors.output is not None
+        allowed = point.force_errors.output + alone.force_errors.output
         assert point.max_output_force == pytest.approx(alone.max_output_force, rel=allowed)
         assert allowed < 2e-3  # the coarse member steps differ from the finer ones by some 1e-4
 
