@@ -29,7 +29,7 @@ def test_each_start_ends_where_its_cell_says() -> None:
         alone = steady_state(SHARED, State(*state), Stop())
         named = found.attractors[found.number[row, column]]
         assert (alone.regime.name, alone.regime.period) == (named.regime.name, named.regime.period)
-        errors = (named.error_estimate, alone.error_estimate)
+        errors = (named.error_estimate, alone.output_force_error)
         difference = _FORCE_DIFFERENCE if None in errors else sum(errors)
         assert difference <= _FORCE_DIFFERENCE
         assert alone.maxima[1] == pytest.approx(named.max_output_force, rel=difference)
