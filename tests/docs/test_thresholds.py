@@ -134,7 +134,7 @@ def test_the_limit_of_the_return_distance_is_the_pages() -> None:
 
 
 def test_the_decisions_the_design_page_names_are_the_codes() -> None:
-    assert f"a growth of {regime_criteria.CLEAR_GROWTH:g}," in DESIGN and f"the last {regime_decisions.REMEMBERED} strobes" in DESIGN
+    assert f"Above {regime_criteria.CLEAR_GROWTH:g} per period one measurement is enough" in DESIGN and f"the last {regime_decisions.REMEMBERED} strobes" in DESIGN
     assert f"give |μ| to about {number(nearby_orbit.UNSURE)}" in DESIGN
 
 

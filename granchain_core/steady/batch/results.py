@@ -32,7 +32,7 @@ from ...stop import Stop
 from ..exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
 from ..lyapunov import exponents_of, put_with_shadow
 from ..regime_criteria import find_period
-from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
+from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, is_almost_periodic, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
 from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
@@ -159,7 +159,8 @@ class _JobsInBatch:
         decided = job.measurements.add(seen.exponents, job.record, job.run, last=not goes_on)
         latest = job.measurements.latest
         if decided is not None:
-            return self._measured_result(job, decided, undecided=False)
+            approaches = decided.name == "quasi-periodic" and is_almost_periodic(job.record)
+            return self._measured_result(job, decided, undecided=approaches)
         if latest is None or len(job.measurements.unfinished):
             self._measure(job)
             return None
