@@ -162,12 +162,16 @@ class ScaledChain:
     def _body_rates(self) -> tuple[float, float]:
         """−∂P/∂u and −∂P/∂v of the forces P from outside the chain, at one drive amplitude and the largest speed.
 
-        They come from the same linearisation as the tangents, so a new force needs no entry here.
+        They come from the same linearisation as the tangents, so a new force needs no entry here. Of a force that
+        differs from bead to bead the largest counts.
         """
         struck = float(np.abs(self.scene.velocities_at_start()).max()) / self.scales.velocity
         speed = _FASTEST * max(struck, self.beta if self.scene.is_driven else 0.0)
-        return (-add_force_slope(self.slots, 0.0, 1.0, speed, 1.0, 0.0, 1.0, 1.0),
-                -add_force_slope(self.slots, 0.0, 1.0, speed, 0.0, 1.0, 1.0, 1.0))
+        beads = np.arange(1, self.beads + 1)
+        slopes = (add_force_slope(self.slots, beads, 0.0, 1.0, speed, 1.0, 0.0, 1.0, 1.0),
+                  add_force_slope(self.slots, beads, 0.0, 1.0, speed, 0.0, 1.0, 1.0, 1.0))
+        stiffness, damping = (-float(slope.min()) if isinstance(slope, np.ndarray) else -slope for slope in slopes)
+        return stiffness, damping
 
     @property
     def _struck(self) -> float:

@@ -70,7 +70,8 @@ class Batch:
         counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
             "steps", "left", "periods", "return_at", "earliest", "extrapolate_from", "pause", "due", "shadow",
             "strobe_count", "testing")}
-        numbers = {name: np.zeros(BATCH_SIZE) for name in ("slowest", "change_before_extrapolation", "distance")}
+        numbers = {name: np.zeros(BATCH_SIZE) for name in (
+            "slowest", "slowest_before", "change_before_extrapolation", "distance")}
         self.state = kernels.BatchState(
             **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2),
             first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
@@ -116,7 +117,7 @@ class Batch:
         state.first_strobe[:, member] = 0
         state.periods[member], state.return_at[member], state.earliest[member] = 0, return_at, earliest
         state.extrapolate_from[member], state.pause[member] = 0, _FIRST_PAUSE
-        state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
+        state.slowest[member], state.slowest_before[member], state.change_before_extrapolation[member] = 0.0, 0.0, 0.0
         state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0
         state.shadow[member] = kernels.NO_SHADOW
 

@@ -49,7 +49,7 @@ def naive_motion(slots, u0, v0, y, dy, forces):
         force = cut_at_zero(slots.tension, elastic_force(slots.chain.stiffness[c], positive_part(delta)) + damped)
         forces.e[c] = force - damped
         if c > 0:
-            dy[bodies + c] = inverse_mass[c] * force_on_bead(slots, left - force, y[c], dy[c])
+            dy[bodies + c] = inverse_mass[c] * force_on_bead(slots, c, left - force, y[c], dy[c])
         left = force
 
 

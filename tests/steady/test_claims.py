@@ -27,7 +27,7 @@ def turning(rate: float, count: int = 420) -> np.ndarray:
 def test_of_two_halves_the_slower_one_tells_the_rate() -> None:
     """Nine changes that fall by 0.8 and then by 0.95 fall by 0.95: what is slow stays."""
     changes = np.cumprod([1.0, *[0.8] * 4, *[0.95] * 4])
-    assert periodicity.decay_rate(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
+    assert periodicity.decay_in(changes, 9, 1) == (pytest.approx(0.95, rel=1e-12), True)
 
 
 def test_the_shortest_period_is_told() -> None:

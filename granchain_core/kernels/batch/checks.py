@@ -65,7 +65,10 @@ FINE_PERIOD, FINE_DECAY, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, 
 
 @internal
 def extrapolate_member(state, member, n, decay, change):
-    """Move a member to the limit of its last strobes, n periods apart; returns whether that was within reach."""
+    """Move a member to the limit of its last strobes, n periods apart; returns whether that was within reach.
+
+    `change` is the last change over n periods, `decay` its factor per n periods, as `detect_period` returns them.
+    """
     record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
     count = record.shape[0]
     if count < ORBITS * n + 1 or not 0.0 < decay < 1.0:
@@ -103,6 +106,7 @@ def check_coarse(state, member):
         state.change_before_extrapolation[member] = 0.0
         if not proved:
             undo_extrapolation(state, member)
+            state.slowest[member] = state.slowest_before[member]
             periods = state.periods[member]
             state.pause[member] *= 2
             state.extrapolate_from[member] = periods + state.pause[member]
@@ -117,6 +121,7 @@ def check_coarse(state, member):
     copy(record[count - 1, 1], state.before[member, 1])
     if extrapolate_member(state, member, n, approach_decay, change):
         state.change_before_extrapolation[member] = change
+        state.slowest_before[member] = state.slowest[member]
         state.slowest[member] = min(_SLOWEST_ASSUMED_DECAY, max(state.slowest[member], approach_decay ** (1.0 / n)))
         state.earliest[member] = periods + window_of(n) + n + 1
         state.extrapolate_from[member] = periods + ORBITS * n
@@ -134,7 +139,7 @@ def disturb(state, member, period):
         for i in range(bodies):
             state.limit[q, i] = state.before[member, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
     for q in range(3):
-        state.fine_record[member, FINE_FORCES + q] = largest_top(state, member, period, q)
+        state.fine_record[member, FINE_FORCES + q] = largest_force(state, member, period, q)
     move_member(state, member, state.limit)
     state.testing[member] = period
     state.earliest[member] = state.periods[member] + _TEST_ORBITS * period
@@ -174,7 +179,7 @@ def judge_disturbance(state, member):
 
 
 @internal
-def largest_top(state, member, n, q):
+def largest_force(state, member, n, q):
     """The largest force of kind q in a member's last n periods."""
     largest = 0.0
     for p in range(n):
@@ -204,7 +209,7 @@ def check_fine(state, member):
         return False
     moved = 0.0
     for q in range(1, 3):
-        largest = largest_top(state, member, n, q)
+        largest = largest_force(state, member, n, q)
         moved = max(moved, abs(largest - fine[FINE_FORCES + q]) / largest if largest > 0.0 else 0.0)
     close = last_check[CHECK_DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)
     if close or fine[FINE_EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:

@@ -68,7 +68,9 @@ class BatchState(NamedTuple):
     strobe_count (L,)        strobes kept
     first_strobe (2, L)      place of the first strobe since the member was last moved to another state, and of the
                              first since the time before that
-    slowest (L,)             slowest decay known
+    slowest (L,)             slowest decay per drive period before an extrapolation that was not undone, 0 if there is
+                             none; above 0 an orbit that is found must survive a disturbance
+    slowest_before (L,)      the same before the last extrapolation, which may be undone
     change_before_extrapolation (L,)  change per orbit before an extrapolation that is not confirmed yet, else 0
     testing (L,)             period of an orbit that is being disturbed, else 0
     before (L, 2, N+2)       state before the last extrapolation
@@ -101,6 +103,7 @@ class BatchState(NamedTuple):
     strobe_count: np.ndarray
     first_strobe: np.ndarray
     slowest: np.ndarray
+    slowest_before: np.ndarray
     change_before_extrapolation: np.ndarray
     testing: np.ndarray
     before: np.ndarray

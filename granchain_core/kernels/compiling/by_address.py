@@ -11,13 +11,12 @@ from typing import Any
 from numba import types
 from numba.extending import intrinsic
 
+from .entry import version_for
+
 
 def address_of(kernel: Any, *arguments: Any) -> int:
     """Address of a kernel's version for arguments of these types, compiled first where it is not there yet."""
-    signature = tuple(kernel.typeof_pyval(argument) for argument in arguments)
-    if signature not in kernel.overloads:
-        kernel.compile(signature)
-    version = kernel.overloads[signature]
+    _, version = version_for(kernel, arguments)
     return int(version.  # what Numba calls a library is the code of this one version
                library.get_pointer_to_function(version.fndesc.llvm_func_name))
 

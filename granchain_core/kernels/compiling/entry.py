@@ -21,9 +21,8 @@ def entry(kernel: Any, *arguments: Any) -> Callable[..., Any]:
 
     It does not check what it is given: later arguments must have the same types, layouts of arrays included.
     """
-    types = _types(kernel, arguments)
-    known = kernel.overloads.get(types)
-    compiled: Callable[..., Any] = kernel.compile(types) if known is None else known.entry_point
+    types, version = version_for(kernel, arguments)
+    compiled: Callable[..., Any] = version.entry_point
     if not CHECKED:
         return compiled
 
@@ -57,6 +56,14 @@ def types_of(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.dtype.char, value.ndim, value.flags.c_contiguous, value.flags.writeable
     return type(value)
+
+
+def version_for(kernel: Any, arguments: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
+    """Types of these arguments and a kernel's version for them, compiled first where it is not there yet."""
+    types = _types(kernel, arguments)
+    if types not in kernel.overloads:
+        kernel.compile(types)
+    return types, kernel.overloads[types]
 
 
 def _types(kernel: Any, arguments: tuple[Any, ...]) -> tuple[Any, ...]:

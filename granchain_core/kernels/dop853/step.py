@@ -18,8 +18,12 @@ from .tableau import ALL_STAGES, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 TURN_SECTIONS = 40
 #: An overlap's root is found when its fraction of the step changes by less than this.
 _ROOT_CHANGE = 1e-15
-#: Bounds on the factor between two steps, and the safety factor.
-_GROW, _SHRINK, _SAFETY = 6.0, 0.1, 0.9
+#: Largest factor from one step to the next.
+_LARGEST_GROWTH = 6.0
+#: Smallest factor from one step to the next.
+_SMALLEST_GROWTH = 0.1
+#: Part of the step at which the error is expected to be the tolerance.
+_SAFETY = 0.9
 
 
 class Dop853(NamedTuple):
@@ -110,13 +114,13 @@ def attempt(method, step):
 @internal
 def shrunk(h, error):
     """A smaller step after one with too large an error."""
-    return h * max(_SHRINK, _SAFETY * error ** (-1.0 / 8.0))
+    return h * max(_SMALLEST_GROWTH, _SAFETY * error ** (-1.0 / 8.0))
 
 
 @internal
 def growth(error):
     """Step-size factor after an accepted step."""
-    return min(_GROW, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
+    return min(_LARGEST_GROWTH, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
 
 
 @inline_numba

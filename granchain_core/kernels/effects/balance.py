@@ -1,7 +1,8 @@
-"""The energy account: the work of the driver and the energy lost in the contacts, integrated with the motion.
+"""The energy account: the work of the driver and the energy that the chain loses, integrated with the motion.
 
 Equation   Ẇ = F_0 v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
-           What forces from outside the chain take away is added by equations/body_forces.py.
+           Q is lost in the contacts and to forces from outside the chain; the latter part is added by
+           equations/body_forces.py.
 Method     Both integrands jump with the dashpot force. Integrated by parts they do not: with dG = g δ̇ dt,
              W = ∫ (e_0 v_0 − G_0 v̇_0) dt + G_0 v_0
              Q = −∫ Σ_c G_c (ẇ_c − ẇ_{c+1}) dt + Σ_c G_c (δ̇_c − γ_c/2),   γ_c = δ̇_c − (w_c − w_{c+1}),
@@ -23,7 +24,7 @@ from .tension import contact_primitive, lost_in, unless_force_free
 
 
 class Balance(NamedTuple):
-    """Slot of the energy account; it has no values."""
+    """Slot of the energy account; its one value is always 1, since the compiler has no type for an empty tuple."""
 
     present: int
 

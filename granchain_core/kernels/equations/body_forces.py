@@ -3,7 +3,8 @@
 Equation   m_i ẇ_i = F^el_{i-1} − F^el_i + P_i(u_i, v_i),   P = −k u for a foundation
 Terms      P itself; the energy stored in it; the power −P v that it takes away for good; its linearisation
            δP = ∂P/∂u δu + ∂P/∂v δv for tangents; and ∂P/∂v for the trace, which is the rate at which volumes shrink
-The SIMD kernels repeat the terms that they support.
+Each term is given the bead's number i, 1 to N, for values that differ from bead to bead. The SIMD kernels repeat the
+terms that they support.
 """
 
 from __future__ import annotations
@@ -14,26 +15,26 @@ from ..effects.foundation import add_foundation_force, add_foundation_slope, fou
 
 
 @internal
-def force_on_bead(slots, contacts, u, v):
-    """Force on a bead at displacement u and velocity v, on which its two contacts act with `contacts`."""
+def force_on_bead(slots, i, contacts, u, v):
+    """Force on bead i at displacement u and velocity v, on which its two contacts act with `contacts`."""
     return add_foundation_force(slots.foundation, contacts, u)
 
 
 @internal
-def stored_on_bead(slots, u):
-    """Potential energy of these forces at displacement u."""
+def stored_on_bead(slots, i, u):
+    """Potential energy of these forces on bead i at displacement u."""
     return foundation_energy(slots.foundation, u)
 
 
 @internal
-def power_lost_on_bead(slots, v):
-    """Power that these forces take from a bead with velocity v and do not store."""
+def power_lost_on_bead(slots, i, v):
+    """Power that these forces take from bead i with velocity v and do not store."""
     return 0.0
 
 
 @inline_llvm
-def add_force_slope(slots, slope, u, v, du, du_slope, inverse_mass, rate):
-    """A tangent's slope d(δw)/dx with the share δP/m of a bead added, for numbers and vectors.
+def add_force_slope(slots, i, slope, u, v, du, du_slope, inverse_mass, rate):
+    """A tangent's slope d(δw)/dx with the share δP/m of bead i added, for numbers and vectors.
 
     The bead is at displacement u with velocity v, its neighbouring motion δu = `du` away. `rate` is dt/dx, and
     `du_slope` is d(δu)/dx = δv dt/dx.
@@ -42,8 +43,8 @@ def add_force_slope(slots, slope, u, v, du, du_slope, inverse_mass, rate):
 
 
 @internal
-def add_force_trace(slots, trace, u, v, weight):
-    """A sum with ∂P/∂v times `weight` added: what a bead contributes to the trace of the equations' derivative."""
+def add_force_trace(slots, i, trace, u, v, weight):
+    """A sum with ∂P/∂v times `weight` added: what bead i contributes to the trace of the equations' derivative."""
     return trace
 
 
@@ -57,5 +58,5 @@ def account_for_bodies(balance, slots, dy):
 def _(balance, slots, dy):
     lost = 0.0
     for i in range(1, slots.chain.inverse_mass.size - 1):
-        lost += power_lost_on_bead(slots, dy[i])
+        lost += power_lost_on_bead(slots, i, dy[i])
     dy[dy.size - 1] += lost

@@ -90,7 +90,7 @@ def motion(slots, u0, v0, y, dy, forces):
     cut_tension(slots.tension, slots, y, dy, e)
     prescribe_force(slots.driver, dy, e)
     for i in range(1, bodies - 1):
-        dy[bodies + i] = inverse_mass[i] * force_on_bead(slots, e[i - 1] - e[i], y[i], dy[i])
+        dy[bodies + i] = inverse_mass[i] * force_on_bead(slots, i, e[i - 1] - e[i], y[i], dy[i])
     account(slots.balance, slots, y, dy, e)
     account_for_bodies(slots.balance, slots, dy)
 
@@ -122,7 +122,10 @@ def write_w(slots, y, dy, forces):
 
 @kernel
 def place(slots, theta, y, dy, forces, from_velocity):
-    """Set the driver and the slope at drive phase θ. With `from_velocity` the second row of y holds v and becomes w."""
+    """Evaluate the equations at drive phase θ: the driver's place in y, the slope in dy, the forces.
+
+    With `from_velocity` the second row of y holds v and becomes w.
+    """
     bodies = slots.chain.inverse_mass.size
     u0 = driver_displacement(slots.driver, theta)
     y[0] = u0
@@ -142,5 +145,5 @@ def stored_energy(slots, y, dy):
     for c in range(bodies - 1):
         energy += elastic_energy(slots.chain.stiffness[c], positive_part(overlap(slots.preload, y, c)))
     for i in range(1, bodies - 1):
-        energy += 0.5 * dy[i] * dy[i] / inverse_mass[i] + stored_on_bead(slots, y[i])
+        energy += 0.5 * dy[i] * dy[i] / inverse_mass[i] + stored_on_bead(slots, i, y[i])
     return energy

@@ -19,8 +19,10 @@ from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, ti
 _LARGEST_EVENT_OVERLAP = 1e-14
 #: A step aims at the next release if that is at most this many step sizes away.
 _RELEASE_STEPS = 1.5
-#: Attempts to locate one event, and to take one step.
-_TRIALS, _ATTEMPTS = 8, 60
+#: Most attempts to locate one event.
+_LOCATION_ATTEMPTS = 8
+#: Most attempts to take one step.
+_STEP_ATTEMPTS = 60
 #: Shortest next step to try, in t. Two events that rounding puts at nearly the same time do not make it smaller.
 _SHORTEST_STEP = 1e-9
 #: A first step after an onset covers at most this part of the time to the next release.
@@ -46,7 +48,7 @@ def locate_change(method, course, time, h, c, counts):
     slots, _, _, workspace = course.trajectory
     attempt_in_time(method, course, time, h)
     counts[EVALUATIONS] += STAGES
-    for _ in range(_TRIALS):
+    for _ in range(_LOCATION_ATTEMPTS):
         d = overlap(slots.preload, workspace.end, c)
         speed = (workspace.slope[c] - workspace.slope[c + 1]) * rate_at(time, h)
         located = abs(d) <= _LARGEST_EVENT_OVERLAP * max(1.0, workspace.scale[0])
@@ -70,7 +72,7 @@ def step_to_release(method, course, t, goal, c, counts):
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
     time = time_from(BEFORE, goal, t, power)
     error, located = np.inf, False
-    for _ in range(_TRIALS):
+    for _ in range(_LOCATION_ATTEMPTS):
         error = attempt_in_time(method, course, time, time.s)
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
@@ -119,7 +121,7 @@ def flow_step(method, course, t, onset, counts):
     aiming, lost = target >= 0 and wait < _RELEASE_STEPS * dt and t > onset, False
     usual = time_from(AFTER if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
     time, h = usual, size_of(usual, dt)
-    for _ in range(_ATTEMPTS):
+    for _ in range(_STEP_ATTEMPTS):
         located, error = -1, 0.0
         if aiming:
             status, time, h, located, goal = step_to_release(method, course, t, goal, target, counts)

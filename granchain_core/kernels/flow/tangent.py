@@ -130,7 +130,7 @@ def linearise(slots, time, h, contacts, tangent):
             trace -= linearise_dashpot(slots.dissipation, tangent.damping[stage], c, d, rate if acts else 0.0, weight)
         for i in range(1, inverse_mass.size - 1):
             u, v = stages.u[stage, i], stages.v[stage, i]
-            trace = add_force_trace(slots, trace, u, v, share * rate * inverse_mass[i])
+            trace = add_force_trace(slots, i, trace, u, v, share * rate * inverse_mass[i])
     return trace
 
 
@@ -185,7 +185,7 @@ def block_slope(slots, tangent, stage, rate):
         u, v = stages.u[stage, i + 1], stages.v[stage, i + 1]
         store(tangent.slopes, i * STAGES + stage, moving)
         store(tangent.slopes, (n + i) * STAGES + stage,
-              add_force_slope(slots, pushed, u, v, here, moving, inverse, rate))
+              add_force_slope(slots, i + 1, pushed, u, v, here, moving, inverse, rate))
         here, left = ahead, right
 
 

@@ -97,7 +97,7 @@ def acceleration(slots, y, dy, e, i, event, closed):
     if slots.chain.inverse_mass[i] == 0.0:
         return 0.0
     force = force_at_event(slots, y, dy, e, i - 1, event, closed) - force_at_event(slots, y, dy, e, i, event, closed)
-    return slots.chain.inverse_mass[i] * force_on_bead(slots, force, y[i], dy[i])
+    return slots.chain.inverse_mass[i] * force_on_bead(slots, i, force, y[i], dy[i])
 
 
 @internal

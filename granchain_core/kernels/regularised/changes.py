@@ -64,7 +64,7 @@ def size_in_xi(power, q, speed, dt):
 
 @inline_llvm
 def nearest_event(rates, closed, scale, dt):
-    """The closed contact whose onset or release is nearest in time, at most 1.5 steps of dt away; −1 if none is."""
+    """The closed contact whose onset or release is next; −1 if it is more than `_MOST_STEPS_AWAY` steps of dt away."""
     speed, still = magnitude(rates.rate), _REST_PART * scale
     away = (magnitude(rates.overlap) + still) / (speed + 1e-300) + 1e30 * (1.0 - closed)
     least = 0.0 - largest_of(0.0 - away)

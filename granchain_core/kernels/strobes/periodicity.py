@@ -93,8 +93,8 @@ def largest_change(change, first, count):
 
 
 @internal
-def decay_rate(change, count, n):
-    """Rate of decay per n drive periods in `count` changes, and whether both halves of them show the same rate.
+def decay_in(change, count, n):
+    """The decay per n drive periods in `count` changes, a factor, and whether both halves of them show the same.
 
     Largest changes over one orbit at the window's start, middle and end are compared, so that turning complex
     multipliers do not look like decay or growth; the slower half counts.
@@ -112,7 +112,7 @@ def decay_rate(change, count, n):
 
 @internal
 def window_of(n):
-    """Number of changes that give the rate."""
+    """Number of changes from which a decay over n periods is read."""
     return max(LEAST_WINDOW, 3 * n)
 
 
@@ -131,14 +131,14 @@ def shortest(strobes, scale, n, nothing):
 
 @internal
 def earlier_decay(strobes, scale, n, rounding, change):
-    """The decay rate over n periods from the last part of the record that is well above rounding; −1 if none is."""
+    """The decay over n periods from the last part of the record that is well above rounding; −1 if none is."""
     end, count = strobes.shape[0] - 1, window_of(n)
     while end >= n and change_between(strobes, scale, end, end - n) <= 1e3 * rounding:
         end -= 1
     if end < count + n - 1:
         return -1.0
     changes_before(strobes, scale, n, end, change[:count])
-    decay, _ = decay_rate(change, count, n)
+    decay, _ = decay_in(change, count, n)
     return decay if 0.0 < decay < 1.0 else -1.0
 
 
@@ -168,7 +168,7 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
         if largest_change(change, 0, count) <= rounding:
             q = shortest(strobes, scale, n, max(10.0 * rounding, 3.0 * settled))
             return Detected(q, earlier_decay(strobes, scale, q, rounding, change), rounding, 0, 0.0, 0.0)
-        decay, even = decay_rate(change, count, n)
+        decay, even = decay_in(change, count, n)
         recent = largest_change(change, count - n, n)
         if decay >= 1.0:
             continue

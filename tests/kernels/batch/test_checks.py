@@ -70,6 +70,17 @@ def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before:
     assert (state.y[1, MEMBER] != 0.25) == kept and (state.pause[MEMBER] == 16) == kept
 
 
+@pytest.mark.parametrize(("before", "slowest"), [(1e-3, 0.9), (1e-9, 0.0)])
+def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated_to(before: float, slowest: float) -> None:
+    """It is neither disturbed nor called followed: the decay known before the extrapolation is known again."""
+    batch = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
+    state = batch.state
+    state.change_before_extrapolation[MEMBER], state.extrapolate_from[MEMBER] = before, 10_000
+    state.slowest[MEMBER], state.slowest_before[MEMBER] = 0.9, 0.0
+    checks.check_coarse.py_func(state, MEMBER)
+    assert state.slowest[MEMBER] == slowest
+
+
 def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None:
     """The record ends with the state from which it was extrapolated, and what was run since is not counted."""
     before = 1.0 + 1e-3 * 0.9 ** np.arange(60)

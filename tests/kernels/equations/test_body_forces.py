@@ -1,0 +1,60 @@
+"""Forces from outside the chain are given the number of the bead on which they act."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+import numpy as np
+import pytest
+
+from granchain_core import scene
+from granchain_core.kernels.effects.balance import Balance
+from granchain_core.kernels.equations import body_forces
+from granchain_core.scaling import ScaledChain, scale_chain
+
+pytestmark = pytest.mark.quick
+
+MOTION = sys.modules["granchain_core.kernels.equations.motion"]
+
+
+@pytest.fixture
+def chain() -> ScaledChain:
+    return scale_chain(scene("sec2").evolve(N=4))
+
+
+def numbers(monkeypatch: pytest.MonkeyPatch, module: Any, name: str, answer: int) -> list[int]:
+    """The numbers with which a module calls this term from now on, which answers with its argument `answer`."""
+    asked: list[int] = []
+
+    def term(slots: Any, i: int, *values: Any) -> Any:
+        asked.append(i)
+        return values[answer]
+
+    monkeypatch.setattr(module, name, term)
+    return asked
+
+
+def test_every_term_is_asked_for_each_bead(monkeypatch: pytest.MonkeyPatch, chain: ScaledChain) -> None:
+    y, dy, slots = np.zeros(14), np.zeros(14), chain.slots._replace(balance=Balance(1))
+    forces = chain.forces()
+    of_forces = numbers(monkeypatch, MOTION, "force_on_bead", 0)
+    of_powers = numbers(monkeypatch, body_forces, "power_lost_on_bead", 0)
+    MOTION.motion(slots, 0.0, 0.0, y, dy, forces)
+    assert of_forces == of_powers == [1, 2, 3, 4]
+    of_energies = numbers(monkeypatch, MOTION, "stored_on_bead", 0)
+    MOTION.stored_energy(slots, y, dy)
+    assert of_energies == [1, 2, 3, 4]
+
+
+def test_the_step_is_that_of_the_strongest_of_unequal_forces(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A force −c_i v_i damps by the largest c_i."""
+    import granchain_core.scaling as module
+
+    coefficients = np.array([0.0, 1.0, 7.0, 2.0, 0.0])
+
+    def slope(slots: Any, i: Any, before: Any, u: Any, v: Any, du: Any, du_slope: Any, inverse_mass: Any, rate: Any) -> Any:
+        return before - du_slope * inverse_mass * coefficients[i]
+
+    monkeypatch.setattr(module, "add_force_slope", slope)
+    assert scale_chain(scene("sec2").evolve(N=3))._body_rates == (0.0, 7.0)
