@@ -44,12 +44,13 @@ class Regime:
         Whether there is a drive; without one the motion only moves from its start.
     return_distance : float or None
         Median distance from the strobes of a record's second half to the nearest of its first half, relative to the
-        largest displacement and velocity (w in a batch); known where the Lyapunov exponent is zero within its error.
+        largest displacement and velocity (w in a batch); known where the Lyapunov exponent is not distinguished from
+        zero.
     return_limit : float or None
         Limit of `return_distance`: that of a quasi-periodic motion is below it.
     window_ratios : tuple of float or None
         Smallest and largest ratio of the largest change in a window of periods to that in the window before, over three
-        windows and all periods tried; known where the Lyapunov exponent is zero within its error.
+        windows and all periods tried; known where the Lyapunov exponent is not distinguished from zero.
 
     Examples
     --------

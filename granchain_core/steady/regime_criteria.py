@@ -24,7 +24,7 @@ LONGEST_LOCKED_PERIOD = 60
 #: seen. A mean exponent over P periods says nothing below this over P.
 _BOUNDED_GROWTH = 6.0
 #: Largest mean exponent per period of a quasi-periodic motion, and largest three standard errors of it. All but weak
-#: chaos is excluded.
+#: chaos, below this exponent, is excluded.
 _LARGEST_NEUTRAL_EXPONENT = 0.01
 #: Periods in one of the three windows in which a slow approach must show.
 _SLOW_WINDOW = 100
@@ -68,15 +68,18 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
 
 
 def grows(mean: float, error: float, periods: int) -> bool:
-    """Whether neighbours part, by a mean exponent per period over so many periods and its standard error."""
+    """Whether neighbours part, by a mean exponent per period over so many periods and its standard error.
+
+    mean > max(3σ, 6/periods).
+    """
     return mean > max(STANDARD_ERRORS * error, _BOUNDED_GROWTH / periods)
 
 
 def is_neutral(mean: float, error: float, periods: int) -> bool:
     """Whether neighbours neither part nor approach, by a mean exponent per period and its standard error.
 
-    A large error must not make this easier: three standard errors are limited, as is the mean. Otherwise the
-    measurement is undecided.
+    |mean| ≤ min(max(3σ, 6/periods), 0.01) and 3σ < 0.01: a large error must not make this easier. Weak chaos below 0.01
+    per period is neutral too. A mean that is neither this nor clearly positive or negative is undecided.
     """
     uncertain = STANDARD_ERRORS * error
     limit = min(max(uncertain, _BOUNDED_GROWTH / periods), _LARGEST_NEUTRAL_EXPONENT)
@@ -102,10 +105,10 @@ def undecided(exponents: np.ndarray, periods: int) -> bool:
 def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarray, run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of `periods` in all.
 
-    Chaotic: the mean is above its error and a least value (`grows`). Quasi-periodic: it is zero within its error, which
-    is limited (`is_neutral`), the section comes back near itself (`return_limit`), and the record is long enough to
-    show that changes neither shrink nor grow. Anything else is unsettled. Where the exponent is zero the regime has the
-    numbers on which the other two conditions rest, met or not.
+    Chaotic: the mean is above three standard errors and a least value (`grows`). Quasi-periodic: it is not
+    distinguished from zero (`is_neutral`), the section comes back near itself (`return_limit`), and the record is long
+    enough to show that changes neither shrink nor grow. Anything else is unsettled. Where `is_neutral` holds the regime
+    has the numbers on which the other two conditions rest, met or not.
     """
     mean, error = _mean_and_error(exponents)
     if grows(mean, error, periods):
@@ -131,7 +134,7 @@ def agree(one: Regime, other: Regime) -> bool:
     """Whether two Lyapunov measurements give the same regime, with means that agree if it is chaotic.
 
     Means agree within the larger of `STANDARD_ERRORS` combined standard errors and `_EXPONENT_DIFFERENCE`. Those of a
-    quasi-periodic motion are both zero within their errors.
+    quasi-periodic motion are not compared: both are neutral (`is_neutral`).
     """
     if one.name != other.name or one.name == "unsettled" or one.lyapunov is None or other.lyapunov is None:
         return False

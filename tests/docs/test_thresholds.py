@@ -28,11 +28,13 @@ MODEL, OBSERVERS, DESIGN, REGIMES, GLOSSARY = (" ".join((ROOT / "docs" / f"{name
                                      for name in ("model", "observers", "design", "regimes", "glossary"))
 #: Rows of the table of thresholds: the number, the constant's name and its file.
 ROWS = re.findall(r"\| ([\d.e-]+) \| `(\w+)` in `([\w/]+)\.py` \|", REGIMES)
-#: Numbers in the same files that decide nothing: columns of an array, sizes of a record, how a difference is computed.
+#: Numbers in the same files that decide no regime: columns of an array, sizes of a record, how a difference is
+#: computed, when a run is refined.
 NO_THRESHOLDS = {
     "CHECK_PERIOD", "CHECK_DECAY", "CHECK_DISTANCE", "CHECK_COLUMNS", "FINE_PERIOD", "FINE_DECAY", "FINE_FORCES",
     "FINE_ORBITS_BETWEEN", "FINE_EXTRAPOLATIONS", "FINE_COLUMNS", "STROBES_KEPT", "NEVER",
-    "_REFINEMENT", "_TOLERANCE", "_DIFFERENCE", "_ONE_SIDED_DIFFERENCE", "_RENEWAL_PART"}
+    "_REFINEMENT", "_TOLERANCE", "_DIFFERENCE", "_ONE_SIDED_DIFFERENCE", "_RENEWAL_PART",
+    "_CHAOS_SUSPECTED_ABOVE", "_RESIDUAL_PER_ACCURACY", "_REFINED_COST_RATIO"}
 
 
 def number(value: float) -> str:
@@ -52,7 +54,7 @@ def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
     assert {file for _, _, file in ROWS} == {
         "kernels/strobes/periodicity", "kernels/batch/checks", "steady/regime_criteria", "steady/lyapunov",
         "steady/exponent_measurements", "steady/settling/regime_decisions", "steady/settling/advance", "steady/settling/finite_difference_map",
-        "steady/steady_state", "regime", "steady/settling/nearby_orbit", "steady/batch/results", "integrate/batch"}
+        "steady/steady_state", "regime", "steady/settling/nearby_orbit", "steady/batch/results", "integrate/batch", "run/run"}
 
 
 def test_every_number_with_a_name_in_these_files_is_on_the_page() -> None:
@@ -63,6 +65,20 @@ def test_every_number_with_a_name_in_these_files_is_on_the_page() -> None:
         numbers = {name for name in named if isinstance(getattr(module, name), int | float)}
         missing = {name for name in numbers - NO_THRESHOLDS if f"`{name}`" not in REGIMES}
         assert not missing, f"{file}.py: {missing}"
+
+
+@pytest.mark.parametrize(("accuracy", "noise"), [(1e-8, 1e-7), (1e-5, 1e-6)])
+def test_what_run_takes_for_no_change(accuracy: float, noise: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    module, seen = importlib.import_module("granchain_core.run.run"), []
+
+    def find_period(strobes: np.ndarray, rounding: float) -> Regime:
+        seen.append(rounding)
+        return Regime.unsettled(len(strobes) - 1)
+
+    monkeypatch.setattr(module, "find_period", find_period)
+    module.run(scene("sec2").evolve(N=2, accuracy=accuracy), periods=1, record=1, samples=8)
+    assert seen == [pytest.approx(noise)]
+    assert "changes at most this large count as none | 1e-12 | 1e-12 | 10 · `accuracy`, at most 1e-6 |" in REGIMES
 
 
 def test_the_thresholds_of_a_response_are_those_of_the_code() -> None:

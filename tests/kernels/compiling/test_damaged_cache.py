@@ -117,9 +117,9 @@ def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypa
 
 
 def test_the_table_names_them_all() -> None:
-    row, = (line for line in (ROOT / "docs" / "design.md").read_text(encoding="utf-8").splitlines()
-            if "| `kernels/compiling/cache.py` |" in line)
-    assert set(re.findall(r"`(_[a-z]\w*)`", row)) == set(OWNERS)
+    rows = [line for line in (ROOT / "docs" / "design.md").read_text(encoding="utf-8").splitlines()
+            if "| `kernels/compiling/cache.py` |" in line]
+    assert set(re.findall(r"`(_[a-z]\w*)`", " ".join(rows))) == set(OWNERS)
 
 
 def halved(content: bytes) -> bytes:
