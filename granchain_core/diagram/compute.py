@@ -10,8 +10,8 @@ import numpy as np
 
 from ..integrate.batch import can_share_batch
 from ..scene import Amplitude, Scene
+from ..steady.batch.engine import batch_states
 from ..steady.batch.job import Start
-from ..steady.batch.results import batch_states
 from ..steady.batch.threads import on_all_cores
 from ..steady.settling.single_chain import safe_state, settled_alone
 from ..steady.steady_state import SteadyState

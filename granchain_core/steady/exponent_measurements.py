@@ -37,7 +37,7 @@ class ExponentMeasurements:
     unfinished: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     @property
-    def approach(self) -> float:
+    def approach_rate(self) -> float:
         """Mean exponent per period by which neighbours approach, as on the way to an orbit; 0 where they do not.
 
         It is that of the last complete measurement.

@@ -16,7 +16,7 @@ from ...scene import Amplitude, Scene
 from ...scene.driven import refuse_undriven
 from ...scheduler import dealt, results
 from ...stop import Stop
-from ..batch.results import batch_results
+from ..batch.engine import batch_results
 from ..batch.threads import on_all_cores
 from ..settling.single_chain import safe_state, settled_alone
 from .curve import Curve, CurvePoint

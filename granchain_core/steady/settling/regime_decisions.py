@@ -67,7 +67,7 @@ class Decisions:
                 found = self._beside(orbit, regime)
                 if found is not None:
                     return found
-        leaves = self._leaves and self._measurements.approach == 0.0
+        leaves = self._leaves and self._measurements.approach_rate == 0.0
         if regime.periods_run >= MOST_PERIODS * (_DEPARTURE_FACTOR if leaves else 1):
             return Decision(regime)
         if converging(strobes) or departing(strobes):

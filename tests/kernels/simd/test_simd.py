@@ -14,7 +14,7 @@ from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.kernels.rk4.short_chain import WIDTHS
 from granchain_core.scaling import scale_chain
 from granchain_core.state import rest
-from granchain_core.steady.batch.results import batch_results
+from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.curve.curve import CurvePoint
 from granchain_core.steady.settling.single_chain import steady_state
 from granchain_core.stop import Stop
