@@ -132,11 +132,11 @@ class BatchJob:
 
 def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
     """The result of the coarse run alone."""
-    run = int(batch.state.periods[member])
+    periods_run = int(batch.state.periods[member])
     period = batch.state.last_check[member, CHECK_PERIOD]
     if period <= 0:
-        return unsettled(job, batch, member, run)
-    regime = _periodic(batch, member, run)
+        return unsettled(job, batch, member, periods_run)
+    regime = _periodic(batch, member, periods_run)
     maxima = batch.settled_maxima(member, int(period)) * job.scaled.scales.force
     state = job.scaled.to_si(batch.state.y[:, member])
     return SteadyState(job.scene, maxima, regime, None, state, number=job.number)
@@ -145,41 +145,42 @@ def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
 def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadyState | BatchJob | None:
     """The job for the finer run or the Lyapunov exponent, the end of its budget, or None where the member goes on."""
     here = int(batch.state.periods[member])
-    run = job.periods_run + here
+    periods_run = job.periods_run + here
     period = batch.state.last_check[member, CHECK_PERIOD]
     if period > 0:
-        regime = _periodic(batch, member, run)
+        regime = _periodic(batch, member, periods_run)
         settled = (regime, batch.settled_maxima(member, int(period)))
-        return BatchJob(job.scene, job.scaled, batch.state.y[:, member].copy(), run, settled, number=job.number)
-    if run >= job.affordable_periods:
-        return unsettled(job, batch, member, run)
+        return BatchJob(job.scene, job.scaled, batch.state.y[:, member].copy(), periods_run, settled, number=job.number)
+    if periods_run >= job.affordable_periods:
+        return unsettled(job, batch, member, periods_run)
     record = batch.strobes(member)
-    if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
-        return _to_measure(job, batch, member, run, record.copy())
+    if periods_run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
+        return _to_measure(job, batch, member, periods_run, record.copy())
     batch.state.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
                                  job.affordable_periods - job.periods_run)
     return None
 
 
-def _periodic(batch: Batch, member: int, run: int) -> Regime:
+def _periodic(batch: Batch, member: int, periods_run: int) -> Regime:
     """The periodic regime of a coarse member; `followed` where extrapolations led to it."""
     period, decay, distance = batch.state.last_check[member]
-    return Regime("periodic", int(period), float(decay) if decay >= 0.0 else None, float(distance), run,
-                  followed=bool(batch.state.slowest[member] > 0.0))
+    return Regime(name="periodic", period=int(period), decay=float(decay) if decay >= 0.0 else None,
+                  distance=float(distance), periods_run=periods_run, followed=bool(batch.state.slowest[member] > 0.0))
 
 
-def _to_measure(job: BatchJob, batch: Batch, member: int, run: int, record: np.ndarray) -> BatchJob:
+def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
-    return BatchJob(job.scene, job.scaled, y, run, measuring=True, record=record, maxima=maxima, number=job.number)
+    return BatchJob(job.scene, job.scaled, y, periods_run, measuring=True, record=record, maxima=maxima,
+                    number=job.number)
 
 
-def unsettled(job: BatchJob, batch: Batch, member: int, run: int) -> SteadyState:
+def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> SteadyState:
     """The result of a member whose budget of steps is spent."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     state = job.scaled.to_si(batch.state.y[:, member])
-    return SteadyState(job.scene, maxima, Regime.unsettled(run), None, state,
+    return SteadyState(job.scene, maxima, Regime.unsettled(periods_run), None, state,
                       number=job.number)
 
 
