@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from .result import Cost, Run
     from .run.live import LiveChain
     from .run.many import Runs, run_many
-    from .run.run import run
+    from .run.to_accuracy import run
     from .state import State
     from .steady.curve.curve import Curve, CurvePoint
     from .steady.curve.resonance_curve import iter_curve, resonance_curve
@@ -50,8 +50,8 @@ if TYPE_CHECKING:
 
 #: Public names by module. They are imported at first use, so that `import granchain_core` is quick.
 _MODULES = {
-    "run.run": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",), "result": ("Cost", "Run"),
-    "state": ("State",), "stop": ("Stop",),
+    "run.to_accuracy": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",),
+    "result": ("Cost", "Run"), "state": ("State",), "stop": ("Stop",),
     "steady.settling.settle": ("settle", "settled", "settling"), "steady.settling.outcome": ("Settled",),
     "regime": ("Regime",),
     "steady.curve.curve": ("Curve", "CurvePoint"),

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .scene import Scene
-from .tables import Column, Labelled
+from .tables import Column, Labelled, axis
 
 #: Most recorded values of one motion: samples times beads.
 MOST_RECORDED = 50_000_000
 
+_TIME_UNIT = "s"
 _COLUMNS = {  # by name: (axes, unit, meaning)
     "displacement": (("time", "bead"), "m", "bead displacement from its rest position"),
     "velocity": (("time", "bead"), "m/s", "bead velocity"),
@@ -68,6 +69,16 @@ def motion_columns(motion: RecordedMotion) -> dict[str, Column]:
     """The columns over time that a motion has: a run all of them, an observation those without a driver."""
     return {name: Column(values, axes, unit, meaning) for name, (axes, unit, meaning) in _COLUMNS.items()
             if (values := getattr(motion, name, None)) is not None}
+
+
+def time_axis(time: np.ndarray, meaning: str) -> dict[str, Column]:
+    """The axis of times [s]; `meaning` says since when."""
+    return axis("time", time, _TIME_UNIT, meaning)
+
+
+def motion_units(group: str) -> dict[str, str]:
+    """The units of a motion's times and columns by their paths in a group of a file."""
+    return {f"{group}/time": _TIME_UNIT, **{f"{group}/{name}": unit for name, (_, unit, _) in _COLUMNS.items()}}
 
 
 def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:

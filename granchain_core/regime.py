@@ -77,12 +77,12 @@ class Regime:
     @classmethod
     def unsettled(cls, periods_run: int, lyapunov: tuple[float, float] | None = None) -> Regime:
         """A motion whose regime is not known after `periods_run` periods."""
-        return cls("unsettled", None, None, None, periods_run, lyapunov)
+        return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, lyapunov=lyapunov)
 
     @classmethod
     def undriven(cls, periods_run: int) -> Regime:
         """A motion from its start without a drive, after `periods_run` times 1/f."""
-        return cls("unsettled", None, None, None, periods_run, driven=False)
+        return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, driven=False)
 
     @property
     def contraction(self) -> float:

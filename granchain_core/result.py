@@ -11,7 +11,7 @@ import numpy as np
 from .integrate import Counts
 from .integrate.engine import Engine
 from .kernels.samples import Samples
-from .recorded_motion import RecordedMotion, motion_columns
+from .recorded_motion import RecordedMotion, motion_columns, time_axis
 from .regime import Regime
 from .scene import Scene
 from .scene.validity import overlap_warnings
@@ -225,7 +225,7 @@ class Run(RecordedMotion):
 
     def tables(self) -> tuple[Table, ...]:
         """One table, `run`: the motion over time, bead and contact, the jumps of forces, and what a run has one of."""
-        axes = axis("time", self.time, "s", "time since the start, at drive phase 0")
+        axes = time_axis(self.time, "time since the start, at drive phase 0")
         return (Table("run", {**axes, **bead_axis(self.scene.N), **contact_axis(self.scene.N), **self.jumps.axis()},
                       {**motion_columns(self), **self.jumps.columns(), **self._single()}),)
 

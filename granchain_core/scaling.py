@@ -42,6 +42,8 @@ _DAMPING_LIMIT = 1.39
 _FASTEST = 2.0
 #: Called for every point of a curve.
 _PLACE = Entries(place)
+#: Fewest steps in one drive period, however slowly the chain moves.
+_FEWEST_STEPS_PER_PERIOD = 16
 #: More steps than this in one drive period are refused: one period would take a good part of a minute.
 MOST_STEPS_PER_PERIOD = 50_000_000
 
@@ -187,14 +189,14 @@ class ScaledChain:
 
     def steps_per_period(self, multiple_of: int = 1) -> int:
         """Steps of the fixed-step method in one period, a multiple of `multiple_of`."""
-        steps = max(multiple_of, math.ceil(self.period / self.step / multiple_of) * multiple_of, 16)
+        steps = math.ceil(max(self.period / self.step, _FEWEST_STEPS_PER_PERIOD) / multiple_of) * multiple_of
         if steps > MOST_STEPS_PER_PERIOD:
             raise BadInput(
                 f"drive frequency f = {self.scene.f:g} Hz is so far below the chain's own rate that one period takes "
                 f"{steps:.1e} steps; at most {MOST_STEPS_PER_PERIOD:.0e} are allowed: the nearest valid frequency is "
                 f"about {self.scene.f * steps / MOST_STEPS_PER_PERIOD:.3g} Hz."
             )
-        return math.ceil(steps / multiple_of) * multiple_of
+        return steps
 
 
 def scales_of(scene: Scene) -> Scales:

@@ -69,8 +69,8 @@ def do(arguments: argparse.Namespace) -> None:
 
 def _result(chosen: Scene, arguments: argparse.Namespace) -> Run:
     """The run and its file; one that was interrupted goes on with the discarded periods it has finished."""
-    from granchain_core.run.run import run as run_scene
     from granchain_core.run.run_checkpoints import RunCheckpoints
+    from granchain_core.run.to_accuracy import run as run_scene
 
     progress = show_percent if sys.stderr.isatty() else None
     sizes = arguments.periods, arguments.record, arguments.samples
@@ -118,7 +118,7 @@ def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:
 
 def _warn(result: Run, budget: float) -> None:
     """Say on stderr what the numbers do not show: warnings, an accuracy not reached, touches not resolved."""
-    from granchain_core.run.run import warnings
+    from granchain_core.run.to_accuracy import warnings
 
     for warning in warnings(result):
         say(warning)

@@ -150,5 +150,5 @@ class Diagram(Labelled):
             return None
         lyapunov = None if np.isnan(cell["lyapunov"]) else (float(cell["lyapunov"]), float(cell["lyapunov_error"]))
         decay, multiplier = (None if np.isnan(cell[name]) else float(cell[name]) for name in ("decay", "multiplier"))
-        return Regime(CELL_REGIMES[cell["regime"]], int(cell["period"]) or None, decay, None, int(cell["periods_run"]),
-                      lyapunov, multiplier)
+        return Regime(name=CELL_REGIMES[cell["regime"]], period=int(cell["period"]) or None, decay=decay, distance=None,
+                      periods_run=int(cell["periods_run"]), lyapunov=lyapunov, multiplier=multiplier)

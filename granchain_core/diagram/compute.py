@@ -10,10 +10,10 @@ import numpy as np
 
 from ..integrate.batch import can_share_batch
 from ..scene import Amplitude, Scene
+from ..steady.batch.engine import batch_states
 from ..steady.batch.job import Start
-from ..steady.batch.results import batch_states
 from ..steady.batch.threads import on_all_cores
-from ..steady.settling.single_chain import safe_state, settled_alone
+from ..steady.settling.single_chain import settle_or_failure, settled_alone
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells
@@ -46,7 +46,7 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
             yield settled_alone(result, stop) if result.undecided else result
         return
     for one in together:
-        yield replace(safe_state(one.scene, one.state, stop), number=one.number)
+        yield replace(settle_or_failure(one.scene, one.state, stop), number=one.number)
 
 
 def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:

@@ -18,12 +18,12 @@ from ..integrate import fixed_step_setting
 from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
-from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns
+from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
 from ..state import State, rest
 from ..stop import Stop
-from ..tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, provenance
+from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .moved_chain import MovedChain
 from .signal import Signal
@@ -92,7 +92,7 @@ class Driven(RecordedMotion):
 
     def tables(self) -> tuple[Table, ...]:
         """One table, `driven`, laid out as a run's is."""
-        axes = {**axis("time", self.time, "s", "time since the signal's own zero"), **bead_axis(self.scene.N),
+        axes = {**time_axis(self.time, "time since the signal's own zero"), **bead_axis(self.scene.N),
                 **contact_axis(self.scene.N)}
         velocity = Column(self.signal.velocity, ("time",), "m/s", "driver velocity")
         return (Table("driven", axes, {**motion_columns(self), "drive_velocity": velocity}),)

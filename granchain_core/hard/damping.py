@@ -7,7 +7,7 @@ import numpy as np
 from ..errors import NumbersFailed
 from ..integrate import Engine, Setting, adaptive_setting
 from ..laws import LAWS
-from ..run.run import run
+from ..run.to_accuracy import run
 from ..scene import Scene, scene
 from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time

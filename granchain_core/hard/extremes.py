@@ -9,7 +9,7 @@ import numpy as np
 from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
-from ..run.run import run
+from ..run.to_accuracy import run
 from ..scene import Scene, scene
 from ..state import State
 from .case import Measurement, Picture, Trace

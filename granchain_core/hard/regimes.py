@@ -8,7 +8,7 @@ from ..integrate import Engine, adaptive_setting
 from ..observe.drift import observer_drift
 from ..orbits import periodic_orbit
 from ..orbits.stroboscopic_map import StroboscopicMap
-from ..run.run import run
+from ..run.to_accuracy import run
 from ..scene import scene
 from ..steady.curve.curve import CurvePoint
 from ..steady.curve.resonance_curve import iter_curve

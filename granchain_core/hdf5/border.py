@@ -30,6 +30,11 @@ class File:
 
     def __init__(self, source: Plain | Child) -> None:
         self._source = source
+        self._units: dict[str, str] = {}
+
+    def expect_units(self, units: Mapping[str, str]) -> None:
+        """Units by path: from now on `numbers` refuses a dataset that states another one."""
+        self._units.update(units)
 
     def has(self, path: str) -> bool:
         """Whether there is a dataset."""
@@ -47,11 +52,11 @@ class File:
         """The shape of a dataset that has to be there."""
         return self._stored(path).shape
 
-    def numbers(self, path: str, shape: tuple[int, ...], kind: str = "f", unit: str | None = None,
-                rows: int | None = None) -> np.ndarray:
+    def numbers(self, path: str, shape: tuple[int, ...], kind: str = "f", rows: int | None = None) -> np.ndarray:
         """Numbers of a shape, checked before they are read: floats of eight bytes ("f"), whole numbers ("i") or both.
 
-        A unit that the file states must be `unit`. With `rows`, only the first `rows` are read.
+        A unit that the file states must be that of `expect_units`, if there is one for this path. With `rows`, only
+        the first `rows` are read.
         """
         stored = self._stored(path)
         if stored.shape != shape:
@@ -59,8 +64,8 @@ class File:
         held = {"f": "f", "i": "iu"}.get(kind, "fiu")
         if stored.type == "text" or np.dtype(stored.type).kind not in held or (kind == "f" and stored.type[-1] != "8"):
             raise Refused(f"/{path} holds {stored.type}, expected {'whole numbers' if kind == 'i' else 'numbers'}")
-        if unit is not None and stored.units not in (None, unit):
-            raise Refused(f"/{path} is in {stored.units[:40]!r}, expected {unit!r}")
+        if stored.units is not None and stored.units != self._units.get(path, stored.units):
+            raise Refused(f"/{path} is in {stored.units[:40]!r}, expected {self._units[path]!r}")
         found = self._source.numbers(path, rows)
         return found.astype({"i": np.int64}.get(kind, np.float64), copy=False)
 

@@ -34,8 +34,12 @@ _ERROR_SPREAD = 8.0
 _TOLERANCE_PER_ACCURACY = 0.1
 #: Its largest first tolerance per step, whatever accuracy is asked for.
 _LARGEST_TOLERANCE = 1e-3
-#: Smallest tolerance of a step that is still followed by a finer one.
+#: The next finer tolerance is not below this, except as an eighth of the present one.
 _SMALLEST_TOLERANCE = 1e-15
+#: Tolerance below which a smaller one gains nothing because of rounding.
+_FINEST_TOLERANCE = 2e-15
+#: Refinement of the fixed-step method from which a larger one gains nothing because of rounding.
+_FINEST_REFINEMENT = 256
 
 
 @dataclass(frozen=True)
@@ -67,7 +71,9 @@ class Setting:
     @property
     def finest(self) -> bool:
         """Whether a finer setting gains nothing because of rounding."""
-        return self.tolerance < 2e-15 if METHODS[self.method].adaptive else self.refine >= 256
+        if METHODS[self.method].adaptive:
+            return self.tolerance < _FINEST_TOLERANCE
+        return self.refine >= _FINEST_REFINEMENT
 
     def steps_per_period(self, scaled: ScaledChain, samples: int) -> int:
         """Steps in one period for a fixed-step method, a multiple of `samples`."""

@@ -22,12 +22,12 @@ from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR, REGULAR
 from ..integrate.stated import relative_difference
-from ..recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns
+from ..recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns, time_axis
 from ..result import Cost
 from ..scene import Scene
 from ..state import State, rest
 from ..stop import Stop
-from ..tables import Column, Table, axis, bead_axis, contact_axis, provenance
+from ..tables import Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
@@ -110,7 +110,7 @@ class Observation(RecordedMotion):
 
     def tables(self) -> tuple[Table, ...]:
         """One table, `observation`, laid out as a run's is, so that one reader reads both."""
-        axes = {**axis("time", self.time, "s", "time as in the measured force"), **bead_axis(self.scene.N),
+        axes = {**time_axis(self.time, "time as in the measured force"), **bead_axis(self.scene.N),
                 **contact_axis(self.scene.N)}
         columns = motion_columns(self)
         columns["force"] = Column(self.force, ("time", "contact"), "N",

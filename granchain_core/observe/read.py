@@ -15,6 +15,7 @@ from ..experiment.measured import MOST_BYTES, MOST_ROWS
 from ..experiment.units import UNITS, unit_named
 from ..hdf5 import SIGNATURE, File, opened
 from ..hdf5.plain import Refused
+from ..recorded_motion import motion_units
 from ..state import State
 from .record import ForceRecord, checked
 
@@ -86,9 +87,10 @@ def _from_hdf5(path: Path) -> ForceRecord:
         rows = file.shape(f"{group}/time")
         if len(rows) != 1 or rows[0] > MOST_ROWS:
             raise Refused(f"/{group}/time has shape {rows}, expected one row of at most {MOST_ROWS} numbers")
+        file.expect_units(motion_units(group))
         time, force, output = (
-            file.numbers(f"{group}/{name}", rows, "any", unit) if name != "output_force" or file.has(f"{group}/{name}")
-            else None for name, unit in (("time", "s"), ("input_force", "N"), ("output_force", "N")))
+            file.numbers(f"{group}/{name}", rows, "any") if name != "output_force" or file.has(f"{group}/{name}")
+            else None for name in ("time", "input_force", "output_force"))
         assert time is not None and force is not None
     return _described(checked(ForceRecord(time, force, output)), "HDF5 in s and N")
 
@@ -109,6 +111,6 @@ def first_state(path: str | Path, beads: int) -> State:
         shape = (*file.shape(f"{group}/time"), beads)
         if shape[0] < 1:
             raise Refused("it has no samples")
-        u, v = (file.numbers(f"{group}/{name}", shape, "any", unit, rows=1)[0]
-                for name, unit in (("displacement", "m"), ("velocity", "m/s")))
+        file.expect_units(motion_units(group))
+        u, v = (file.numbers(f"{group}/{name}", shape, "any", rows=1)[0] for name in ("displacement", "velocity"))
     return State(u, v)

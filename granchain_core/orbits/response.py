@@ -87,5 +87,6 @@ def recorded(orbit: Orbit) -> Run:
     engine.start(orbit.state)
     samples = engine.record(orbit.period * _SAMPLES)
     leading = float(np.abs(orbit.multipliers).max())
-    regime = Regime("periodic", orbit.period, None, None, orbit.period, multiplier=leading)
+    regime = Regime(name="periodic", period=orbit.period, decay=None, distance=None, periods_run=orbit.period,
+                    multiplier=leading)
     return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, ADAPTIVE), start=GIVEN_STATE)

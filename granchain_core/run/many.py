@@ -18,7 +18,7 @@ from ..steady.settling.outcome import Settled
 from ..stop import Stop
 from ..tables import MAXIMA, Column, Labelled, Table, axis, error_columns, force_columns, regime_columns
 from ..tables.provenance import Attribute, made
-from .run import run
+from .to_accuracy import run
 
 #: Most scenes of one batch.
 MOST_SCENES = 100_000

@@ -44,7 +44,7 @@ def citations(scene: Description) -> list[tuple[str, str]]:
     if scene.F0 > 0.0:
         found.append(("precompressed chains", _PRECOMPRESSED))
     impurity = scene.impurity != 1.0 and scene.site <= scene.N
-    if not scene.is_driven and scene.striker > 1.0:
+    if not scene.is_driven and scene.striker > 1.0 and scene.end == "first":  # else the heavy bead is at the wall
         found.append(("pulse trains", _TRAINS))
     if not scene.is_driven and impurity:
         found.append(("impurities", _IMPURITY))

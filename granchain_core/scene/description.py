@@ -97,8 +97,11 @@ class Description:
     # --- derived quantities -------------------------------------------------------------------------------
 
     def bead(self, number: int) -> Bead:
-        """The bead at this place from the driver, 1 to N: that of `impurities`, else the pattern's with its part of the
-        mass. Where the driver is at the last bead, places are counted from there."""
+        """Bead `number` counted from the driver, 1 to N, as in results.
+
+        `pattern`, `impurities` and the knobs of the masses count from the chain's own first bead: with `end = "last"`
+        bead `number` is their entry N + 1 − `number`. An impurity stands in place of the pattern's bead.
+        """
         if self.end == "last":
             number = self.N + 1 - number
         for place, bead in self.impurities:
@@ -110,7 +113,8 @@ class Description:
         return replace(bead, mass=part * bead.mass, radius=math.cbrt(part) * bead.radius)
 
     def mass_part(self, number: int) -> float:
-        """Mass of a bead over that of the pattern there: dimer, taper, striker and impurity, of the same material."""
+        """Mass of bead `number` of the chain's own numbering over that of the pattern there: dimer, taper, striker and
+        impurity, of the same material."""
         part = 1.0 if self.N == 1 else self.taper ** (3.0 * (number - 1) / (self.N - 1))
         if number % 2 == 0:
             part *= self.dimer
@@ -181,7 +185,10 @@ class Description:
         return bool(self.start_velocity) or self.strike > 0.0
 
     def velocities_at_start(self) -> np.ndarray:
-        """Velocities of the beads at time 0 (N,) [m/s]: the strike, and those of `start_velocity`, which come first."""
+        """Velocities of the beads at time 0 (N,) [m/s]: the strike, or instead of it those of `start_velocity`.
+
+        Both belong to what sets the chain in motion, like the driver, and count from the driver at either `end`.
+        """
         velocity = np.zeros(self.N)
         velocity[0] = self.strike
         for bead, speed in self.start_velocity:

@@ -49,9 +49,9 @@ class Scene(Description):
     reference_overlap : float
         Overlap at which D is stated for the laws of Tsuji and of Kuwabara and Kono [m].
     impurities : tuple of (int, Bead)
-        Beads in place of the pattern's, by number from 1.
+        Beads in place of the pattern's, by number from the chain's own first bead.
     start_velocity : tuple of (int, float)
-        Beads that move at t = 0, by number, with their velocities [m/s].
+        Beads that move at t = 0, by number from the driver, with their velocities [m/s], > 0 towards the wall.
     ranges : tuple of (str, float, float)
         Ranges of the sliders.
     preset : tuple
@@ -61,16 +61,17 @@ class Scene(Description):
     taper : float
         Radius of the last bead over that of the first; the radii form a geometric sequence.
     striker : float
-        Factor on the mass of bead 1.
+        Factor on the mass of the chain's own first bead.
     site, impurity : int, float
-        Number of the impurity bead, and the factor on its mass.
+        Number of the impurity bead from the chain's own first bead, and the factor on its mass.
     drive : str
         "harmonic", or "rest" for a driver that stands still; 1/f is then only the time that is shown.
     strike : float
-        Velocity of bead 1 at time 0 [m/s].
+        Velocity of the driver's neighbour at time 0 [m/s], towards the wall.
     end : str
-        The end that the driver touches: "first", or "last" to drive a chain of unequal beads from its other end. In
-        results, beads are always numbered from the driver.
+        The end that the driver touches: "first", or "last" to drive a chain of unequal beads from its other end. That
+        turns the beads round, with all that `pattern`, `impurities`, `dimer`, `taper`, `striker` and `site` say of
+        them; `strike`, `start_velocity` and results count from the driver.
 
     Examples
     --------

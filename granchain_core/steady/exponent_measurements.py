@@ -37,7 +37,7 @@ class ExponentMeasurements:
     unfinished: np.ndarray = field(default_factory=lambda: np.zeros(0))
 
     @property
-    def approach(self) -> float:
+    def approach_rate(self) -> float:
         """Mean exponent per period by which neighbours approach, as on the way to an orbit; 0 where they do not.
 
         It is that of the last complete measurement.
@@ -47,12 +47,12 @@ class ExponentMeasurements:
             return 0.0
         return max(0.0, -latest.lyapunov[0])
 
-    def add(self, exponents: np.ndarray, strobes: np.ndarray, run: int, last: bool = False) -> Regime | None:
+    def add(self, exponents: np.ndarray, strobes: np.ndarray, periods_run: int, last: bool = False) -> Regime | None:
         """The regime, if more exponents decide it.
 
         `exponents` are `EXPONENT_BLOCKS` mean exponents of successive blocks of `PERIODS_IN_BLOCK` periods, `strobes`
-        (P, 2, N) the last ones of a motion that has run `run` periods. With `last` the measurement is not continued,
-        however large its error.
+        (P, 2, N) the last ones of a motion that has run `periods_run` periods. With `last` the measurement is not
+        continued, however large its error.
         """
         measured = np.concatenate([self.unfinished, exponents])
         periods = PERIODS_IN_BLOCK * len(measured)
@@ -61,7 +61,7 @@ class ExponentMeasurements:
             self.unfinished = measured
             return None
         self.unfinished = np.zeros(0)
-        before, self.latest = self.latest, regime_from_exponents(blocks, periods, strobes, run)
+        before, self.latest = self.latest, regime_from_exponents(blocks, periods, strobes, periods_run)
         self.complete += 1
         as_long_as_two = self.latest.name == "quasi-periodic" and len(measured) > EXPONENT_BLOCKS
         agreed = before is not None and agree(self.latest, before)

@@ -2,7 +2,7 @@
 
 A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by r per
 orbit, the distance left is change·r/(1 − r). A motion whose bound is small enough is a candidate for a periodic one;
-settling/regime_decisions.py and batch/results.py confirm it.
+settling/regime_decisions.py and batch/engine.py confirm it.
 """
 
 from __future__ import annotations
@@ -57,14 +57,15 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
     Changes below `rounding` are the method's own and count as none. Those that are lost in it may still be those of a
     slow approach: the distance is no better known than rounding·r/(1 − r) with the decay r.
     """
-    run, workspace = len(strobes) - 1, np.zeros(max(periodicity.LEAST_WINDOW, 3 * longest))
+    periods_run, workspace = len(strobes) - 1, np.zeros(max(periodicity.LEAST_WINDOW, 3 * longest))
     period, decay, distance, *_ = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding,
                                                             SETTLED_DISTANCE, 0.0, np.zeros(2), workspace)
     if period == 0:
-        return Regime.unsettled(run)
+        return Regime.unsettled(periods_run)
     if 0.0 < decay < 1.0:
         distance = max(distance, rounding * decay / (1.0 - decay))
-    return Regime("periodic", int(period), None if decay < 0.0 else float(decay), float(distance), run)
+    return Regime(name="periodic", period=int(period), decay=None if decay < 0.0 else float(decay),
+                  distance=float(distance), periods_run=periods_run)
 
 
 def grows(mean: float, error: float, periods: int) -> bool:
@@ -102,7 +103,7 @@ def undecided(exponents: np.ndarray, periods: int) -> bool:
             and not is_neutral(mean, error, periods))
 
 
-def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarray, run: int) -> Regime:
+def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarray, periods_run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of `periods` in all.
 
     Chaotic: the mean is above three standard errors and a least value (`grows`). Quasi-periodic: it is not
@@ -112,13 +113,14 @@ def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarr
     """
     mean, error = _mean_and_error(exponents)
     if grows(mean, error, periods):
-        return Regime("chaotic", None, None, None, run, (mean, error))
+        return Regime(name="chaotic", period=None, decay=None, distance=None, periods_run=periods_run,
+                      lyapunov=(mean, error))
     if not is_neutral(mean, error, periods):
-        return Regime.unsettled(run, (mean, error))
+        return Regime.unsettled(periods_run, (mean, error))
     windows, distance, limit = _windows(strobes), return_distance(strobes), return_limit(strobes)
     name = "quasi-periodic" if _neither_converges_nor_departs(windows) and distance < limit else "unsettled"
-    return Regime(name, None, None, None, run, (mean, error), return_distance=distance, return_limit=limit,
-                  window_ratios=_window_ratios(windows))
+    return Regime(name=name, period=None, decay=None, distance=None, periods_run=periods_run, lyapunov=(mean, error),
+                  return_distance=distance, return_limit=limit, window_ratios=_window_ratios(windows))
 
 
 def clearly_chaotic(exponents: np.ndarray) -> bool:

@@ -23,7 +23,7 @@ from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
 from ..orbits.branch.special import SPECIAL_KINDS
-from ..orbits.branch.tables import NO_CONTACT
+from ..orbits.branch.tables import NO_CONTACT, branch_tables
 from ..scene import Amplitude
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..tables import MAXIMA
@@ -63,6 +63,8 @@ def _read(file: File) -> Branch:
     header, scene = _header(file.json("branch")), file.scene()
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
     axis = KnobAxis.of(scene, header["knob"], header["start"], header["end"], amplitude)
+    for table in branch_tables(axis, ()):
+        file.expect_units(table.units)
     points = _read_orbits(file, "branch", scene.N)
     place = _places(file, "branch/arm", len(points), len(header["arms"]))
     special = _read_special(file, scene.N)

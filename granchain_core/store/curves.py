@@ -55,6 +55,7 @@ def _read(file: File) -> Curve:
     scene, shape = file.scene(), file.shape("curve/frequency")
     if len(shape) != 1:
         raise Refused(f"/curve/frequency has shape {shape}, expected one row of frequencies")
+    file.expect_units(Curve(scene, "rest").tables()[0].units)
     numbers = np.array([file.numbers(f"curve/{name}", shape) for name in _NUMBERS])
     periods = within("/curve/period", file.numbers("curve/period", shape, "i"), 0, np.iinfo(np.int32).max)
     names = file.words("curve/regime", shape[0], NAMES)

@@ -20,7 +20,6 @@ from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
 from ..quantities import QUANTITIES
 from ..scene import Amplitude
-from ..tables import MAXIMA
 from .writing import write_file, write_result
 
 
@@ -44,12 +43,15 @@ def _read(file: File) -> Diagram:
     scene, shape = file.scene(), (*file.shape(f"map/{y}"), *file.shape(f"map/{x}"))
     if len(shape) != 2 or shape[0] * shape[1] > MOST_CELLS:
         raise Refused(f"its axes have shape {shape}; expected two with at most {MOST_CELLS} cells")
-    axes = (Axis.of(knob, file.numbers(f"map/{knob}", (count,), unit=QUANTITIES[knob].unit))
+    file.expect_units({f"map/{knob}": QUANTITIES[knob].unit for knob in (y, x)})
+    axes = (Axis.of(knob, file.numbers(f"map/{knob}", (count,)))
             for knob, count in zip((y, x), shape, strict=True))
     down, across = axes
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
     grid = Grid(scene, across, down, amplitude)
-    cells, kept = empty_cells(grid), [name for name in CELL.names or () if file.has(f"map/{name}")]
+    cells = empty_cells(grid)
+    file.expect_units(Diagram(grid, cells).tables()[0].units)
+    kept = [name for name in CELL.names or () if file.has(f"map/{name}")]
     for name in kept:  # earlier versions kept fewer columns
         cells[name] = _column(file, name, shape)
     if "decay" not in kept:  # files written before the two were told apart
@@ -61,6 +63,6 @@ def _column(file: File, name: str, shape: tuple[int, ...]) -> np.ndarray:
     """One column of all cells; a number that does not fit into its place in the table is refused."""
     kind, path = CELL[name], f"map/{name}"
     if kind.kind == "f":
-        return file.numbers(path, shape, unit="N" if name in MAXIMA else "1").reshape(-1)
+        return file.numbers(path, shape).reshape(-1)
     low, high = (-1, len(CELL_REGIMES) - 1) if name == "regime" else (0, np.iinfo(kind).max)
     return within(f"/{path}", file.numbers(path, shape, "i"), low, high).reshape(-1)

@@ -16,9 +16,11 @@ import numpy as np
 from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
+from ..recorded_motion import motion_units
 from ..regime import NAMES, Regime
 from ..result import AT_REST, GIVEN_STATE, RUN_ERRORS, RUN_STARTS, Cost, ForceErrors, Jumps, Run
 from ..tables import MAXIMA
+from ..tables.table import units_by_path
 from .writing import or_none
 
 #: What a run's `status` can be.
@@ -61,9 +63,10 @@ def load(path: str | Path) -> Run:
 def _read(file: File) -> Run:
     """The run in a file."""
     scene, rows = file.scene(), _rows(file)
-    arrays = {name: file.numbers(f"run/{name}", (rows, *width), unit=unit) for name, width, unit in (
-        ("time", (), "s"), ("displacement", (scene.N,), "m"), ("velocity", (scene.N,), "m/s"),
-        ("force", (scene.N + 1,), "N"), ("drive_displacement", (), "m"))}
+    file.expect_units({**motion_units("run"), **units_by_path("run", Jumps().columns())})
+    arrays = {name: file.numbers(f"run/{name}", (rows, *width)) for name, width in (
+        ("time", ()), ("displacement", (scene.N,)), ("velocity", (scene.N,)), ("force", (scene.N + 1,)),
+        ("drive_displacement", ()))}
     largest = {name: finite(name, file.number(name)) for name in MAXIMA}
     return Run(
         scene=scene, samples=file.whole("samples_per_period", 1),
@@ -130,6 +133,6 @@ def _read_jumps(file: File, beads: int) -> Jumps:
         return Jumps()
     count = file.shape("run/jump_time")[:1]
     contact = file.numbers("run/jump_contact", count, "i")
-    return Jumps(file.numbers("run/jump_time", count, unit="s"), within("/run/jump_contact", contact, 0, beads),
-                 file.numbers("run/jump_force", count, unit="N"),
+    return Jumps(file.numbers("run/jump_time", count), within("/run/jump_contact", contact, 0, beads),
+                 file.numbers("run/jump_force", count),
                  *(file.whole(name, 0, "run/jump_time") for name in ("missing", "unresolved")))

@@ -69,3 +69,13 @@ class Table:
             shape = tuple(len(self.axes[one].values) for one in column.axes)
             if column.values.shape != shape:
                 raise ValueError(f"{self.name}/{name} has shape {column.values.shape}, and its axes {shape}")
+
+    @property
+    def units(self) -> dict[str, str]:
+        """The units of its axes and columns by their paths in a file, without words and flags, which have none."""
+        return units_by_path(self.name, {**self.axes, **self.columns})
+
+
+def units_by_path(group: str, columns: Mapping[str, Column]) -> dict[str, str]:
+    """The units of columns by their paths in a group of a file, without words and flags, which have none."""
+    return {f"{group}/{name}": column.unit for name, column in columns.items() if column.unit}

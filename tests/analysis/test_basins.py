@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, State, attractors, basins, scene
-from granchain_core.steady.settling.single_chain import steady_state
+from granchain_core.steady.settling.single_chain import settle_to_forces
 from granchain_core.stop import Stop
 
 #: A motion of period 4 and a quasi-periodic one, both with many starts in the plane of docs/analysis.md.
@@ -26,7 +26,7 @@ def test_each_start_ends_where_its_cell_says() -> None:
     for row, column in cells:
         state = np.zeros((2, 11))
         state[0, 0], state[1, 10] = u[column], v[row]
-        alone = steady_state(SHARED, State(*state), Stop())
+        alone = settle_to_forces(SHARED, State(*state), Stop())
         named = found.attractors[found.number[row, column]]
         assert (alone.regime.name, alone.regime.period) == (named.regime.name, named.regime.period)
         errors = (named.error_estimate, alone.output_force_error)

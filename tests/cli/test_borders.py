@@ -17,6 +17,7 @@ from app.session.share import decode
 from granchain_core import BadInput, NumbersFailed, run, scene
 from granchain_core.hdf5 import seal
 from granchain_core.kernels.width import machine
+from granchain_core.run import to_accuracy
 from granchain_core.store import load, save
 
 pytestmark = pytest.mark.quick
@@ -42,7 +43,7 @@ def test_an_unwritable_out_is_said_before_the_work_and_not_after_it(tmp_path, mo
     def computes(*_, **__):
         pytest.fail("computed before looking at --out")
 
-    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "run", computes)
+    monkeypatch.setattr(to_accuracy, "run", computes)
     assert main(["run", "sec2", *SHORT, "--out", str(tmp_path / "none" / "a.h5")]) == 2
     assert "Cannot write" in capsys.readouterr().err
 
@@ -73,12 +74,11 @@ def test_sizes_that_cannot_be_kept_are_refused(words, sentence, capsys):
 
 def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
     """A million periods of ten thousand beads would be 160 GB of strobes."""
-    module = sys.modules["granchain_core.run.run"]
     shown = scene("sec2").evolve(N=2, f=3000.0)
-    engine = module.Engine(shown, module.method_for(1e-3), 4)
-    begun = module.Reached(engine, 0, engine.periods(0)[0])
-    kept = module._attempt(begun, (3000, 1), None, module.Counts(), None)
-    assert len(kept.strobes) == module.REMEMBERED + 1
+    engine = to_accuracy.Engine(shown, to_accuracy.method_for(1e-3), 4)
+    begun = to_accuracy.Reached(engine, 0, engine.periods(0)[0])
+    kept = to_accuracy._attempt(begun, (3000, 1), None, to_accuracy.Counts(), None)
+    assert len(kept.strobes) == to_accuracy.REMEMBERED + 1
 
 
 def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, capsys):
@@ -86,7 +86,7 @@ def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, ca
     def fails(*_, **__):
         raise NumbersFailed("The motion of bead 3 stopped being a finite number at about 1 s.", "not-finite")
 
-    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "run", fails)
+    monkeypatch.setattr(to_accuracy, "run", fails)
     assert main(["run", "sec2", *SHORT, "--json"]) == 3
     out, said = capsys.readouterr()
     assert json.loads(out)["status"] == "not-finite"

@@ -14,6 +14,7 @@ from app.cli import main
     (["--set", "dissipation=tsuji"], ["software", "model", "contact", "tsuji damping"]),
     (["--set", "dissipation=kuwabara-kono"], ["software", "model", "contact", "kuwabara-kono damping"]),
     (["--set", "dissipation=tsuji", "--set", "D=0"], ["software", "model", "contact"]),
+    (["--set", "drive=rest", "--set", "striker=6", "--set", "end=last"], ["software", "model", "contact", "solitary wave"]),
     (["--set", "drive=rest", "--set", "dimer=0.5"], ["software", "model", "contact", "solitary wave", "dimers"]),
 ])
 def test_what_a_scene_uses_is_cited(settings: list[str], named: list[str], capsys: pytest.CaptureFixture[str]) -> None:

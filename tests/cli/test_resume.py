@@ -18,6 +18,7 @@ import pytest
 from app.cli import main
 from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.checkpoints import Kept, folder_of
+from granchain_core.run import to_accuracy
 from granchain_core.steady.curve import resonance_curve as curves
 from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
 from tools.kills.finished import differing, finished_in
@@ -103,13 +104,11 @@ def test_a_finished_result_is_looked_at_before_its_blocks(finished: tuple[str, P
     folder_of(out).mkdir()
     (folder_of(out) / f"{name}.json").write_bytes(content)
     before, computed = out.read_bytes(), []
-    for module in ("app.cli.branch", "app.cli.map", "granchain_core.run.run"):
-        import_module(module)
-    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "_refined", lambda *_, **__: computed.append(1))
+    monkeypatch.setattr(to_accuracy, "_refined", lambda *_, **__: computed.append(1))
     monkeypatch.setattr(curves, "_carried", lambda *_: computed.append(1))
     monkeypatch.setattr(curves, "_from_rest", lambda *_: computed.append(1))
-    monkeypatch.setattr(sys.modules["app.cli.branch"], "begin_branch", lambda *_, **__: computed.append(1))
-    monkeypatch.setattr(sys.modules["app.cli.map"], "iter_diagram", lambda *_: computed.append(1))
+    monkeypatch.setattr(import_module("app.cli.branch"), "begin_branch", lambda *_, **__: computed.append(1))
+    monkeypatch.setattr(import_module("app.cli.map"), "iter_diagram", lambda *_: computed.append(1))
     assert main([*SHORT[name], "--out", str(out)]) == 2  # not without being asked to
     assert "go on with --resume" in capsys.readouterr().err
     assert main([*SHORT[name], "--out", str(out), "--resume", "--json"]) == 0

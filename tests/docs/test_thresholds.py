@@ -54,7 +54,7 @@ def test_every_row_of_thresholds_is_read_and_the_files_are_all_there() -> None:
     assert {file for _, _, file in ROWS} == {
         "kernels/strobes/periodicity", "kernels/batch/checks", "steady/regime_criteria", "steady/lyapunov",
         "steady/exponent_measurements", "steady/settling/regime_decisions", "steady/settling/advance", "steady/settling/finite_difference_map",
-        "steady/steady_state", "regime", "steady/settling/nearby_orbit", "steady/batch/results", "integrate/batch", "run/run"}
+        "steady/steady_state", "regime", "steady/settling/nearby_orbit", "steady/batch/engine", "integrate/batch", "run/to_accuracy"}
 
 
 def test_every_number_with_a_name_in_these_files_is_on_the_page() -> None:

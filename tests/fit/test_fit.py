@@ -20,7 +20,7 @@ from granchain_core.fit.parameters import free_of, per_frequency, stiffened, wit
 from granchain_core.fit.search import Problem
 from granchain_core.fit.targets import FAILED, SCATTER, extrema
 from granchain_core.fit.trains import Train
-from granchain_core.run.run import run
+from granchain_core.run.to_accuracy import run
 
 CHAIN = scene("sec2").evolve(N=2, k=4e5)
 FREQUENCIES = np.linspace(1000.0, 2600.0, 9)

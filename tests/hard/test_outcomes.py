@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import json
-import sys
 from pathlib import Path
 
 import h5py
@@ -19,8 +18,9 @@ from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.integrate import Engine, Setting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
 from granchain_core.orbits import periodic_orbit
+from granchain_core.run import to_accuracy
 from granchain_core.run.budget import estimate
-from granchain_core.run.run import warnings
+from granchain_core.run.to_accuracy import warnings
 from granchain_core.scene.validity import ONSET_OF_YIELD, YIELD_STRESS, peak_pressures
 from granchain_core.stop import Stop
 from granchain_core.store import load, save
@@ -49,7 +49,7 @@ def test_accuracy_not_reached_in_chaos() -> None:
 def test_over_budget_is_refused_before_anything_is_computed_with_what_would_fit(knobs: dict[str, float],
                                                                                 monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = scene("sec2").evolve(**knobs)
-    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "Engine", None)  # nothing can be integrated
+    monkeypatch.setattr(to_accuracy, "Engine", None)  # nothing can be integrated
     with pytest.raises(OverBudget, match=r"would fit|needed") as caught:
         run(chosen, periods=10_000, record=1, samples=8)
     assert caught.value.estimate > caught.value.budget
@@ -91,7 +91,7 @@ def test_the_steps_of_a_run_are_estimated_within_a_factor_of_two(knobs: dict[str
 
 def test_a_finer_computation_that_does_not_fit_is_not_begun(monkeypatch: pytest.MonkeyPatch) -> None:
     """This run needs a third computation; where that is taken for a very long one the second is what is returned."""
-    monkeypatch.setattr(sys.modules["granchain_core.run.run"], "_REFINED_COST_RATIO", 1e9)
+    monkeypatch.setattr(to_accuracy, "_REFINED_COST_RATIO", 1e9)
     result = run(scene("sec2"), periods=20, record=1, samples=8)
     assert result.status == "over-budget"
     assert result.displacement_error > result.scene.accuracy

@@ -3,7 +3,6 @@ part of what a computation takes."""
 
 from __future__ import annotations
 
-import sys
 from dataclasses import replace
 
 import numba
@@ -15,6 +14,7 @@ from granchain_core import run, scene
 from granchain_core.integrate import Setting
 from granchain_core.integrate.methods import typical_error
 from granchain_core.integrate.stated import Computations
+from granchain_core.run import to_accuracy
 from granchain_core.run.budget import COMPILER_CLOCK, CompilerClock, Stopwatch
 from tests.numerics.forces.located import located
 
@@ -126,8 +126,8 @@ def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypa
     """Section 2's run needs three computations (tests/hard/test_outcomes.py); each takes a hundredth of the budget,
     after compiling for longer than all of it.
     """
-    module, budget, clock = sys.modules["granchain_core.run.run"], 1.0, Clock()
-    computes, compiler, computed = module._attempt, CompilerClock(clock), []
+    budget, clock = 1.0, Clock()
+    computes, compiler, computed = to_accuracy._attempt, CompilerClock(clock), []
     began = event.Event("numba:compiler_lock", event.EventStatus.START)
 
     def compiling(*words):
@@ -138,7 +138,7 @@ def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypa
         computed.append(clock.now)
         return computes(*words)
 
-    monkeypatch.setattr(module, "_attempt", compiling)
-    monkeypatch.setattr(module, "Stopwatch", lambda: Stopwatch(clock, compiler))
+    monkeypatch.setattr(to_accuracy, "_attempt", compiling)
+    monkeypatch.setattr(to_accuracy, "Stopwatch", lambda: Stopwatch(clock, compiler))
     assert run(scene("sec2"), periods=20, record=1, samples=8, budget=budget).status == "done"
     assert len(computed) >= 3

@@ -11,7 +11,7 @@ from granchain_core import Scene, scene
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.scaling import scale_chain
-from granchain_core.steady.batch.results import batch_results
+from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 

@@ -11,8 +11,10 @@ from granchain_core import State, resonance_curve, run, scene, settled
 from granchain_core.integrate import Engine, Setting, adaptive_setting
 from granchain_core.kernels.strobes import periodicity
 from granchain_core.steady import regime_criteria
+from granchain_core.steady.batch import engine
 from granchain_core.steady.settling import recording, refine_orbit, single_chain
 from granchain_core.steady.settling.advance import run_until_settled
+from granchain_core.steady.settling.nearby_orbit import is_almost_periodic
 from granchain_core.steady.settling.regime_decisions import Decisions
 
 pytestmark = pytest.mark.quick
@@ -84,6 +86,34 @@ def test_a_batch_leaves_long_orbits_to_a_chain_alone() -> None:
     alone_, (together,) = settled(chain).regime, resonance_curve(chain, [1087.0]).points
     assert (alone_.name, alone_.period) == (together.regime.name, together.regime.period) == ("periodic", 18)
     assert max(alone_.periods_run, together.regime.periods_run) < 1000
+
+
+def nearly_repeating(change: float) -> np.ndarray:
+    """A rotation that repeats after 3 periods up to this relative change."""
+    turns = np.exp(1j * (2.0 * np.pi / 3.0 + change / 3.0) * np.arange(421))
+    return np.stack([np.stack([turns.real, turns.imag], 1), np.stack([turns.imag, -turns.real], 1)], 1)
+
+
+@pytest.mark.parametrize(("change", "almost"), [(0.0, True), (5e-4, True), (9e-4, True), (1.2e-3, False), (0.1, False)])
+def test_almost_periodic_is_what_changes_by_less_than_a_thousandth(change: float, almost: bool) -> None:
+    assert is_almost_periodic(nearly_repeating(change)) is almost
+
+
+def test_a_rotation_or_a_record_of_one_state_is_not_almost_periodic() -> None:
+    """The golden angle comes back within 2π/(√5·13) after 13 periods; two changes over n periods need 2n + 1 states."""
+    assert not is_almost_periodic(turning(1.0)) and not is_almost_periodic(nearly_repeating(0.0)[:6])
+    assert is_almost_periodic(nearly_repeating(0.0)[:7])
+
+
+def test_a_slow_approach_with_a_zero_exponent_is_left_to_a_chain_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At 1206.2 to 1206.3 Hz the motion approaches an orbit of 6 periods so slowly that its exponent is zero within
+    the error: without the rule a batch calls it quasi-periodic."""
+    frequencies = [1206.2, 1206.22, 1206.28, 1206.3]
+    found = [point.regime for point in resonance_curve(scene("sec2"), frequencies).points]
+    assert [(one.name, one.period) for one in found] == [("periodic", 6)] * 4
+    monkeypatch.setattr(engine, "is_almost_periodic", lambda strobes: False)
+    without = [point.regime.name for point in resonance_curve(scene("sec2"), frequencies).points]
+    assert "quasi-periodic" in without
 
 
 def test_an_uncertain_exponent_is_measured_further() -> None:
@@ -176,7 +206,7 @@ def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> N
         engine.start(settling.engine.state)
         monkeypatch.setattr(single_chain, "refined_orbit", lambda *words, engine=engine: (engine, 0.0))
         settling.regime = replace(settling.regime, multiplier=modulus)
-        stated.append(single_chain.steady_state(settling.scene, None, settling.stop).errors)
+        stated.append(single_chain.settle_to_forces(settling.scene, None, settling.stop).errors)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 

@@ -73,14 +73,14 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
     """Its point carries the sentence and NaN; the others are there, in every start."""
     from granchain_core.steady.settling import single_chain as module
 
-    true = module.steady_state
+    true = module.settle_to_forces
 
     def fails_at_600(one, *words):
         if one.f == 600.0:
             raise NumbersFailed("made to fail", "not-finite")
         return true(one, *words)
 
-    monkeypatch.setattr(module, "steady_state", fails_at_600)
+    monkeypatch.setattr(module, "settle_to_forces", fails_at_600)
     # with a tension cut points are computed one by one from rest too
     for start, chain in (("up", scene("sec2")), ("rest", scene("sec2").evolve(tension="cut"))):
         found = resonance_curve(chain.evolve(N=3), [500.0, 600.0, 700.0], start)

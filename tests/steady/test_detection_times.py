@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.steady.settling.advance import Settling, run_until_settled
+from granchain_core.steady.settling.advance import SettlingRun, run_until_settled
 
 
 @pytest.mark.parametrize("f", [340.0, 620.0, 1130.0])
@@ -14,7 +14,7 @@ def test_a_motion_that_is_run_in_small_pieces_settles_when_one_run_at_once_does(
     """Settled at once, followed to its orbit by a decision, and of period 3; a piece has two periods at most."""
     chain = scene("sec2").evolve(f=f)
     at_once = run_until_settled(chain, None, None)
-    pieces = Settling(chain, None, None)
+    pieces = SettlingRun(chain, None, None)
     count = 0
     while not pieces.decided:
         pieces.go_on(0.0)

@@ -73,8 +73,8 @@ def test_the_last_one_is_not_continued() -> None:
 
 def test_neighbours_that_approach_are_on_the_way_to_an_orbit() -> None:
     measurements = ExponentMeasurements()
-    assert measurements.approach == 0.0
+    assert measurements.approach_rate == 0.0
     measurements.add(blocks(-0.02), CURVE, 400)
-    assert measurements.approach == pytest.approx(0.02)
+    assert measurements.approach_rate == pytest.approx(0.02)
     measurements.add(blocks(0.04), CURVE, 600)
-    assert measurements.approach == 0.0
+    assert measurements.approach_rate == 0.0

@@ -12,7 +12,7 @@ from granchain_core import CurvePoint, iter_curve, scene
 from granchain_core.errors import Cancelled
 from granchain_core.integrate import Engine
 from granchain_core.steady.batch import job as batch_job
-from granchain_core.steady.batch.results import batch_results
+from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.settling import advance
 from granchain_core.stop import Stop
 

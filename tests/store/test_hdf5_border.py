@@ -20,6 +20,7 @@ from app.cli import main
 from granchain_core import BadInput
 from granchain_core.hdf5 import border, child, plain, seal
 from granchain_core.store import load
+from granchain_core.tables import MAXIMA
 from tools.damage.harms import FORGERIES, LEADING
 from tools.damage.kinds import KINDS, made, told
 
@@ -162,7 +163,6 @@ def test_a_size_is_bounded_before_memory_is_allocated(shape: tuple[int, ...], op
 
 
 @pytest.mark.parametrize(("change", "words"), [
-    (lambda f: f["run/velocity"].attrs.modify("units", "mm/s"), "in 'mm/s', expected 'm/s'"),
     (lambda f: f.move("run/velocity", "run/v"), "no /run/velocity"), (lambda f: f.attrs.modify("knob_f", 341.0), "knob_f is 341.0"),
     (lambda f: f.attrs.modify("status", "fine"), "status is 'fine', not one of 'done'"),
     (lambda f: f.attrs.modify("samples_per_period", 0), "whole number from 1"),
@@ -171,8 +171,39 @@ def test_a_size_is_bounded_before_memory_is_allocated(shape: tuple[int, ...], op
     (lambda f: f.attrs.modify("cost", '{"wall_s": 1, "steps": -1}'), "cost.steps is '-1', not a whole number from 0"),
     (lambda f: f.attrs.modify("regime", "[" * 30_000), "not JSON: it is nested too deeply"),
     (lambda f: f.attrs.modify("granchain_schema", 2), "schema is 2"), (lambda f: f.attrs.__setitem__("cost", np.zeros(3)), "not one value")])
-def test_kinds_units_and_values_are_checked(change: Callable[[h5py.File], Any], words: str, changed: Callable[..., Path]) -> None:
+def test_kinds_and_values_are_checked(change: Callable[[h5py.File], Any], words: str, changed: Callable[..., Path]) -> None:
     assert words in refused(load, changed("run", change))
+
+
+#: Datasets of each kind of file that have a dimension, with their units; those that a kind reads are all among them.
+DIMENSIONS = {
+    "run": {"run/time": "s", "run/displacement": "m", "run/velocity": "m/s", "run/force": "N",
+            "run/drive_displacement": "m", "run/jump_time": "s", "run/jump_force": "N"},
+    "start of orbit": {"run/displacement": "m", "run/velocity": "m/s"},
+    "force of a run": {"run/time": "s", "run/input_force": "N", "run/output_force": "N", "run/displacement": "m",
+                       "run/velocity": "m/s"},
+    "branch": {f"{group}/{name}": unit for group in ("branch", "special_before", "special_after")
+               for name, unit in {"knob": "Hz", **dict.fromkeys(MAXIMA, "N"), "state": "1"}.items()}
+              | dict.fromkeys(("special/knob", "special/knob_low", "special/knob_high"), "Hz"),
+    "curve": {"curve/frequency": "Hz", **{f"curve/{name}": "N" for name in MAXIMA}, "curve/error_estimate": "1",
+              "curve/decay": "1"},
+    "map": {"map/f": "Hz", "map/A0": "m", **{f"map/{name}": "N" for name in MAXIMA}, "map/lyapunov": "1"},
+    "observation": {"observation/time": "s", "observation/input_force": "N", "observation/output_force": "N",
+                    "observation/displacement": "m", "observation/velocity": "m/s"}}
+
+
+def test_every_kind_has_its_dimensions_here() -> None:
+    assert DIMENSIONS.keys() == KINDS.keys()
+
+
+@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, names in DIMENSIONS.items() for name in names])
+def test_another_unit_is_refused_and_none_is_taken_for_ours(kind: str, name: str, files: dict[str, tuple[Path, Path]],
+                                                            changed: Callable[..., Path]) -> None:
+    unit = DIMENSIONS[kind][name]
+    other = changed(kind, lambda file: file[name].attrs.modify("units", f"k{unit}"))
+    assert f"/{name} is in 'k{unit}', expected '{unit}'" in refused(KINDS[kind].read, other)
+    unnamed = changed(kind, lambda file: file[name].attrs.__delitem__("units"))
+    assert told(KINDS[kind].read(unnamed)) == told(KINDS[kind].read(files[kind][0]))
 
 
 # --- every error is a sentence ----------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _SECTION, _REGIME, _RECORDING = "kernels/strobes/periodicity.py", "steady/regime_criteria.py", "steady/settling/recording.py"
-_RUN, _STATED, _METHODS = "run/run.py", "integrate/stated.py", "integrate/methods.py"
+_RUN, _STATED, _METHODS = "run/to_accuracy.py", "integrate/stated.py", "integrate/methods.py"
 
 STEADY = (
     Mutant("change-taken-for-distance", _SECTION, "distance = recent * decay / (1.0 - decay)", "distance = recent",

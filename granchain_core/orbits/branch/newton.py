@@ -41,6 +41,8 @@ _SLOW_DECREASE = 0.4
 #: A step with its own derivative that does not lower the residual to this part of it fails: a shorter step along the
 #: branch is safer than a way that may lead to another branch (Deuflhard 2004, Newton Methods for Nonlinear Problems).
 _FAILED_DECREASE = 0.5
+#: A step with the derivative of the exact map that does not lower the residual to this part of it has met rounding.
+_STALLED_DECREASE = 0.3
 #: The exact map with its derivative is computed where its residual should be below this part of `RESIDUAL_GOAL`.
 _SAFETY = 0.3
 #: Most derivatives of the rough and of the exact map each.
@@ -98,7 +100,7 @@ class Newton:
         self.equations, self.start, self.normal, self.farthest = equations, z, normal, farthest
         self.z, self.residuals = z, list[float]()
         self.matrix, self.steps = np.empty(0), equations.quick_steps(z)
-        self._known: np.ndarray | None = None
+        self._quick_end_here: np.ndarray | None = None
 
     def solve_quick(self, near: Near) -> None:
         """Solve for the orbit of the quick map, up to the error of that map."""
@@ -117,8 +119,9 @@ class Newton:
 
     def solve_exact(self) -> Flow:
         """Solve for the orbit itself, from that of the quick map; returns the exact map with its derivative there."""
-        quick = self._quick_map() if self._known is None else self._known
+        quick = self._quick_end() if self._quick_end_here is None else self._quick_end_here
         end, ratio = self._exact_end(TOLERANCE), 1.0
+        self._record(end)
         defect = end - quick
         for _ in range(_MOST_CORRECTED_STEPS):
             before = self.residuals[-1]
@@ -127,14 +130,15 @@ class Newton:
             moved = self._checked_step(end)
             if before * ratio <= _SAFETY * RESIDUAL_GOAL:
                 break
-            end = self._quick_end(defect)
+            end = self._quick_end() + defect
+            self._record(end)
             ratio = self.residuals[-1] / before
             if not ratio <= _SLOW_DECREASE:
                 break
             self._broyden_update(end, moved)
         for number in range(_MOST_DERIVATIVES):
             flow = self.flow(TOLERANCE)
-            if self.residuals[-1] <= RESIDUAL_GOAL or (number and self.residuals[-1] > 0.3 * self.residuals[-2]):
+            if self.residuals[-1] <= RESIDUAL_GOAL or (number and self._stalled()):
                 break
             self.matrix = self.equations.matrix(flow.derivative, self.matrix[:-1, -1], self.normal)
             self._checked_step(flow.end)
@@ -153,7 +157,7 @@ class Newton:
         for _ in range(_MOST_STEPS):
             flow = self.flow(ROUGH_TOLERANCE if rough else TOLERANCE)
             residual = self.residuals[-1]
-            stalled = len(self.residuals) > 2 and residual > 0.3 * self.residuals[-2]
+            stalled = len(self.residuals) > 2 and self._stalled()
             if not rough and (residual <= RESIDUAL_GOAL or stalled):
                 break
             slope = self.equations.knob_slope(self.z, flow.end, TOLERANCE) if slope is None else slope
@@ -161,7 +165,7 @@ class Newton:
             self._checked_step(flow.end)
             if rough or residual > _LEAST_BEFORE_REUSE:
                 again = self._exact_end(TOLERANCE)
-                if self.residuals.pop() < _LARGEST_REUSE:
+                if self._residual(again) < _LARGEST_REUSE:
                     self._step(again)
             rough = False
         if not self.residuals[-1] <= ACCEPTED_RESIDUAL:
@@ -175,16 +179,16 @@ class Newton:
         """
         try:
             end = self._quick_end()
-            first = self.residuals[-1]
+            first = self._record(end)
             if first > _LARGEST_WITH_REUSED:
                 return False
             self.matrix = self.equations.matrix(near.derivative, near.slope, self.normal)
             found = first <= QUICK_RESIDUAL or self._steps_without_derivative(end)
             if not found and not self.residuals[-1] < first:
-                self.z, self._known = self.start, None
+                self.z, self._quick_end_here = self.start, None
             return found
         except NumbersFailed:
-            self.z, self._known = self.start, None
+            self.z, self._quick_end_here = self.start, None
             return False
 
     def _steps_without_derivative(self, end: np.ndarray) -> bool:
@@ -193,7 +197,7 @@ class Newton:
             before = self.residuals[-1]
             moved = self._checked_step(end)
             end = self._quick_end()
-            residual = self.residuals[-1]
+            residual = self._record(end)
             if residual > QUICK_RESIDUAL and not residual <= _SLOW_DECREASE * before:
                 return False
             self._broyden_update(end, moved)
@@ -216,29 +220,37 @@ class Newton:
     def _step(self, end: np.ndarray) -> np.ndarray:
         change = np.append(end - self.equations.state(self.z), (self.z - self.start) @ self.normal)
         moved = -np.linalg.solve(self.matrix, change)
-        self.z, self._known = self.z + moved, None
+        self.z, self._quick_end_here = self.z + moved, None
         return moved
 
     def _exact_end(self, tolerance: float) -> np.ndarray:
+        """Where the exact map leads from z."""
+        return self.equations.reused_map(self.equations.value(self.z), tolerance).end(self.equations.state(self.z))
+
+    def _quick_end(self) -> np.ndarray:
+        """Where the quick map leads from z; it is remembered until the next step."""
+        self._quick_end_here = self.equations.quick_end(self.equations.state(self.z), self.equations.value(self.z),
+                                                        self.steps)
+        return self._quick_end_here
+
+    def _residual(self, end: np.ndarray) -> float:
+        """Relative residual of z, from which a map leads to `end`."""
         x = self.equations.state(self.z)
-        return self._residual(x, self.equations.reused_map(self.equations.value(self.z), tolerance).end(x))
+        return relative_change(end - x, x)
 
-    def _quick_map(self) -> np.ndarray:
-        return self.equations.quick_end(self.equations.state(self.z), self.equations.value(self.z), self.steps)
+    def _record(self, end: np.ndarray) -> float:
+        """The same residual, added to `residuals`."""
+        self.residuals.append(self._residual(end))
+        return self.residuals[-1]
 
-    def _quick_end(self, defect: np.ndarray | float = 0.0) -> np.ndarray:
-        self._known = self._quick_map()
-        return self._residual(self.equations.state(self.z), self._known + defect)
-
-    def _residual(self, x: np.ndarray, end: np.ndarray) -> np.ndarray:
-        self.residuals.append(relative_change(end - x, x))
-        return end
+    def _stalled(self) -> bool:
+        """Whether the last step has lowered the residual too little."""
+        return self.residuals[-1] > _STALLED_DECREASE * self.residuals[-2]
 
     def flow(self, tolerance: float) -> Flow:
-        """The map at z with its derivative."""
-        x = self.equations.state(self.z)
-        flow = self.equations.reused_map(self.equations.value(self.z), tolerance)(x)
-        self.residuals.append(relative_change(flow.end - x, x))
+        """The map at z with its derivative; its residual is added to `residuals`."""
+        flow = self.equations.reused_map(self.equations.value(self.z), tolerance)(self.equations.state(self.z))
+        self._record(flow.end)
         return flow
 
     def _failure(self) -> NumbersFailed:

@@ -23,10 +23,10 @@ _TOLERANCE = 1e-11
 _ROUGH_TOLERANCE = 1e-9
 #: Room for turning points of overlaps at first, for each contact and period.
 _FIRST_ROOM = 32
-#: Count of the closings of a contact that is always open.
-_OPEN = 0
-#: The same of one that is always closed.
+#: Count of the closings of a contact that is always closed; it is 0 of one that is always open.
 _CLOSED = -1
+#: Columns of a turning point (`OrbitRecord`): contact, +1 for a largest and −1 for a smallest overlap, time, overlap.
+CONTACT, SENSE, TIME, OVERLAP = range(4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +87,7 @@ def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray
 
 
 def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
-    """The point without what a run along the orbit tells: its forces are NaN, and no contact closes."""
+    """The point without what a run along the orbit tells: its forces are NaN, its closings not counted."""
     multipliers = sorted_multipliers(solved.flow.derivative)
     return BranchPoint(
         knob=equations.value(solved.z), x=equations.state(solved.z), tangent=tangent, arclength=arclength,
@@ -144,7 +144,7 @@ def _counted_turns(contacts: int, turns: np.ndarray) -> np.ndarray:
     """Closings of every contact by its overlap's turning points alone, between which it passes zero once or never."""
     closings = np.zeros(contacts, dtype=int)
     for contact in range(contacts):
-        pressed = turns[turns[:, 0] == contact, 3] > 0.0
+        pressed = turns[turns[:, CONTACT] == contact, OVERLAP] > 0.0
         closings[contact] = np.sum(pressed & ~np.roll(pressed, 1))
         if len(pressed) and pressed.all():
             closings[contact] = _CLOSED
@@ -158,7 +158,7 @@ def _counts(contacts: int, record: OrbitRecord, changes: np.ndarray) -> np.ndarr
     if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):
         raise NumbersFailed("A contact closed more often than it opened along a closed orbit.", "contacts")
     for contact in np.flatnonzero(closings == 0):
-        overlaps = record.turns[record.turns[:, 0] == contact, 3]
+        overlaps = record.turns[record.turns[:, CONTACT] == contact, OVERLAP]
         if len(overlaps) and overlaps.max() > 0.0:
             closings[contact] = _CLOSED
     return closings

@@ -20,15 +20,15 @@ import numpy as np
 from ...errors import NumbersFailed
 from .axis import KnobAxis
 from .between import Between
-from .point import BranchPoint
+from .point import CONTACT, OVERLAP, SENSE, TIME, BranchPoint
 
 #: Where stability changes, and all kinds of special points; results, files and JSON spell them so.
 BIFURCATIONS = ("fold", "period_doubling", "neimark_sacker")
 SPECIAL_KINDS = (*BIFURCATIONS, "grazing")
 #: An interval is narrow enough at this width relative to the knob, or to a thousandth of the range's larger end.
 RELATIVE_WIDTH = 1e-5
-#: The tangents at both ends of a bracket meet within this factor times its length, because the branch turns by at most
-#: 30° in a step (walk.py).
+#: The tangents at both ends of a bracket meet within this factor times its length: in a plane within once the length
+#: where the branch turns by less than 90°, and it turns by at most 30° in a step (`LEAST_COSINE` in steps.py).
 _TANGENT_REACH = 1.25
 #: Offset of the next orbit from the root of the straight line through the test function, as a fraction of the bracket.
 _OFFSET_FROM_ROOT = 0.02
@@ -175,25 +175,36 @@ def _test_values(a: BranchPoint, b: BranchPoint) -> tuple[float, float] | None:
 
 def _turning_values(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float, float] | None:
     """The overlap at the turning point that passes zero, at a and at b; None if it is not found in both."""
-    more, less = (a, b) if _changes(a, contact) > _changes(b, contact) else (b, a)
-    candidates = _turns(more, contact)
-    candidates = candidates[candidates[:, 1] * candidates[:, 3] > 0.0]
-    if not len(candidates):
+    more, fewer = (a, b) if _closings(a, contact) > _closings(b, contact) else (b, a)
+    nearest = _slightest_crossing(more, contact)
+    if nearest is None:
         return None
-    mine = candidates[np.argmin(np.abs(candidates[:, 3]))]
-    others = _turns(less, contact)
-    others = others[(others[:, 1] == mine[1]) & (others[:, 3] * mine[3] < 0.0)]
-    if not len(others):
+    turns = _turns(fewer, contact)
+    uncrossed = turns[(turns[:, SENSE] == nearest[SENSE]) & (turns[:, OVERLAP] * nearest[OVERLAP] < 0.0)]
+    if not len(uncrossed):
         return None
-    other = others[np.argmin(np.abs(others[:, 2] - mine[2]))]
-    return (float(mine[3]), float(other[3])) if more is a else (float(other[3]), float(mine[3]))
+    partner = uncrossed[np.argmin(np.abs(uncrossed[:, TIME] - nearest[TIME]))]
+    values = float(nearest[OVERLAP]), float(partner[OVERLAP])
+    return values if more is a else values[::-1]
+
+
+def _slightest_crossing(point: BranchPoint, contact: int) -> np.ndarray | None:
+    """The turning point nearest to zero on the side it turns to: a maximum of the overlap above it, or a minimum below.
+
+    Before and after such a turning point the contact closes and opens. None if there is none.
+    """
+    turns = _turns(point, contact)
+    crossed = turns[turns[:, SENSE] * turns[:, OVERLAP] > 0.0]
+    return crossed[np.argmin(np.abs(crossed[:, OVERLAP]))] if len(crossed) else None
 
 
 def _turns(point: BranchPoint, contact: int) -> np.ndarray:
-    return point.turns[point.turns[:, 0] == contact]
+    """The turning points of one contact's overlap, rows of `BranchPoint.turns`."""
+    return point.turns[point.turns[:, CONTACT] == contact]
 
 
-def _changes(point: BranchPoint, contact: int) -> int:
+def _closings(point: BranchPoint, contact: int) -> int:
+    """How often a contact closes along the orbit."""
     return max(0, int(point.closings[contact]))
 
 
@@ -226,13 +237,12 @@ def _passing(a: BranchPoint, b: BranchPoint) -> list[complex]:
 
 def _event(a: BranchPoint, b: BranchPoint, contact: int) -> str:
     """"touch" where a contact's closed piece appears or vanishes, "separation" where an open piece does."""
-    more = a if _changes(a, contact) > _changes(b, contact) else b
-    fewer = b if more is a else a
-    if _changes(fewer, contact) == 0:
+    more, fewer = (a, b) if _closings(a, contact) > _closings(b, contact) else (b, a)
+    if _closings(fewer, contact) == 0:
         return "separation" if fewer.closings[contact] < 0 else "touch"
-    turns = _turns(more, contact)
-    turns = turns[turns[:, 1] * turns[:, 3] > 0.0]
-    return "touch" if turns[np.argmin(np.abs(turns[:, 3])), 1] > 0.0 else "separation"
+    nearest = _slightest_crossing(more, contact)
+    assert nearest is not None
+    return "touch" if nearest[SENSE] > 0.0 else "separation"
 
 
 def _merged(found: list[SpecialPoint]) -> list[SpecialPoint]:

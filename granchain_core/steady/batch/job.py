@@ -42,17 +42,35 @@ class Start:
 
 
 @dataclass(eq=False)
-class Job:
-    """A scene that is being settled, from the scaled state y at phase 0, `run` periods after its start.
+class BatchJob:
+    """A scene that is being settled, in a member of a batch or waiting for one.
 
-    `coarse` holds regime and forces of the coarse run while the finer one runs. A job whose Lyapunov exponent is
-    measured (`measuring`) carries its record, its forces [N] and the measurements so far.
+    Attributes
+    ----------
+    scene, scaled : Scene, ScaledChain
+        The scene, and its chain in scaled quantities.
+    y : np.ndarray
+        Scaled state (2(N+2),) at phase 0 from which it goes on.
+    periods_run : int
+        Drive periods from its start to `y`.
+    coarse : tuple of (Regime, np.ndarray) or None
+        What the coarse run found, regime and scaled largest forces (3,), once the finer run is due.
+    measuring : bool
+        Whether its Lyapunov exponent is to be measured, or is being measured.
+    record : np.ndarray
+        Its last strobes (P, 2, N), scaled, from the time when it was first to be measured.
+    maxima : np.ndarray
+        Largest forces (3,) [N] of a job that is measured.
+    measurements : ExponentMeasurements
+        Measurements so far.
+    number : int
+        Number of its `Start`.
     """
 
     scene: Scene
     scaled: ScaledChain
     y: np.ndarray
-    run: int = 0
+    periods_run: int = 0
     coarse: tuple[Regime, np.ndarray] | None = None
     measuring: bool = False
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
@@ -73,7 +91,7 @@ class Job:
     @property
     def affordable(self) -> bool:
         """Whether the budget of steps allows another measurement."""
-        return self.run + EXAMINED_AFTER < self.affordable_periods
+        return self.periods_run + EXAMINED_AFTER < self.affordable_periods
 
     def fine_result(self, batch: Batch, member: int) -> SteadyState:
         """The result of the finer run. Raises `Cancelled`."""
@@ -112,60 +130,61 @@ class Job:
         return finer.largest_forces(regime.period), errors_between(finer, first, regime.contraction, distance)
 
 
-def draft_result(job: Job, batch: Batch, member: int) -> SteadyState:
+def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
     """The result of the coarse run alone."""
-    run = int(batch.state.periods[member])
+    periods_run = int(batch.state.periods[member])
     period = batch.state.last_check[member, CHECK_PERIOD]
     if period <= 0:
-        return unsettled(job, batch, member, run)
-    regime = _periodic(batch, member, run)
+        return unsettled(job, batch, member, periods_run)
+    regime = _periodic(batch, member, periods_run)
     maxima = batch.settled_maxima(member, int(period)) * job.scaled.scales.force
     state = job.scaled.to_si(batch.state.y[:, member])
     return SteadyState(job.scene, maxima, regime, None, state, number=job.number)
 
 
-def outcome_of_coarse_run(job: Job, batch: Batch, member: int) -> SteadyState | Job | None:
+def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadyState | BatchJob | None:
     """The job for the finer run or the Lyapunov exponent, the end of its budget, or None where the member goes on."""
     here = int(batch.state.periods[member])
-    run = job.run + here
+    periods_run = job.periods_run + here
     period = batch.state.last_check[member, CHECK_PERIOD]
     if period > 0:
-        regime = _periodic(batch, member, run)
+        regime = _periodic(batch, member, periods_run)
         settled = (regime, batch.settled_maxima(member, int(period)))
-        return Job(job.scene, job.scaled, batch.state.y[:, member].copy(), run, settled, number=job.number)
-    if run >= job.affordable_periods:
-        return unsettled(job, batch, member, run)
+        return BatchJob(job.scene, job.scaled, batch.state.y[:, member].copy(), periods_run, settled, number=job.number)
+    if periods_run >= job.affordable_periods:
+        return unsettled(job, batch, member, periods_run)
     record = batch.strobes(member)
-    if run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
-        return _to_measure(job, batch, member, run, record.copy())
+    if periods_run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
+        return _to_measure(job, batch, member, periods_run, record.copy())
     batch.state.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
-                                 job.affordable_periods - job.run)
+                                 job.affordable_periods - job.periods_run)
     return None
 
 
-def _periodic(batch: Batch, member: int, run: int) -> Regime:
+def _periodic(batch: Batch, member: int, periods_run: int) -> Regime:
     """The periodic regime of a coarse member; `followed` where extrapolations led to it."""
     period, decay, distance = batch.state.last_check[member]
-    return Regime("periodic", int(period), float(decay) if decay >= 0.0 else None, float(distance), run,
-                  followed=bool(batch.state.slowest[member] > 0.0))
+    return Regime(name="periodic", period=int(period), decay=float(decay) if decay >= 0.0 else None,
+                  distance=float(distance), periods_run=periods_run, followed=bool(batch.state.slowest[member] > 0.0))
 
 
-def _to_measure(job: Job, batch: Batch, member: int, run: int, record: np.ndarray) -> Job:
+def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:
     """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
-    return Job(job.scene, job.scaled, y, run, measuring=True, record=record, maxima=maxima, number=job.number)
+    return BatchJob(job.scene, job.scaled, y, periods_run, measuring=True, record=record, maxima=maxima,
+                    number=job.number)
 
 
-def unsettled(job: Job, batch: Batch, member: int, run: int) -> SteadyState:
+def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> SteadyState:
     """The result of a member whose budget of steps is spent."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     state = job.scaled.to_si(batch.state.y[:, member])
-    return SteadyState(job.scene, maxima, Regime.unsettled(run), None, state,
+    return SteadyState(job.scene, maxima, Regime.unsettled(periods_run), None, state,
                       number=job.number)
 
 
-def failed(job: Job) -> SteadyState:
+def failed(job: BatchJob) -> SteadyState:
     """A member whose numbers stopped being finite."""
     sentence = (f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping, or compute this frequency "
                 f"alone: granchain run SCENE --set f={job.scene.f:g}.")

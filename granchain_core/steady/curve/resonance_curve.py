@@ -16,9 +16,9 @@ from ...scene import Amplitude, Scene
 from ...scene.driven import refuse_undriven
 from ...scheduler import dealt, results
 from ...stop import Stop
-from ..batch.results import batch_results
+from ..batch.engine import batch_results
 from ..batch.threads import on_all_cores
-from ..settling.single_chain import safe_state, settled_alone
+from ..settling.single_chain import settle_or_failure, settled_alone
 from .curve import Curve, CurvePoint
 from .order import used_and_missing
 
@@ -104,7 +104,7 @@ def _carried(scenes: list[Scene], before: CurvePoint | None, stop: Stop | None) 
         if stop:
             return
         try:
-            found = safe_state(one, state, stop)
+            found = settle_or_failure(one, state, stop)
         except Cancelled:
             return
         state = found.state if not found.failure else None
@@ -128,7 +128,7 @@ def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
             yield CurvePoint.of(settled_alone(found, ended) if found.undecided else found)
         return
     for one in rest_of_them:
-        yield CurvePoint.of(safe_state(one, None, ended))
+        yield CurvePoint.of(settle_or_failure(one, None, ended))
 
 
 def _scheduled(scheduler: Any, scenes: list[Scene], stop: Stop | None) -> Iterator[CurvePoint]:

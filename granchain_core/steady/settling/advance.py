@@ -23,19 +23,19 @@ from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
 #: Most steps of the fixed-step method while settling: 6 s for eleven beads, at 60 ns a step.
 MOST_SETTLING_STEPS = 100_000_000
-#: Drive periods until the motion is first looked at for a period.
-_FIRST_LOOK = 2
-#: Fewest drive periods between two looks; later an eighth of those that were run.
-_BETWEEN_LOOKS = 8
+#: Drive periods until the motion is first checked for a period.
+_FIRST_CHECK = 2
+#: Fewest drive periods between two checks; later an eighth of those that were run.
+_BETWEEN_CHECKS = 8
 
 
-class Settling:
+class SettlingRun:
     """Runs a chain by the fixed-step method towards its steady state, chunk by chunk, until the regime is decided.
 
-    `run` is the number of drive periods after which `start` was reached: they count as run.
+    `periods_run` is the number of drive periods after which `start` was reached: they count as run.
     """
 
-    def __init__(self, scene: Scene, start: State | None, stop: Stop | None, run: int = 0) -> None:
+    def __init__(self, scene: Scene, start: State | None, stop: Stop | None, periods_run: int = 0) -> None:
         refuse_undriven(scene)
         self.scene = scene
         self.engine = Engine(scene, fixed_step_setting(), 1, stop=stop)
@@ -43,35 +43,35 @@ class Settling:
         self.engine.start(start if start is not None else rest(scene))
         self._steps = self.engine.grid
         self.maxima = np.zeros((0, 3))
-        self._begin(run)
+        self._begin(periods_run)
         self.decisions = Decisions(self.scene, start is not None)
         self.decided = False
 
-    def _begin(self, run: int) -> None:
-        """A new record of strobes from where the engine is, after `run` periods; `_here` counts its periods."""
+    def _begin(self, periods_run: int) -> None:
+        """A new record of strobes from where the engine is, after `periods_run` periods; `_here` counts its own."""
         first, scales = self.engine.state, self.engine.scaled.scales
         self.strobes = np.array([[first.displacement / scales.length, first.velocity / scales.velocity]])
-        self._run, self._here, self._stop_at = run, 0, EXAMINED_AFTER
-        self._look_at = _FIRST_LOOK
-        self.regime = Regime.unsettled(run)
+        self._run_before, self._here, self._stop_at = periods_run, 0, EXAMINED_AFTER
+        self._check_at = _FIRST_CHECK
+        self.regime = Regime.unsettled(periods_run)
 
     def go_on(self, seconds: float) -> None:
         """Run until the regime is decided, the budget is spent, or about `seconds` have passed."""
         end = time.perf_counter() + seconds
-        while not self.decided and self.run(end - time.perf_counter()):
+        while not self.decided and self.advance_for(end - time.perf_counter()):
             self._decide()
             if time.perf_counter() > end:
                 return
 
-    def run(self, seconds: float) -> bool:
+    def advance_for(self, seconds: float) -> bool:
         """Run until a decision is due, which may need other kernels, or for `seconds`; returns whether one is due."""
         end, per_period = time.perf_counter() + seconds, 0.0
         while not self._finished:
             left = end - time.perf_counter()
             if per_period and left < per_period:
                 return False
-            chunk = _FIRST_LOOK if per_period == 0.0 else max(1, int(min(left / per_period, MOST_SETTLING_STEPS)))
-            chunk = min(chunk, self._look_at - self._here, self._stop_at - self._here,
+            chunk = _FIRST_CHECK if per_period == 0.0 else max(1, int(min(left / per_period, MOST_SETTLING_STEPS)))
+            chunk = min(chunk, self._check_at - self._here, self._stop_at - self._here,
                         max(1, self._steps_left() // self._steps))
             began = time.perf_counter()
             strobes, maxima = self.engine.periods(chunk)
@@ -81,17 +81,17 @@ class Settling:
         return True
 
     def _note(self, strobes: np.ndarray) -> None:
-        """Add strobes to the record, of which only the last are kept, and look for a period when it is time for that.
+        """Add strobes to the record, of which only the last are kept, and check for a period when it is time for that.
 
-        An eighth of the periods so far are run between two looks, so that they cost little. When they come depends on
+        An eighth of the periods so far are run between two checks, so that they cost little. When they come depends on
         the motion alone, and not on how long a chunk of periods takes on this machine.
         """
         self._here += len(strobes)
         self.strobes = np.concatenate([self.strobes[-REMEMBERED:], strobes])
-        if self._here >= min(self._look_at, self._stop_at):
-            self._look_at = self._here + max(_BETWEEN_LOOKS, self._here // 8)
+        if self._here >= min(self._check_at, self._stop_at):
+            self._check_at = self._here + max(_BETWEEN_CHECKS, self._here // 8)
             self.regime = find_period(self.strobes[-REMEMBERED:])
-        self.regime = replace(self.regime, periods_run=self._run + self._here)
+        self.regime = replace(self.regime, periods_run=self._run_before + self._here)
 
     def _steps_left(self) -> int:
         return MOST_SETTLING_STEPS - self.engine.counts.steps
@@ -115,15 +115,15 @@ class Settling:
         if found.regime is not None:
             self.regime, self.decided = found.regime, True
         elif found.state is not None:
-            self._begin(self._run + self._here)
+            self._begin(self._run_before + self._here)
         else:
             if found.strobes is not None:
                 self._note(found.strobes)
             self._stop_at = self._here + EXAMINED_AFTER
 
 
-def run_until_settled(scene: Scene, start: State | None, stop: Stop | None, run: int = 0) -> Settling:
-    """Run to the end of the budget or to the steady state, without pictures; `run` periods came before the start."""
-    settling = Settling(scene, start, stop, run)
+def run_until_settled(scene: Scene, start: State | None, stop: Stop | None, periods_run: int = 0) -> SettlingRun:
+    """Run to the end of the budget or to the steady state, without pictures; `periods_run` came before the start."""
+    settling = SettlingRun(scene, start, stop, periods_run)
     settling.go_on(np.inf)
     return settling

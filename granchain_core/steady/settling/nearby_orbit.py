@@ -47,7 +47,8 @@ _MOST_ORBITS = 3000
 _OBSERVED_PART = 0.3
 #: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
 _COMPARED_ORBITS = 16
-#: Directions whose |μ| is below this, or below this part of the largest, have decayed after those orbits.
+#: Directions whose |μ| is below this, or below this part of the largest, have decayed within
+#: `_COMPARED_ORBITS` orbits.
 _SLOW_DIRECTION = 0.3
 #: Length to which a departure is enlarged along the growing directions, relative to the motion.
 _ENLARGED_LENGTH = 3e-3
@@ -81,32 +82,32 @@ class NearbyOrbit:
         return self.modulus > 1.0 + UNSURE
 
     @property
-    def away(self) -> float:
+    def distance_of_motion(self) -> float:
         """How far the motion is from the orbit, relative to the largest displacement and w."""
         return float(np.abs((self.x - self.point.x) / sizes(self.point.x)).max())
 
     @property
-    def distance(self) -> float:
+    def orbit_error(self) -> float:
         """How far the orbit found may be from the map's own: its residual over 1 − |μ|."""
         return self.point.residual / max(UNSURE, 1.0 - self.modulus)
 
     def approached(self) -> bool:
         """Whether the motion goes to this orbit: from where it is and from all shorter distances it comes nearer."""
-        if not self.stable or self.away > NEAR_AN_ORBIT:
+        if not self.stable or self.distance_of_motion > NEAR_AN_ORBIT:
             return False
         rows = _slow_coordinates(self.point.derivative, max(_SLOW_DIRECTION, _SLOW_DIRECTION * self.modulus))
         orbits = min(_MOST_ORBITS, int(_PREDICTED_PART / (1.0 - self.modulus)))
         left = 1.0 - _OBSERVED_PART * (1.0 - self.modulus ** (orbits + _COMPARED_ORBITS))
         offset = self.x - self.point.x
         while True:
-            before, after = self._lengths(rows, offset, orbits)
+            before, after = self._largest_lengths(rows, offset, orbits)
             if not after <= left * before:
                 return False
             offset = offset * _DISTANCE_FACTOR
             if float(np.abs(offset / sizes(self.point.x)).max()) < _SMALLEST_DISTANCE:
                 return True
 
-    def _lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
+    def _largest_lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
         """Largest lengths of an offset from the orbit, now and after `orbits` orbits; infinite if the map fails."""
         try:
             passed = self.stroboscopic_map.passed(self.point.x + offset, _COMPARED_ORBITS, orbits)
@@ -182,5 +183,5 @@ def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) 
              1 + int(np.argmin(moved))}
     for n in sorted(tried):
         found = orbit_of(scene, n, x, stop)
-        if found is not None and found.away <= NEAR_AN_ORBIT:
+        if found is not None and found.distance_of_motion <= NEAR_AN_ORBIT:
             yield found

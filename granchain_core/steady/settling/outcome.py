@@ -16,7 +16,7 @@ from ...tables.words import state_columns
 
 @dataclass(frozen=True, eq=False)
 class Settled(Labelled):
-    """A steady state, or the motion when settling ended.
+    """A settled chain as a recorded motion, or its motion so far; `SteadyState` is the same without the record.
 
     Attributes
     ----------

@@ -13,7 +13,7 @@ from ...integrate import Engine
 from ...integrate.stated import relative_difference
 from ...result import Cost, run_from
 from ..orbit_errors import errors_between
-from .advance import Settling
+from .advance import SettlingRun
 from .outcome import Settled
 from .refine_orbit import refined_orbit
 
@@ -21,7 +21,7 @@ from .refine_orbit import refined_orbit
 _PERIODS_SHOWN = 4
 
 
-def motion_so_far(motion: Settling, samples: int, began: float, origin: str, final: bool) -> Settled:
+def motion_so_far(motion: SettlingRun, samples: int, began: float, origin: str, final: bool) -> Settled:
     """The present motion by fixed steps, over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
     state = motion.engine.state
@@ -34,7 +34,7 @@ def motion_so_far(motion: Settling, samples: int, began: float, origin: str, fin
     return Settled(run, motion.regime, state, preview=not final, final=final)
 
 
-def recorded_orbit(motion: Settling, samples: int, began: float, origin: str) -> Settled:
+def recorded_orbit(motion: SettlingRun, samples: int, began: float, origin: str) -> Settled:
     """The periodic orbit by the finer method, with its error: integration plus distance from the orbit.
 
     An error e of the n-period map moves its fixed point by e/(1 − |μ|).

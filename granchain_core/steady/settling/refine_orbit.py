@@ -9,7 +9,7 @@ from ...kernels.strobes.extrapolation import ORBITS
 from ...scene import Scene
 from ...state import State
 from ..regime_criteria import changes
-from .advance import Settling
+from .advance import SettlingRun
 from .reduced_rank import reduced_rank, within_reach
 
 #: Part of the error asked for that the integration over an orbit may have, at the first try.
@@ -36,7 +36,7 @@ def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> Setting:
     return method_for(max(_LEAST_ERROR, one_period), scene.cuts_tension)
 
 
-def refined_orbit(settling: Settling, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
+def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
     """The finer method on its own orbit, and the bound on the distance left.
 
     The orbit of the fixed-step method differs from the true one by its error; a few more periods remove it. With r the

@@ -63,11 +63,11 @@ class Decisions:
         if regime.name == "periodic":
             return self._confirmed(engine, strobes, regime)
         if self.scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
-            for orbit in orbits_beside(self.scene, strobes, scaled(engine), engine.stop):
+            for orbit in orbits_beside(self.scene, strobes, _state_of(engine), engine.stop):
                 found = self._beside(orbit, regime)
                 if found is not None:
                     return found
-        leaves = self._leaves and self._measurements.approach == 0.0
+        leaves = self._leaves and self._measurements.approach_rate == 0.0
         if regime.periods_run >= MOST_PERIODS * (_DEPARTURE_FACTOR if leaves else 1):
             return Decision(regime)
         if converging(strobes) or departing(strobes):
@@ -87,10 +87,10 @@ class Decisions:
         unconfirmed = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
         if (MOST_BEADS_WITH_MULTIPLIERS if unconfirmed else _CONFIRMED_BEADS) < self.scene.N:
             return Decision(regime)
-        seen = seen_modulus(self.scene, regime.period, scaled(engine), engine.stop, refine=4.0)
+        seen = seen_modulus(self.scene, regime.period, _state_of(engine), engine.stop, refine=4.0)
         if seen <= _CLEAR_MULTIPLIER and not _may_repeat_sooner(strobes, regime.period):
             return Decision(replace(regime, multiplier=seen))
-        orbit = orbit_of(self.scene, regime.period, scaled(engine), engine.stop)
+        orbit = orbit_of(self.scene, regime.period, _state_of(engine), engine.stop)
         if orbit is None:
             return Decision(replace(regime, name="unsettled", period=None, distance=None) if unconfirmed else regime)
         if orbit.stable:
@@ -105,7 +105,7 @@ class Decisions:
         """The decision by an orbit near the motion, if it allows one."""
         if orbit.approached():
             return Decision(replace(regime, name="periodic", period=orbit.period, multiplier=orbit.modulus, decay=None,
-                                    distance=orbit.distance, followed=True, approaches=None), orbit.point.x)
+                                    distance=orbit.orbit_error, followed=True, approaches=None), orbit.point.x)
         self._leaves = self._leaves or orbit.unstable
         if not orbit.unstable or self._departures >= _MOST_DEPARTURES:
             return None
@@ -136,12 +136,12 @@ def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regim
     if regime.period is not None:
         if (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
             return regime
-        orbit = orbit_of(scene, regime.period, scaled(engine), stop)
+        orbit = orbit_of(scene, regime.period, _state_of(engine), stop)
         if orbit is None or not orbit.stable:
             return Regime.unsettled(regime.periods_run)
         return replace(regime, period=orbit.period, multiplier=orbit.modulus)
     if scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
-        for orbit in orbits_beside(scene, strobes, scaled(engine), stop):
+        for orbit in orbits_beside(scene, strobes, _state_of(engine), stop):
             if orbit.approached():
                 return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)
             if orbit.unstable and orbit.amplified_departure() is not None:
@@ -176,6 +176,6 @@ def _classified_by_exponent(engine: Engine, strobes: np.ndarray, regime: Regime)
     return replace(measurements.latest, name="unsettled")
 
 
-def scaled(engine: Engine) -> np.ndarray:
+def _state_of(engine: Engine) -> np.ndarray:
     """The engine's state (2N,) of displacements, then w."""
     return engine.scaled.beads_of(engine.y)

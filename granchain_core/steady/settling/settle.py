@@ -9,7 +9,7 @@ from ...result import start_words
 from ...scene import Scene
 from ...state import State
 from ...stop import Stop
-from .advance import Settling, run_until_settled
+from .advance import SettlingRun, run_until_settled
 from .outcome import Settled
 from .recording import motion_so_far, recorded_orbit
 from .undriven import undriven_motion
@@ -58,8 +58,8 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
         yield undriven_motion(scene, start, samples, began, stop)
         return
     origin = start_words(scene, start)
-    motion = Settling(scene, start, stop)
-    motion.run(_PREVIEW_AFTER)
+    motion = SettlingRun(scene, start, stop)
+    motion.advance_for(_PREVIEW_AFTER)
     while not motion.decided:
         yield motion_so_far(motion, samples, began, origin, final=False)
         motion.go_on(0.1)

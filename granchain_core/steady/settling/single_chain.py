@@ -16,7 +16,7 @@ from ...state import State
 from ...stop import Stop
 from ..orbit_errors import errors_between
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
-from .advance import Settling, run_until_settled
+from .advance import SettlingRun, run_until_settled
 from .refine_orbit import refined_orbit
 
 #: Points of curves and maps that are settled alone are computed to this relative accuracy at best, even if the scene
@@ -30,16 +30,19 @@ def settling_methods(scene: Scene, each: str) -> str:
     return f"rk4 in batches, {alone}" if can_share_batch(scene) else alone
 
 
-def steady_state(scene: Scene, start: State | None, stop: Stop, run: int = 0) -> SteadyState:
-    """The steady state of `scene` from rest or from `start`, `run` periods later, refined where it is periodic."""
-    settling = run_until_settled(scene, start, stop, run)
+def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
+    """The steady state of `scene` from rest or from `start`, refined where it is periodic.
+
+    `periods_run` drive periods came before `start`.
+    """
+    settling = run_until_settled(scene, start, stop, periods_run)
     if settling.regime.name == "periodic":
         return _on_its_orbit(settling)
     maxima = settling.maxima[-IRREGULAR_PERIODS:].max(axis=0) * settling.engine.scaled.scales.force
     return SteadyState(scene, maxima, settling.regime, None, settling.engine.state)
 
 
-def _on_its_orbit(settling: Settling) -> SteadyState:
+def _on_its_orbit(settling: SettlingRun) -> SteadyState:
     """Largest forces on the refined orbit, and their errors from a finer computation of it."""
     engine, distance = refined_orbit(settling, max(settling.scene.accuracy, CURVE_ACCURACY))
     n = settling.regime.period
@@ -52,10 +55,10 @@ def _on_its_orbit(settling: Settling) -> SteadyState:
     return SteadyState(settling.scene, maxima * finer.scaled.scales.force, settling.regime, errors, finer.state)
 
 
-def safe_state(scene: Scene, start: State | None, stop: Stop, run: int = 0) -> SteadyState:
+def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
     """A steady state, or one that says why there is none: one failed frequency does not lose a curve."""
     try:
-        return steady_state(scene, start, stop, run)
+        return settle_to_forces(scene, start, stop, periods_run)
     except NumbersFailed as failed:
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
         return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(0), None, start or resting, failed.sentence,
@@ -64,5 +67,5 @@ def safe_state(scene: Scene, start: State | None, stop: Stop, run: int = 0) -> S
 
 def settled_alone(undecided: SteadyState, stop: Stop) -> SteadyState:
     """The steady state of a chain that a batch left undecided, settled alone from its last state."""
-    found = safe_state(undecided.scene, undecided.state, stop, undecided.regime.periods_run)
+    found = settle_or_failure(undecided.scene, undecided.state, stop, undecided.regime.periods_run)
     return replace(found, number=undecided.number)

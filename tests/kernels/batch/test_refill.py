@@ -12,7 +12,7 @@ from granchain_core import Scene, scene
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.kernels.width import BATCH_SIZE
 from granchain_core.scaling import scale_chain
-from granchain_core.steady.batch.results import batch_results
+from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 
@@ -40,7 +40,7 @@ Found = dict[int, list[np.ndarray]]
 
 def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
     """Strobes, largest forces and jumps of each scene; a member that has ended makes room for the next, as in
-    steady/batch/results.py."""
+    steady/batch/engine.py."""
     waiting, batch = iter(numbers), Batch(scenes[numbers[0]], Stop())
     found: Found = {}
     held: dict[int, int] = {}

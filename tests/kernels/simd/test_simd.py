@@ -14,9 +14,9 @@ from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.kernels.rk4.short_chain import WIDTHS
 from granchain_core.scaling import scale_chain
 from granchain_core.state import rest
-from granchain_core.steady.batch.results import batch_results
+from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.curve.curve import CurvePoint
-from granchain_core.steady.settling.single_chain import steady_state
+from granchain_core.steady.settling.single_chain import settle_to_forces
 from granchain_core.stop import Stop
 
 _BOTH = {"kappa": 0.001, "F0": 0.5}
@@ -77,7 +77,7 @@ def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) 
 def test_a_curve_in_batches_is_what_each_frequency_gives_by_itself() -> None:
     frequencies = np.array([340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0])
     for point in iter_curve(scene("sec2"), frequencies):
-        alone = CurvePoint.of(steady_state(scene("sec2").evolve(f=point.frequency), None, Stop()))
+        alone = CurvePoint.of(settle_to_forces(scene("sec2").evolve(f=point.frequency), None, Stop()))
         assert point.regime.period == alone.regime.period
         assert point.force_errors.output is not None and alone.force_errors.output is not None
         allowed = point.force_errors.output + alone.force_errors.output

@@ -35,7 +35,7 @@ from ..regime_criteria import find_period
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, is_almost_periodic, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
-from .job import FINER, Job, Start, draft_result, failed, outcome_of_coarse_run
+from .job import FINER, BatchJob, Start, draft_result, failed, outcome_of_coarse_run
 
 #: Periods after which a draft gives up.
 _DRAFT_PERIODS = 300
@@ -46,21 +46,43 @@ _LARGEST_SURE_MULTIPLIER = 0.995
 
 
 class _JobsInBatch:
-    """A batch with the jobs of its members, those that wait for a lane, and those that wait for two to be measured."""
+    """A batch and the jobs in it.
+
+    Attributes
+    ----------
+    batch : Batch
+        The lanes, each with a member or empty.
+    draft, stop : bool, Stop
+        Whether only coarse runs are wanted, and what ends all of them.
+    example : ScaledChain
+        The chain of the start taken last, from which the next one is scaled.
+    rest_state : np.ndarray
+        Scaled state of rest, the same for scenes that differ by their frequency alone.
+    starts : iterator of Start
+        Those not taken yet.
+    jobs : dict of int to BatchJob
+        Jobs by the lane of their member.
+    shadows : dict of int to int
+        Lane of the neighbouring trajectory by that of the member whose exponent is measured.
+    waiting, to_measure : list of BatchJob
+        Jobs that wait for a lane, and those that wait for two.
+    free, newly_free : list of int, set of int
+        Free lanes, and those of them that were not free when the batch last ran.
+    """
 
     def __init__(self, first: Start, starts: Iterator[Start], stop: Stop, draft: bool) -> None:
         self.batch = Batch(first.scene, stop)
         self.draft = draft
         self.stop = stop
-        self.latest = self.batch.example
-        self.resting = self.latest.from_si(rest(first.scene))  # the same for scenes that differ by their frequency
+        self.example = self.batch.example
+        self.rest_state = self.example.from_si(rest(first.scene))
         self.starts = itertools.chain([first], starts)
-        self.waiting: list[Job] = []
-        self.jobs: dict[int, Job] = {}
+        self.waiting: list[BatchJob] = []
+        self.jobs: dict[int, BatchJob] = {}
         self.free = list(reversed(range(BATCH_SIZE)))
-        self.left = set[int]()  # lanes that are free since the batch last ran
+        self.newly_free = set[int]()
         self.shadows: dict[int, int] = {}
-        self.to_measure: list[Job] = []
+        self.to_measure: list[BatchJob] = []
 
     def fill(self) -> None:
         """Put jobs into the free lanes. One to be measured takes two: a single free lane waits for another."""
@@ -72,22 +94,22 @@ class _JobsInBatch:
             member = self.free.pop()
             self.jobs[member] = job
             self._start(member, job)
-        for member in self.left & set(self.free):
+        for member in self.newly_free & set(self.free):
             self.batch.empty(member)
-        self.left.clear()
+        self.newly_free.clear()
 
-    def _next_job(self) -> Job | None:
+    def _next_job(self) -> BatchJob | None:
         """The job of the next start, if there is one."""
         start = next(self.starts, None)
         if start is None:
             return None
-        before, self.latest = self.latest, scale_like(self.latest, start.scene)
-        if self.latest.slots.chain is not before.slots.chain:
-            self.resting = self.latest.from_si(rest(start.scene))
-        y = self.resting if start.state is None else self.latest.from_si(start.state)
-        return Job(start.scene, self.latest, y, number=start.number)
+        before, self.example = self.example, scale_like(self.example, start.scene)
+        if self.example.slots.chain is not before.slots.chain:
+            self.rest_state = self.example.from_si(rest(start.scene))
+        y = self.rest_state if start.state is None else self.example.from_si(start.state)
+        return BatchJob(start.scene, self.example, y, number=start.number)
 
-    def _start(self, member: int, job: Job) -> None:
+    def _start(self, member: int, job: BatchJob) -> None:
         """Make a job a member. A coarse run is due after `EXAMINED_AFTER` periods at the latest, a finer one once the
         difference has decayed.
 
@@ -99,7 +121,7 @@ class _JobsInBatch:
                             job.measurements.offset)
             return
         if job.coarse is None:
-            return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.run)
+            return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.periods_run)
             self.batch.put(member, job.scaled, job.y, 1, return_at)
             return
         regime, maxima = job.coarse
@@ -140,45 +162,45 @@ class _JobsInBatch:
         del self.jobs[member]
         lanes = [member, self.shadows.pop(member)] if member in self.shadows else [member]
         self.free += lanes
-        self.left.update(lanes)
+        self.newly_free.update(lanes)
 
-    def _decide(self, job: Job, member: int) -> SteadyState | None:
+    def _decide(self, job: BatchJob, member: int) -> SteadyState | None:
         """The result of a job whose Lyapunov exponents were measured, or None where it goes on."""
         seen = exponents_of(self.batch, member, PERIODS_IN_BLOCK)
-        job.run += len(seen.strobes)
+        job.periods_run += len(seen.strobes)
         job.y, job.measuring, job.measurements.offset = seen.y, False, seen.offset
         job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as a chain settled alone is judged
-        regime = replace(find_period(job.record), periods_run=job.run)
+        regime = replace(find_period(job.record), periods_run=job.periods_run)
         if regime.period is not None:
             if regime.period > LONGEST_PERIOD:
-                return self._measured_result(job, Regime.unsettled(job.run), undecided=True)
+                return self._measured_result(job, Regime.unsettled(job.periods_run), undecided=True)
             job.coarse = (regime, seen.maxima[-regime.period :].max(axis=0))
             self.waiting.append(job)
             return None
-        goes_on = job.run < MOST_PERIODS and job.affordable
-        decided = job.measurements.add(seen.exponents, job.record, job.run, last=not goes_on)
+        goes_on = job.periods_run < MOST_PERIODS and job.affordable
+        decided = job.measurements.add(seen.exponents, job.record, job.periods_run, last=not goes_on)
         latest = job.measurements.latest
         if decided is not None:
-            approaches = decided.name == "quasi-periodic" and is_almost_periodic(job.record)
-            return self._measured_result(job, decided, undecided=approaches)
+            near_an_orbit = decided.name == "quasi-periodic" and is_almost_periodic(job.record)
+            return self._measured_result(job, decided, undecided=near_an_orbit)
         if latest is None or len(job.measurements.unfinished):
             self._measure(job)
             return None
-        approach = job.measurements.approach
-        if goes_on and approach * (MOST_PERIODS - job.run) > -math.log(SETTLED_DISTANCE):
+        approach_rate = job.measurements.approach_rate
+        if goes_on and approach_rate * (MOST_PERIODS - job.periods_run) > -math.log(SETTLED_DISTANCE):
             self.waiting.append(job)  # it comes to its orbit within its budget, if there is one
             return None
-        if approach == 0.0 and job.measurements.complete < MOST_MEASUREMENTS:
+        if approach_rate == 0.0 and job.measurements.complete < MOST_MEASUREMENTS:
             self._measure(job)
             return None
         return self._measured_result(job, replace(latest, name="unsettled"), undecided=True)
 
-    def _measured_result(self, job: Job, regime: Regime, undecided: bool) -> SteadyState:
+    def _measured_result(self, job: BatchJob, regime: Regime, undecided: bool) -> SteadyState:
         """The result of a job whose exponents were measured; where its steps are spent no more is tried."""
         return SteadyState(job.scene, job.maxima, regime, None, job.scaled.to_si(job.y), number=job.number,
                            undecided=undecided and job.affordable)
 
-    def _measure(self, job: Job) -> None:
+    def _measure(self, job: BatchJob) -> None:
         """Let a job wait for two lanes, behind those with as many steps a period or more: the longest begin first."""
         job.measuring = True
         insort(self.to_measure, job, key=lambda one: -one.steps)
