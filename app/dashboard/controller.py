@@ -10,7 +10,7 @@ from bokeh.document import Document
 
 from granchain_core import BadInput, CurvePoint, Scene, Settled, State
 
-from ..curve.page import CurveController
+from ..curve.controller import CurveController
 from ..pictures.theme import Theme
 from ..serve.compiler import COMPILER
 from ..serve.meters import METERS
