@@ -26,7 +26,7 @@ sys.path.insert(0, str(ROOT / "tests" / "browser"))
 
 from server import dashboard, launch  # noqa: E402  (the browser tests start them in the same way)
 
-from app.dashboard.table import TABS  # noqa: E402
+from app.dashboard.table import TABS, overlay_names  # noqa: E402
 from app.session.stories import Story, stories  # noqa: E402
 
 SIZES = {"laptop": (1280, 800), "screen": (1920, 1080), "hall": (2560, 1440), "phone": (390, 844)}
@@ -130,7 +130,7 @@ def main() -> None:
                             page.locator("#tabs").evaluate("(one) => one.scrollIntoView()")
                             changed(page)
                         shot(page, options.all / f"{view}-{size_name}.png")
-            for story in stories()[0]:
+            for story in stories(overlay_names())[0]:
                 if options.only in f"story-{story.name}":
                     with opened(browser, address, size) as page:
                         walk(page, story, path_of(options.all, f"story-{story.name}", size_name))

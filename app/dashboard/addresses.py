@@ -30,11 +30,11 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
     Returns the state in which the motion begins, None for rest, and a sentence for every field that was refused.
     """
     places = {"tab": tab_names(), "page": tab_names(), "embed": ("1",)}
-    scene, fields, sentences = decode(query, {**places, "story": story_places()})
+    scene, fields, sentences = decode(query, {**places, "story": story_places(overlay_names())})
     session.scene = scene
     session.story_to_settle = False
     if "story" in fields and {name for name, _ in parse_qsl(query.lstrip("?"))} <= _NOT_A_MOTION:
-        step = story_step(fields["story"])
+        step = story_step(fields["story"], overlay_names())
         session.scene, session.story_to_settle = step.scene, bool(step.via)
         fields = {**({"curves": step.curves} if step.curves else {}), **fields}
     session.take_view(fields)

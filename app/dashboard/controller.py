@@ -10,7 +10,7 @@ from bokeh.document import Document
 
 from granchain_core import BadInput, CurvePoint, Scene, Settled, State
 
-from ..curve.page import CurveController
+from ..curve.controller import CurveController
 from ..pictures.theme import Theme
 from ..serve.compiler import COMPILER
 from ..serve.meters import METERS
@@ -30,7 +30,7 @@ from .playback import Playback
 from .scene_changes import SceneChanges
 from .sentences import Sentences
 from .show import show_regime
-from .table import CURVE_NAME, PAGES
+from .table import CURVE_NAME, PAGES, overlay_names
 
 
 class Controller:
@@ -141,6 +141,11 @@ class Controller:
     def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet."""
         return self.pictures.awaiting_picture
+
+    @property
+    def overlays(self) -> tuple[str, ...]:
+        """The pages over the pictures, by name."""
+        return overlay_names()
 
     @property
     def curve_computing(self) -> bool:

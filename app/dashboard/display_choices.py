@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..curve.page import CurveController
+from ..curve.controller import CurveController
 from ..pictures.theme import THEMES, Theme
 from ..session.hooks import Actions
 from ..session.session import Session

@@ -12,7 +12,7 @@ from granchain_core import BadInput, Run, Settled
 from granchain_core.experiment import Measured, Series
 from granchain_core.store import save
 
-from ..curve.page import CurveController
+from ..curve.controller import CurveController
 from ..serve.queues import FILES
 from ..session.export import EXPORTS, TEXTS, Screen
 from ..session.hooks import Actions

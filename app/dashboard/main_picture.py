@@ -76,14 +76,14 @@ class MainPicture:
         self._session = host.session
         self._views = views
         self._note = note
-        self._settled_arrived = arrived
-        self._jobs = LatestWins(self._found, partial(host.next_tick, self._failed), self._session.cpu_time)
+        self._announce = arrived
+        self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
         self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LivePicture | None = None
         self._shown: Settled | LivePicture | None = None
-        self._asked: float | None = None
+        self._requested_at: float | None = None
         #: Frames of the last pictures, so that they are prepared once.
         self._frames: deque[Frames] = deque(maxlen=2)
         host.on_close(self._close)
@@ -121,7 +121,7 @@ class MainPicture:
 
     def compute(self, start: State | None = None) -> None:
         """Compute a picture for the knobs as they are now, from `start` or from where the visitor chose."""
-        self._asked = self._asked or time.monotonic()
+        self._requested_at = self._requested_at or time.monotonic()
         if self._session.mode == "live":
             if self.live is not None:
                 self.live.change(self._session.scene)
@@ -130,7 +130,7 @@ class MainPicture:
             else:
                 self.advance(1)  # a paused chain shows the new knobs, too
         else:
-            self._jobs.submit(partial(self._settled, self._session.scene, start))
+            self._jobs.submit(partial(self._settled_pictures, self._session.scene, start))
 
     def advance(self, samples: int | None = None) -> None:
         """Take the next step of the live run: `samples`, or as many as the viewing time asks for."""
@@ -144,7 +144,7 @@ class MainPicture:
 
     # In a worker thread
 
-    def _settled(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
+    def _settled_pictures(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
         with _refusing(scene):
             yield from self._pictures_of(scene, start, stop)
@@ -197,7 +197,7 @@ class MainPicture:
                 picture = live.advance(samples) if samples else live.step(self._session.speed)
             yield picture
 
-    def _found(self, picture: object) -> None:
+    def _keep_newest(self, picture: object) -> None:
         """Keep a new picture for the event loop; it replaces an older picture that a busy loop has not fetched yet."""
         assert isinstance(picture, (Settled, LivePicture))
         if isinstance(picture, Settled):
@@ -205,25 +205,27 @@ class MainPicture:
         with self._lock:
             first, self._newest = self._newest is None, picture
         if first:
-            self._host.next_tick(self._look)
+            self._host.next_tick(self._take_newest)
 
     # To the browser
 
-    def _look(self) -> None:
+    def _take_newest(self) -> None:
+        """Take the newest picture that a worker has kept."""
         with self._lock:
             picture, self._newest = self._newest, None
         if picture is not None:
-            self._arrived(picture)
+            self._accept(picture)
 
-    def _arrived(self, picture: Settled | LivePicture) -> None:
+    def _accept(self, picture: Settled | LivePicture) -> None:
+        """Make a picture that still belongs to the mode and the scene the present one, and offer it to the browser."""
         live = isinstance(picture, LivePicture)
         if live != (self._session.mode == "live") or picture.run.scene.name != self._session.scene.name:
             return
         METERS.pictures += 1
-        self._answered()
+        self._count_answer()
         if isinstance(picture, Settled):
             self._session.picture = picture
-            self._settled_arrived(picture)
+            self._announce(picture)
         if self._session.notice:
             self._note("")
         self._shown = picture
@@ -231,14 +233,14 @@ class MainPicture:
 
     def _failed(self, error: Exception) -> None:
         """There is no picture to time; the next one is timed from its own request."""
-        self._asked = None
+        self._requested_at = None
         self._host.failed(error)
 
-    def _answered(self) -> None:
+    def _count_answer(self) -> None:
         """Count how long the first picture took, and say so if the server is busy with many visitors."""
-        if self._asked is None:
+        if self._requested_at is None:
             return
-        seconds, self._asked = time.monotonic() - self._asked, None
+        seconds, self._requested_at = time.monotonic() - self._requested_at, None
         METERS.answered(seconds)
         words = f"The server is busy: pictures follow every {seconds:.1f} s." if METERS.busy else ""
         self._views.status_line.update_state(busy=words)

@@ -27,7 +27,7 @@ from granchain_core.experiment.units import QUANTITIES, UNITS
 from granchain_core.scene import ASSETS
 from granchain_core.scene.driven import refuse_undriven
 
-from ..curve.page import CurveController
+from ..curve.controller import CurveController
 from ..format import in_words, signed_in_words
 from ..serve.compiler import PICTURE_PIECES
 from ..serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS

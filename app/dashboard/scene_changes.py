@@ -7,7 +7,7 @@ from typing import Any
 
 from granchain_core import Scene, State
 
-from ..curve.page import CurveController
+from ..curve.controller import CurveController
 from ..parts.knobs import beside_knobs, knob_state
 from ..session.hooks import Actions, Page
 from ..session.session import Session, clicked_frequency

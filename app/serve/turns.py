@@ -14,7 +14,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from granchain_core.stop import Stop
 
@@ -44,16 +44,29 @@ _LONGEST_CHECK_MULTIPLE = 20
 _LONGEST_TURN = 0.1
 
 
-class _Turn:
-    """A thread that waits for a turn or has one; `at` is the time at which the wait or the turn began."""
+class _Claim(NamedTuple):
+    """A claim to the next turn. The smallest goes first: what is new before refinements, of these what has waited long
+    before the others, and of equals the one whose visitor has used least.
+    """
 
-    def __init__(self, cpu_time: CpuTime, stop: Stop, begins: bool, at: float) -> None:
-        self.cpu_time, self.stop, self.begins, self.at = cpu_time, stop, begins, at
+    refines: bool
+    waited_little: bool
+    used: float
+
+
+class _Turn:
+    """A thread that waits for a turn or has one; `at` is the time at which the wait or the turn began.
+
+    `is_new` says whether its computation has only just begun.
+    """
+
+    def __init__(self, cpu_time: CpuTime, stop: Stop, is_new: bool, at: float) -> None:
+        self.cpu_time, self.stop, self.is_new, self.at = cpu_time, stop, is_new, at
         self.granted = threading.Event()
 
-    def rank(self, now: float) -> tuple[bool, bool, float]:
-        """Its place in the queue: the lowest rank is next."""
-        return not self.begins, now - self.at < _LONGEST_WAIT, self.cpu_time.used
+    def claim(self, now: float) -> _Claim:
+        """Its claim to the next turn."""
+        return _Claim(not self.is_new, now - self.at < _LONGEST_WAIT, self.cpu_time.used)
 
 
 class FairScheduler:
@@ -79,12 +92,12 @@ class FairScheduler:
         """How many wait for their turn."""
         return len(self._waiting)
 
-    def begin(self, cpu_time: CpuTime, stop: Stop, begins: bool = True) -> _Turn:
+    def begin(self, cpu_time: CpuTime, stop: Stop, is_new: bool = True) -> _Turn:
         """Wait for a turn, or until the stop flag is set; returns what `end` needs.
 
-        `begins` says whether the computation has just begun.
+        `is_new` says whether the computation has only just begun.
         """
-        mine = _Turn(cpu_time, stop, begins, self._clock())
+        mine = _Turn(cpu_time, stop, is_new, self._clock())
         with self._lock:
             self._waiting.append(mine)
             self._grant()
@@ -110,25 +123,25 @@ class FairScheduler:
             self._running.discard(turn)
             self._grant()
 
-    def should_yield(self, turn: _Turn, begins: bool) -> bool:
-        """Whether a computation has to give up its turn; `begins` says whether it still counts as just begun.
+    def should_yield(self, turn: _Turn, is_new: bool) -> bool:
+        """Whether a computation has to give up its turn; `is_new` says whether it still counts as just begun.
 
         It has to if another has a better claim, or if more than `at_once` compute and its visitor has used most.
         """
-        if begins:
+        if is_new:
             return False
         with self._lock:
-            if turn.begins:
-                turn.begins = False
+            if turn.is_new:
+                turn.is_new = False
                 self._grant()
             now = self._clock()
             if now - turn.at < _TIME_SLICE:
                 return False
-            mine = True, True, turn.cpu_time.used
-            if any(other.rank(now) < mine for other in self._waiting):
+            mine = _Claim(refines=True, waited_little=True, used=turn.cpu_time.used)
+            if any(other.claim(now) < mine for other in self._waiting):
                 return True
             too_many = len(self._running) - self._at_once
-            more = sum(one.cpu_time.used > turn.cpu_time.used for one in self._running if not one.begins)
+            more = sum(one.cpu_time.used > turn.cpu_time.used for one in self._running if not one.is_new)
             return more < too_many
 
     def _grant(self) -> None:
@@ -137,10 +150,10 @@ class FairScheduler:
         # Mostly there is room for none, and finding that out is cheaper than sorting.
         if not any(self._has_room(one, now) for one in self._waiting):
             return
-        for one in sorted(self._waiting, key=lambda one: one.rank(now)):
+        for one in sorted(self._waiting, key=lambda one: one.claim(now)):
             if not self._has_room(one, now):
                 continue
-            if one.begins:
+            if one.is_new:
                 self._waits.append((now, now - one.at))
             self._waiting.remove(one)
             self._running.add(one)
@@ -149,8 +162,8 @@ class FairScheduler:
 
     def _has_room(self, one: _Turn, now: float) -> bool:
         """Whether a turn could begin beside those that are held."""
-        young = [other.begins for other in self._running if now - other.at < _LONGEST_TURN]
-        if one.begins:
+        young = [other.is_new for other in self._running if now - other.at < _LONGEST_TURN]
+        if one.is_new:
             return sum(young) < self._at_once
         waited = now - one.at >= _LONGEST_WAIT and young.count(False) < self._at_once
         return len(young) < self._at_once or waited
@@ -188,8 +201,8 @@ class TurnFlag(Flag):
         self._began = self._spent = 0.0
 
     @property
-    def begins(self) -> bool:
-        """Whether the computation has just begun: there is no result yet, and it has not taken long."""
+    def is_new(self) -> bool:
+        """Whether the computation has only just begun: there is no result yet, and it has not taken long."""
         return self._spent < _BEGINNING_CPU_TIME
 
     def set(self) -> None:
@@ -203,7 +216,7 @@ class TurnFlag(Flag):
             return
         self._charge()
         self._give_way()
-        if self._scheduler.should_yield(self._turn, self.begins):
+        if self._scheduler.should_yield(self._turn, self.is_new):
             self._leave()
             self._enter()
 
@@ -246,12 +259,12 @@ class TurnFlag(Flag):
 
     def _give_way(self) -> None:
         """Lower the priority of this thread, unless its computation has only just begun."""
-        if not self.begins:
+        if not self.is_new:
             give_way()
 
     def _enter(self) -> None:
         self._give_way()
-        self._turn = self._scheduler.begin(self.cpu_time, self, self.begins)
+        self._turn = self._scheduler.begin(self.cpu_time, self, self.is_new)
         self._began = time.thread_time()
 
     def _leave(self) -> None:

@@ -21,6 +21,10 @@ class Host(Protocol):
     session: Session
 
     @property
+    def overlays(self) -> tuple[str, ...]:
+        """The pages over the pictures, by name."""
+
+    @property
     def busy(self) -> bool:
         """Whether a picture is being computed."""
 

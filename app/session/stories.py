@@ -25,8 +25,6 @@ FOLDER = ASSETS / "stories"
 
 #: What a step may point to: the parts of the main page by the names of their elements.
 LOOKS = ("chain", "left", "map", "right", "curve")
-#: Which page a step may offer to open: those over the pictures (tests/dashboard/test_table.py).
-PAGES = ("probe", "stability", "accuracy", "branches", "analysis", "observer", "hard", "paper")
 #: Relative difference that a computed force may have from the one a story tells, where the motion repeats.
 TOLERANCE = 5e-3
 #: The same where it does not repeat: there the largest force depends on the periods that are recorded.
@@ -85,19 +83,25 @@ class Story:
     steps: tuple[StoryStep, ...] = field(repr=False)
 
 
-def stories(folder: Path = FOLDER) -> tuple[tuple[Story, ...], tuple[str, ...]]:
-    """All stories in their order, and one sentence for every file that cannot be used."""
+def stories(pages: Sequence[str], folder: Path = FOLDER) -> tuple[tuple[Story, ...], tuple[str, ...]]:
+    """All stories in their order, and one sentence for every file that cannot be used.
+
+    `pages` are those that a step may offer to open, by name.
+    """
     found, refused = [], []
     for path in sorted(folder.glob("*.toml")):
         try:
-            found.append(read_story(path))
+            found.append(read_story(path, pages))
         except BadInput as problem:
             refused.append(f"{path.name}: {problem}")
     return tuple(sorted(found, key=lambda one: (one.order, one.name))), tuple(refused)
 
 
-def read_story(path: Path) -> Story:
-    """The story in a file. Raises `BadInput` with one sentence for the first thing that is wrong."""
+def read_story(path: Path, pages: Sequence[str]) -> Story:
+    """The story in a file, whose steps may open `pages`.
+
+    Raises `BadInput` with one sentence for the first thing that is wrong.
+    """
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as problem:
@@ -106,7 +110,7 @@ def read_story(path: Path) -> Story:
     steps = data.get("steps")
     if not isinstance(steps, list) or not steps:
         raise BadInput("a story needs at least one [[steps]].")
-    read = [_step(number, one) for number, one in enumerate(steps, 1)]
+    read = [_step(number, one, pages) for number, one in enumerate(steps, 1)]
     order = data.get("order", 100)
     if not isinstance(order, int):
         raise BadInput("order must be a whole number.")
@@ -169,7 +173,7 @@ def _force(newtons: float, repeats: bool) -> str:
     return f"{newtons:.{3 if repeats else 2}g} N"
 
 
-def _step(number: int, data: Any) -> StoryStep:
+def _step(number: int, data: Any, pages: Sequence[str]) -> StoryStep:
     try:
         if not isinstance(data, dict):
             raise BadInput("it is not a table.")
@@ -183,7 +187,7 @@ def _step(number: int, data: Any) -> StoryStep:
         return StoryStep(_text(data, "say", "it"), str(data.get("ask", "")), str(data.get("answer", "")), shown,
                          _expect(_table(data, "expect")), tuple(map(float, via)),
                          _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *EXTRAS["curves"])),
-                         _one_of(data, "page", ("", *PAGES)))
+                         _one_of(data, "page", ("", *pages)))
     except BadInput as problem:
         raise BadInput(f"step {number}: {problem}") from None
 

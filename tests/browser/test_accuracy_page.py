@@ -141,7 +141,7 @@ def test_steps_that_blow_up_are_told_and_a_stopped_measurement_keeps_its_points(
 
 
 def test_its_tab_opens_the_page_and_a_moved_knob_greys_it_until_it_is_measured_again(visit: Visit) -> None:
-    page = visit("?v=1&scene=sec2&f=2000")
+    page = visit("?v=1&scene=sec2&f=2000&N=3")  # three beads: the chain is measured twice
     page.get_by_role("tab", name="accuracy").click()
     expect(page.locator("#tabs .small canvas").first).to_be_visible(timeout=COMPILED)
     expect(page.locator("#tabs")).to_contain_text("The cheapest way to", timeout=COMPILED)

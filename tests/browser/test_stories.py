@@ -10,6 +10,7 @@ from layout_faults import faults
 from playwright.sync_api import Page, ViewportSize, expect
 from server import until
 
+from app.dashboard.table import overlay_names
 from app.session.stories import IRREGULAR_TOLERANCE, TOLERANCE, UNDRIVEN, Story, stories, told_words
 
 LAPTOP, PHONE = ViewportSize(width=1280, height=800), ViewportSize(width=390, height=844)
@@ -58,7 +59,7 @@ def tells(page: Page, story: Story, number: int, revealed: bool) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("story", stories()[0], ids=lambda story: story.name)
+@pytest.mark.parametrize("story", stories(overlay_names())[0], ids=lambda story: story.name)
 def test_a_story_shows_what_it_tells(at: Visit, story: Story) -> None:
     """On a laptop and on a phone: a step that is reached on the one is looked at on the other too, and left there."""
     page = at()
@@ -98,7 +99,7 @@ def test_a_story_is_read_whole_on_a_laptop(at: Visit) -> None:
 def test_a_step_back_is_the_step_it_was(at: Visit) -> None:
     """The second step comes through another frequency, so going back and forth must not change what it shows."""
     page = at()
-    (story,) = (one for one in stories()[0] if one.name == "coexisting")
+    (story,) = (one for one in stories(overlay_names())[0] if one.name == "coexisting")
     tab = page.locator("#tabs")
     tab.get_by_role("button", name=story.title).click()
     shows(page, story, 1)

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import pytest
 
 from app.curve.bar import CurveBar
-from app.curve.page import CurveController
+from app.curve.controller import CurveController
 from app.curve.sweep import Progress
 from app.curve.view import CurveFigure
 from app.serve.delays import CURVE_EVERY

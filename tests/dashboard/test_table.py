@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.dashboard.table import CURVE_NAME, PAGES, TABS, TabSpec, check_names, overlay_names
-from app.session.stories import PAGES as STORY_PAGES
+from app.dashboard.table import CURVE_NAME, PAGES, TABS, TabSpec, check_names
 
 
 @pytest.mark.parametrize("row", [replace(PAGES[0], name=CURVE_NAME), TabSpec(PAGES[0].name, "learn")], ids=["curve", "twice"])
@@ -25,7 +24,3 @@ def test_every_folder_of_a_page_has_its_row() -> None:
 def test_the_browser_calls_the_curve_as_the_server_does() -> None:
     script = Path(__file__).parents[2] / "app" / "dashboard" / "visibility.js"
     assert f'const CURVE_NAME = "{CURVE_NAME}";' in script.read_text(encoding="utf-8")
-
-
-def test_stories_open_the_pages_over_the_pictures() -> None:
-    assert set(STORY_PAGES) == set(overlay_names())

@@ -14,7 +14,7 @@ def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> No
     first = turns.begin(CpuTime(), Stop())
     now[0] = 1.0
     turns.end(first)
-    turns.begin(CpuTime(), Stop(), begins=False)  # what makes a picture better may wait
+    turns.begin(CpuTime(), Stop(), is_new=False)  # what makes a picture better may wait
     assert turns.wait == 0.0
     turns._waits.append((now[0], 1.5))
     assert turns.wait == 0.75

@@ -84,12 +84,12 @@ def order_of(turns: FairScheduler, waits: list[tuple[str, float, bool]]) -> list
     """In which order those who wait get their turns: name, time used, whether the computation has just begun."""
     order: list[str] = []
     first, threads = turns.begin(CpuTime(), Stop()), []
-    for number, (name, used, begins) in enumerate(waits, 1):
+    for number, (name, used, is_new) in enumerate(waits, 1):
         account = CpuTime()
         account.charge(used)
 
-        def wait(name: str = name, account: CpuTime = account, begins: bool = begins) -> None:
-            turn = turns.begin(account, Stop(), begins)
+        def wait(name: str = name, account: CpuTime = account, is_new: bool = is_new) -> None:
+            turn = turns.begin(account, Stop(), is_new)
             order.append(name)
             turns.end(turn)
 
@@ -116,9 +116,9 @@ def account(used: float) -> CpuTime:
     return found
 
 
-def waiting_threads(turns: FairScheduler, *accounts: CpuTime, begins: bool = False) -> list[threading.Thread]:
+def waiting_threads(turns: FairScheduler, *accounts: CpuTime, is_new: bool = False) -> list[threading.Thread]:
     """Threads that wait for a turn, one for each account, and end it as soon as they have it."""
-    found = [threading.Thread(target=lambda one=one: turns.end(turns.begin(one, Stop(), begins)), daemon=True)
+    found = [threading.Thread(target=lambda one=one: turns.end(turns.begin(one, Stop(), is_new)), daemon=True)
              for one in accounts]
     for thread in found:
         thread.start()
@@ -173,7 +173,7 @@ def test_what_has_just_begun_waits_for_nothing_that_takes_long_and_is_not_interr
     threading.Thread(target=lambda: begun.append(turns.begin(account(9.0), Stop())), daemon=True).start()
     until(lambda: bool(begun))
     first = begun[0]
-    thread, = waiting_threads(turns, account(0.0), begins=True)
+    thread, = waiting_threads(turns, account(0.0), is_new=True)
     now[0] = 0.05
     assert not turns.should_yield(first, True)
     turns.end(first)
@@ -183,7 +183,7 @@ def test_what_has_just_begun_waits_for_nothing_that_takes_long_and_is_not_interr
 
 def test_a_computation_with_a_result_has_no_longer_just_begun() -> None:
     slot, seen = TurnFlag(CpuTime(), FairScheduler(1)), []
-    for _ in slot.in_turns(seen.append(slot.begins) for _ in range(3)):
+    for _ in slot.in_turns(seen.append(slot.is_new) for _ in range(3)):
         pass
     assert seen == [True, False, False]
 
@@ -192,7 +192,7 @@ def test_a_turn_that_has_become_long_makes_room_for_what_begins() -> None:
     """It is asked at its pause, and may go on."""
     turns = FairScheduler(1, lambda: 0.0)
     turn = turns.begin(account(0.0), Stop())
-    thread, = waiting_threads(turns, account(0.0), begins=True)
+    thread, = waiting_threads(turns, account(0.0), is_new=True)
     assert not turns.should_yield(turn, False)
     thread.join(60)
     assert not thread.is_alive()

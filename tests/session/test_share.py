@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.dashboard.addresses import take_address
+from app.dashboard.table import overlay_names
 from app.pages.stories.page import story_step
 from app.session.pins import NAMES, Pin
 from app.session.session import Session
@@ -167,11 +168,11 @@ def test_a_page_that_is_only_a_tab_is_opened_by_either_name() -> None:
 
 def test_a_link_with_a_story_alone_shows_the_motion_of_its_step() -> None:
     session = Session()
-    step = story_step("coexisting.2")
+    step = story_step("coexisting.2", overlay_names())
     assert take_address(session, "story=coexisting.2&look=dark")[1] == []
     assert session.scene == step.scene and session.story_to_settle  # it comes from 860 Hz
     take_address(session, "story=sonic-vacuum.3")
-    assert session.scene == story_step("sonic-vacuum.3").scene and not session.story_to_settle
+    assert session.scene == story_step("sonic-vacuum.3", overlay_names()).scene and not session.story_to_settle
     take_address(session, "story=coexisting.2&f=500")  # the page's own links have the motion
     assert session.scene.f == 500.0 and not session.story_to_settle
 

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
+from app.dashboard.table import overlay_names
 from app.frames import samples_for
 from app.session.stories import FOLDER, Story, StoryStep, differences, read_story, state_before, stories, told_words
 from granchain_core import BadInput, Run, settle
 
-TOLD, REFUSED = stories()
+OVERLAYS = overlay_names()
+TOLD, REFUSED = stories(OVERLAYS)
 STEPS = [(story, number) for story in TOLD for number in range(1, len(story.steps) + 1)]
 
 GOOD = """
@@ -54,7 +56,7 @@ def test_no_force_is_written_in_digits(story: Story, number: int) -> None:
 def test_a_wrong_number_is_found(tmp_path: Path) -> None:
     path = tmp_path / "wrong.toml"
     path.write_text(GOOD.replace("0.6285", "0.66").replace("period = 1", "period = 2"))
-    step = read_story(path).steps[0]
+    step = read_story(path, OVERLAYS).steps[0]
     found = differences(step, motion_of(step))
     assert len(found) == 2 and "not periodic 2" in found[0] and "0.6285 N, not 0.66 N" in found[1]
 
@@ -62,14 +64,14 @@ def test_a_wrong_number_is_found(tmp_path: Path) -> None:
 def test_a_wrong_speed_of_a_pulse_is_found(tmp_path: Path) -> None:
     path = tmp_path / "wrong.toml"
     path.write_text((FOLDER / "solitary-wave.toml").read_text().replace("speed = 260.72", "speed = 265.0"))
-    step = read_story(path).steps[0]
+    step = read_story(path, OVERLAYS).steps[0]
     assert differences(step, motion_of(step)) == ["the pulse's speed is 260.7 m/s, not 265 m/s."]
 
 
 def test_numbers_stand_in_the_text(tmp_path: Path) -> None:
     path = tmp_path / "one.toml"
     path.write_text(GOOD.replace("It has {output}.", "{output} {input} {share} {f} {1.output}"))
-    assert told_words(read_story(path), 1, "say") == "0.628 N 0.698 N 90 % 340 Hz 0.628 N"
+    assert told_words(read_story(path, OVERLAYS), 1, "say") == "0.628 N 0.698 N 90 % 340 Hz 0.628 N"
 
 
 @pytest.mark.parametrize(("change", "to", "told"), [
@@ -83,6 +85,7 @@ def test_numbers_stand_in_the_text(tmp_path: Path) -> None:
     ("{output}", "{speed}", "'speed'; the nearest is"),
     ("{output}", "{ouput}", "'ouput'; the nearest is 'output'"),
     ("{output}", "{7.output}", "is of step 7, but there are 1"),
+    ("say =", 'page = "map"\nsay =', "Unknown page 'map'"),
     ("say =", 'look = "stage"\nsay =', "Unknown look 'stage'"),
     ("[[steps]]", "[[step]]", "Unknown field of a story 'step'"),
     ("title", "=", "it is not a TOML file"),
@@ -91,7 +94,7 @@ def test_a_wrong_file_says_where(tmp_path: Path, change: str, to: str, told: str
     path = tmp_path / "bad.toml"
     path.write_text(GOOD.replace(change, to, 1))
     with pytest.raises(BadInput) as refused:
-        read_story(path)
+        read_story(path, OVERLAYS)
     assert told in str(refused.value)
-    found, sentences = stories(tmp_path)
+    found, sentences = stories(OVERLAYS, tmp_path)
     assert found == () and sentences[0].startswith("bad.toml: ")

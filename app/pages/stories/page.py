@@ -18,19 +18,22 @@ from ...session.task import Job, Task
 
 
 @cache
-def _stories_read() -> tuple[tuple[Story, ...], tuple[str, ...]]:
-    return stories()
+def _stories_read(overlays: tuple[str, ...]) -> tuple[tuple[Story, ...], tuple[str, ...]]:
+    return stories(overlays)
 
 
-def story_places() -> tuple[str, ...]:
-    """Every step of every story by the name it has in a link, "coexisting.2"."""
-    return tuple(f"{story.name}.{number}" for story in _stories_read()[0] for number in range(1, len(story.steps) + 1))
+def story_places(overlays: tuple[str, ...]) -> tuple[str, ...]:
+    """Every step of every story by the name it has in a link, "coexisting.2"; `overlays` are the pages over the
+    pictures.
+    """
+    return tuple(f"{story.name}.{number}" for story in _stories_read(overlays)[0]
+                 for number in range(1, len(story.steps) + 1))
 
 
-def story_step(place: str) -> StoryStep:
+def story_step(place: str, overlays: tuple[str, ...]) -> StoryStep:
     """The step that has this name in a link."""
     name, _, number = place.partition(".")
-    return next(story for story in _stories_read()[0] if story.name == name).steps[int(number) - 1]
+    return next(story for story in _stories_read(overlays)[0] if story.name == name).steps[int(number) - 1]
 
 
 class StoriesPage(Page):
@@ -40,7 +43,7 @@ class StoriesPage(Page):
         self._host = host
         self._view = view
         self._task = Task(host, ANALYSES, lambda *_: None, "The story", host.failed)
-        known, refused = _stories_read()
+        known, refused = _stories_read(host.overlays)
         self._stories = {one.name: one for one in known}
         self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}
         view.update_state(stories=[{"name": one.name, "title": one.title, "about": one.about} for one in known],
@@ -55,7 +58,7 @@ class StoriesPage(Page):
         """Settle the step of a link that names it alone, if its motion is reached through others (`StoryStep.via`)."""
         if picture.final and self._host.session.story_to_settle:
             self._host.session.story_to_settle = False
-            self._task.start(partial(self._through, story_step(self._host.session.story)))
+            self._task.start(partial(self._through, story_step(self._host.session.story, self._host.overlays)))
 
     def address_taken(self) -> None:
         """The address says which step is told; its motion is in the address, too."""

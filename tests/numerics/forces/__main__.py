@@ -4,22 +4,28 @@
     python -m tests.numerics.forces curve --count 100
     python -m tests.numerics.forces map --count 100
     python -m tests.numerics.forces run --seed 1 --only 17
+    python -m tests.numerics.forces run --scene sec2 --set f=1130 --periods 300 --record 3
 
 `run` is a whole motion; `curve` and `map` are steady states, eight frequencies or cells a draw. Seeds by which factors
-were chosen are not those by which they are reported.
+were chosen are not those by which they are reported. `--scene` judges one motion instead, as `granchain run` computes
+it; the status is 1 if a force is not within what is stated of it.
 """
 
 from __future__ import annotations
 
 import argparse
 import itertools
+import sys
 import time
 from collections import Counter
 
 import numpy as np
 
-from .draw import FEW, STRUCTURES
-from .judge import COLUMNS, SILENT, Verdict, verdicts
+from app.cli.common import chosen_scene
+from granchain_core import BadInput, Scene
+
+from .draw import FEW, STRUCTURES, Draw
+from .judge import COLUMNS, MOST_STEPS, SILENT, Verdict, judge_run, verdicts
 
 #: Bounds of λ in the table.
 _STRENGTHS = (0.0, 0.02, 0.1, 0.5, 2.0, 100.0)
@@ -60,8 +66,24 @@ def _summary(words: argparse.Namespace, found: list[Verdict], others: Counter[st
             f"{'; ' if apart else ''}{apart}\n{table(found)}")
 
 
-def main() -> None:
-    """Print the table and what is not bounded."""
+def judge_one(scene: Scene, periods: int, record: int, most_steps: int) -> int:
+    """Print the verdict on the forces of one's own motion; returns 1 if one is not within its error, or not judged."""
+    verdict = judge_run(Draw(0, scene, periods, record), most_steps)
+    if isinstance(verdict, str):
+        print(f"Not judged: {verdict}.")
+        return 1
+    good = True
+    for c, name in enumerate(COLUMNS):
+        stated = not np.isnan(verdict.stated[c])
+        good &= bool(verdict.judged[c] and (verdict.bounded[c] or not stated))
+        words = ("not judged: the reference is not known well enough" if not verdict.judged[c] else "no error is stated" if not stated
+                 else "within it" if verdict.bounded[c] else "NOT WITHIN it")
+        print(f"{name} force: true error {verdict.error[c]:.1e} ± {verdict.known[c]:.0e}, stated error {verdict.stated[c]:.1e}: {words}")
+    return int(not good)
+
+
+def main() -> int:
+    """Print the table and what is not bounded, or the verdict on one motion; returns the status."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("kind", choices=("run", "curve", "map"))
     parser.add_argument("--count", type=int, default=100)
@@ -69,7 +91,23 @@ def main() -> None:
     parser.add_argument("--few", action="store_true", help="only the structures of the test suite")
     parser.add_argument("--only", type=int, help="this draw alone")
     parser.add_argument("--minutes", type=float, default=600.0, help="no draw is begun later")
+    own = parser.add_argument_group("one motion instead of random ones")
+    own.add_argument("--scene", metavar="SCENE", help="a name of `granchain scenes`, or a scene file NAME.toml")
+    own.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="change a knob")
+    own.add_argument("--periods", type=int, default=100, help="drive periods before those recorded (%(default)s)")
+    own.add_argument("--record", type=int, default=20, help="drive periods recorded (%(default)s)")
+    own.add_argument("--most-steps", type=int, default=MOST_STEPS, help="steps after which the reference is given up (%(default)s)")
     words = parser.parse_args()
+    if words.scene is not None:
+        if words.kind != "run":
+            parser.error("--scene is for run")
+        try:
+            chosen = chosen_scene(words)
+            if not chosen.is_driven:
+                parser.error("the reference has a driven chain only")
+            return judge_one(chosen, words.periods, words.record, words.most_steps)
+        except BadInput as problem:
+            parser.error(str(problem))
     began, found, others = time.perf_counter(), [], Counter[str]()
     first, count = (0, words.count) if words.only is None else (words.only, 1)
     for verdict in verdicts(words.kind, count, words.seed, FEW if words.few else STRUCTURES, first):
@@ -85,7 +123,8 @@ def main() -> None:
         if time.perf_counter() > began + 60.0 * words.minutes:
             break
     print(_summary(words, found, others, began))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -19,10 +19,14 @@ from .draw import LONGEST, Draw, draw, draw_steady, strength
 from .located import TooLong, located
 
 COLUMNS = ("input", "output", "elastic")
-#: The tolerances of the truth; how far they differ, so many times, is how well it is known.
-_TIGHT, _LOOSE, _CAUTION = 1e-12, 1e-10, 1.0
-#: Steps after which the truth is given up, and drive periods of relaxing onto an orbit.
-_MOST_STEPS, _PATIENCE = 1_000_000, 4000
+#: Tolerances of the two reference computations.
+_TIGHT, _LOOSE = 1e-12, 1e-10
+#: So many times the difference between the two is taken as the error of the reference itself.
+_CAUTION = 1.0
+#: Steps after which the reference is given up.
+MOST_STEPS = 1_000_000
+#: Drive periods of relaxing onto an orbit.
+_PATIENCE = 4000
 #: The relative distance from its orbit at which a point is judged.
 _ON_ORBIT = 1e-9
 #: A force wrong by more than this, plus ten times what is stated, is wrong in a way that matters.
@@ -74,15 +78,15 @@ def apart(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.where(a == b, 0.0, np.abs(a - b) / np.where(b > 0.0, b, 1e-300))
 
 
-def judge_run(drawn: Draw) -> Verdict | str:
-    """The verdict on a whole motion, or why there is none."""
+def judge_run(drawn: Draw, most_steps: int = MOST_STEPS) -> Verdict | str:
+    """The verdict on a whole motion, or why there is none; the reference is given up after `most_steps`."""
     chosen = drawn.scene
     try:
         found = run(chosen, drawn.periods, drawn.record, 16, budget=BUDGET)
     except (NumbersFailed, OverBudget):
         return "refused or failed, and said so"
     try:
-        true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=_MOST_STEPS).maxima for tolerance in (_TIGHT, _LOOSE))
+        true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=most_steps).maxima for tolerance in (_TIGHT, _LOOSE))
     except (TooLong, FloatingPointError):
         return "truth not known"
     return Verdict("run", drawn.index, chosen, f"{found.status} {drawn.periods}+{drawn.record}", apart(forces(found), true),
@@ -98,7 +102,7 @@ def on_orbit(chosen: Scene, state: State, n: int) -> tuple[State, float] | None:
     """The state on the orbit of period n and its relative distance; None where it does not come near."""
     before = None
     for _ in range(max(8, _PATIENCE // n)):
-        after = located(chosen, n, 0, 1, 1e-11, state, _MOST_STEPS // 8).state
+        after = located(chosen, n, 0, 1, 1e-11, state, MOST_STEPS // 8).state
         change = max(float(np.abs(getattr(after, x) - getattr(state, x)).max() / max(np.abs(getattr(after, x)).max(), 1e-300))
                      for x in ("displacement", "velocity"))
         factor = 0.99 if before is None else min(max(change / before, 0.1), 0.999) if before > 0.0 else 0.1
@@ -114,7 +118,7 @@ def judge_point(kind: str, index: int, chosen: Scene, state: State, n: int, maxi
         orbit = on_orbit(chosen, state, n)
         if orbit is None:
             return "not periodic within the patience"
-        true, nearly = (located(chosen, 0, n, 1, tolerance, orbit[0], _MOST_STEPS).maxima for tolerance in (_TIGHT, _LOOSE))
+        true, nearly = (located(chosen, 0, n, 1, tolerance, orbit[0], MOST_STEPS).maxima for tolerance in (_TIGHT, _LOOSE))
     except (TooLong, FloatingPointError):
         return "truth not known"
     return Verdict(kind, index, chosen, f"period {n}", apart(maxima, true), stated, _CAUTION * apart(nearly, true) + 3.0 * orbit[1])

@@ -50,14 +50,14 @@ class CurveController:
         self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
         self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed),
                                   host.session.cpu_time)
-        self._asked: Scene | None = None
+        self._wanted_for: Scene | None = None
         self._begun = 0
         self._wanted = {name: name == "rest" for name, *_ in CHOICES}
         self._visible = True
         self._computed: dict[str, Scene] = {}
         self._quiet = Debounce(host, CURVE_QUIET)
         self._reports = Reports(host, self._draw)
-        self._key: Scene | None = None
+        self._computed_for: Scene | None = None
         self._remaining: list[str] = []
         self._done = -1.0
         self._chapters = Chapters(host, self._show_chapters)
@@ -87,7 +87,7 @@ class CurveController:
 
     def moved(self, scene: Scene) -> None:
         """A knob moved. Any knob but f changes the curve: a draft comes at once, the curve when the knobs rest."""
-        if without_frequency(scene) == self._asked:
+        if without_frequency(scene) == self._wanted_for:
             return
         self._chapters.forget()
         self.changed(scene)
@@ -109,7 +109,7 @@ class CurveController:
     def changed(self, scene: Scene) -> None:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
         self._cancel()
-        self._asked = without_frequency(scene)
+        self._wanted_for = without_frequency(scene)
         self._figure.expected = self._visible and self._wanted["rest"] and curve_affordable(scene)
         self._bar.update_state(driven=scene.is_driven)
         self._quiet.start(self._begin_when_compiled, scene)
@@ -182,13 +182,13 @@ class CurveController:
             title = f"resonance curve, {WORDS[name]}"
             if not self._wanted[name]:
                 found.append((title, OFF, "not selected"))
-            elif self._computed.get(name) is not None and self._computed.get(name) == self._key:
+            elif self._computed.get(name) is not None and self._computed.get(name) == self._computed_for:
                 found.append((title, READY, "all points are computed"))
             elif not self._visible:
                 found.append((title, OFF, "not on the screen"))
-            elif self._asked is not None and not self._asked.is_driven:
+            elif self._wanted_for is not None and not self._wanted_for.is_driven:
                 found.append((title, OFF, "nothing drives the chain"))
-            elif self._asked is not None and not curve_affordable(self._asked):
+            elif self._wanted_for is not None and not curve_affordable(self._wanted_for):
                 found.append((title, OFF, "it would take too long; granchain curve computes it"))
             elif name in self._remaining and self.computing:
                 found.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
@@ -214,7 +214,7 @@ class CurveController:
                    if self._visible and self._wanted[name] and self._computed.get(name) != key]
         for name in missing:
             self._computed.pop(name, None)
-        self._key = key
+        self._computed_for = key
         shown = [name for name in CURVE_STARTS if self._wanted[name]]
         with unlocked():
             self._figure.show_directions(shown)
@@ -246,12 +246,12 @@ class CurveController:
             for direction, new in points.items():
                 self._figure.add(direction, new, direction in covers)
             for progress in reports:
-                if progress.complete and self._key is not None:
-                    self._computed[progress.direction] = self._key
+                if progress.complete and self._computed_for is not None:
+                    self._computed[progress.direction] = self._computed_for
                     self._figure.finished(progress.direction)
                     self._placed()
                     if progress.direction == "rest":
-                        self._chapters.name(self._figure.points("rest"), self._key)
+                        self._chapters.name(self._figure.points("rest"), self._computed_for)
                     self.compared(self._figure.difference)
             self._done = self._overall(reports[-1])
             self._bar.update_state(done=self._done)
