@@ -153,27 +153,25 @@ class ScaledChain:
         step = _STEP / math.sqrt(lightest * stiffest) / overlap**0.25
         stiffness, damping = self._body_rates
         if slots.dissipation is not None:
-            damping += 4.0 * slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
+            damping += 4.0 * slots.dissipation.coefficient * overlap ** exponent(slots.dissipation) * lightest
         if damping > 0.0:
-            step = min(step, _DAMPING_LIMIT / (damping * lightest))
+            step = min(step, _DAMPING_LIMIT / damping)
         if stiffness > 0.0:
-            step = min(step, _FOUNDATION_STEP / math.sqrt(stiffness * lightest))
+            step = min(step, _FOUNDATION_STEP / math.sqrt(stiffness))
         return step
 
     @property
     def _body_rates(self) -> tuple[float, float]:
-        """−∂P/∂u and −∂P/∂v of the forces P from outside the chain, at one drive amplitude and the largest speed.
+        """Largest −∂P/∂u / m and −∂P/∂v / m of the forces P from outside the chain on any bead.
 
-        They come from the same linearisation as the tangents, so a new force needs no entry here. Of a force that
-        differs from bead to bead the largest counts.
+        They are taken at one drive amplitude and the largest speed, from the same linearisation as the tangents, so a
+        new force needs no entry here.
         """
         struck = float(np.abs(self.scene.velocities_at_start()).max()) / self.scales.velocity
         speed = _FASTEST * max(struck, self.beta if self.scene.is_driven else 0.0)
         beads = np.arange(1, self.beads + 1)
-        slopes = (add_force_slope(self.slots, beads, 0.0, 1.0, speed, 1.0, 0.0, 1.0, 1.0),
-                  add_force_slope(self.slots, beads, 0.0, 1.0, speed, 0.0, 1.0, 1.0, 1.0))
-        stiffness, damping = (-float(slope.min()) if isinstance(slope, np.ndarray) else -slope for slope in slopes)
-        return stiffness, damping
+        return (-float(np.min(add_force_slope(self.slots, beads, 0.0, 1.0, speed, 1.0, 0.0, 1.0))),
+                -float(np.min(add_force_slope(self.slots, beads, 0.0, 1.0, speed, 0.0, 1.0, 1.0))))
 
     @property
     def _struck(self) -> float:

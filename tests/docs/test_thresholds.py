@@ -69,7 +69,7 @@ def test_every_number_with_a_name_in_these_files_is_on_the_page() -> None:
 
 @pytest.mark.parametrize(("accuracy", "noise"), [(1e-8, 1e-7), (1e-5, 1e-6)])
 def test_what_run_takes_for_no_change(accuracy: float, noise: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    module, seen = importlib.import_module("granchain_core.run.run"), []
+    module, seen = importlib.import_module("granchain_core.run.to_accuracy"), []
 
     def find_period(strobes: np.ndarray, rounding: float) -> Regime:
         seen.append(rounding)

@@ -58,8 +58,7 @@ def velocity_slope(slots, rate, u, v, closed, T, out):
     for i in range(n):
         for q in range(columns):
             out[i, q] = rate * T[n + i, q]
-            out[n + i, q] = add_force_slope(slots, i + 1, 0.0, u[i + 1], v[i + 1], T[i, q], out[i, q],
-                                            slots.chain.inverse_mass[i + 1], rate)
+            out[n + i, q] = add_force_slope(slots, i + 1, 0.0, u[i + 1], v[i + 1], T[i, q], out[i, q], rate)
     for c in range(n + 1):
         if closed[c] == 0:
             continue

@@ -185,7 +185,7 @@ def block_slope(slots, tangent, stage, rate):
         u, v = stages.u[stage, i + 1], stages.v[stage, i + 1]
         store(tangent.slopes, i * STAGES + stage, moving)
         store(tangent.slopes, (n + i) * STAGES + stage,
-              add_force_slope(slots, i + 1, pushed, u, v, here, moving, inverse, rate))
+              add_force_slope(slots, i + 1, pushed, u, v, here, moving, rate))
         here, left = ahead, right
 
 

@@ -48,13 +48,13 @@ def test_every_term_is_asked_for_each_bead(monkeypatch: pytest.MonkeyPatch, chai
 
 
 def test_the_step_is_that_of_the_strongest_of_unequal_forces(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A force −c_i v_i damps by the largest c_i."""
+    """A force −c_i v_i on beads of one mass damps by the largest c_i."""
     import granchain_core.scaling as module
 
     coefficients = np.array([0.0, 1.0, 7.0, 2.0, 0.0])
 
-    def slope(slots: Any, i: Any, before: Any, u: Any, v: Any, du: Any, du_slope: Any, inverse_mass: Any, rate: Any) -> Any:
-        return before - du_slope * inverse_mass * coefficients[i]
+    def slope(slots: Any, i: Any, before: Any, u: Any, v: Any, du: Any, du_slope: Any, rate: Any) -> Any:
+        return before - du_slope * coefficients[i]
 
     monkeypatch.setattr(module, "add_force_slope", slope)
     assert scale_chain(scene("sec2").evolve(N=3))._body_rates == (0.0, 7.0)
