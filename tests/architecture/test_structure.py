@@ -92,3 +92,9 @@ def test_the_folders_of_quick_tests_are_there() -> None:
     (quick,) = (ast.literal_eval(statement.value) for statement in parsed(tests / "conftest.py").body
                 if isinstance(statement, ast.Assign) and ast.unparse(statement.targets[0]) == "QUICK")
     assert [folder for folder in quick if not (tests / folder).is_dir()] == []
+
+
+def test_files_of_tests_have_names_of_their_own() -> None:
+    """Those of two folders with one name are one module to pytest, which then refuses the second."""
+    names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
+    assert sorted({name for name in names if names.count(name) > 1}) == []
