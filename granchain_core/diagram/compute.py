@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from ..integrate.batch import can_share_batch
 from ..scene import Amplitude, Scene
-from ..steady.batch.engine import batch_states
 from ..steady.batch.job import Start
+from ..steady.batch.starts import settle_starts
 from ..steady.batch.threads import on_all_cores
-from ..steady.settling.single_chain import settle_or_failure, settled_alone
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells
@@ -32,26 +29,6 @@ def by_structure(grid: Grid, numbers: Iterable[int]) -> list[list[int]]:
         cell = grid.cell(number)
         groups.setdefault((cell.is_uniform, tuple(cell.effects)), []).append(number)
     return list(groups.values())
-
-
-def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
-    """Steady states from starts of one structure: in a batch where they can share one, else one by one."""
-    rest_of_them = iter(starts)
-    first = next(rest_of_them, None)
-    if first is None:
-        return
-    together = _chained(first, rest_of_them)
-    if can_share_batch(first.scene):
-        for result in batch_states(together, stop):
-            yield settled_alone(result, stop) if result.undecided else result
-        return
-    for one in together:
-        yield replace(settle_or_failure(one.scene, one.state, stop), number=one.number)
-
-
-def _chained(first: Start, others: Iterator[Start]) -> Iterator[Start]:
-    yield first
-    yield from others
 
 
 def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) -> np.ndarray:

@@ -76,8 +76,9 @@ class StroboscopicMap:
     def _prepare(self, tolerance: float) -> None:
         self.tolerance = tolerance
         row = self.engine.scaled.bodies
-        self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64),
-                          np.zeros((EVENTS_PER_CONTACT * (row - 1) * self.periods, 2)), np.zeros(1, dtype=np.int64))
+        events = np.zeros((EVENTS_PER_CONTACT * (row - 1) * self.periods, 2))
+        self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64), events,
+                                       np.zeros(1, dtype=np.int64))
         held = self.engine.stepper.work.forces._replace(held=Held(self._contacts.closed))
         self._work = self.engine.stepper.work._replace(forces=held)
 

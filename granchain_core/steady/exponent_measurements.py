@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..regime import Regime
-from .regime_criteria import agree, clearly_chaotic, regime_from_exponents, undecided
+from .regime_criteria import agree, clearly_chaotic, needs_more_periods, regime_from_exponents
 
 #: Blocks of a measurement, from which the standard error of its mean exponent is computed.
 EXPONENT_BLOCKS = 10
@@ -57,7 +57,7 @@ class ExponentMeasurements:
         measured = np.concatenate([self.unfinished, exponents])
         periods = PERIODS_IN_BLOCK * len(measured)
         blocks = measured.reshape(EXPONENT_BLOCKS, -1).mean(axis=1)
-        if undecided(blocks, periods) and not last:
+        if needs_more_periods(blocks, periods) and not last:
             self.unfinished = measured
             return None
         self.unfinished = np.zeros(0)

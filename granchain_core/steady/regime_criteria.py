@@ -93,7 +93,7 @@ def _mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
     return mean, math.sqrt(math.fsum((one - mean) ** 2 for one in values) / (len(values) - 1) / len(values))
 
 
-def undecided(exponents: np.ndarray, periods: int) -> bool:
+def needs_more_periods(exponents: np.ndarray, periods: int) -> bool:
     """Whether the error of these blocks is too large for a decision: more periods are needed.
 
     The mean is neither clearly positive nor clearly negative, and `is_neutral` does not hold.

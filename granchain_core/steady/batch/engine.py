@@ -137,7 +137,7 @@ class _JobsInBatch:
             self._free(member)
             return failed(job)
         if job.measuring:
-            result = self._decide(job, member)
+            result = self._decide_by_exponent(job, member)
             self._free(member)
             return result
         if self.draft:
@@ -164,7 +164,7 @@ class _JobsInBatch:
         self.free += lanes
         self.newly_free.update(lanes)
 
-    def _decide(self, job: BatchJob, member: int) -> SteadyState | None:
+    def _decide_by_exponent(self, job: BatchJob, member: int) -> SteadyState | None:
         """The result of a job whose Lyapunov exponents were measured, or None where it goes on."""
         seen = exponents_of(self.batch, member, PERIODS_IN_BLOCK)
         job.periods_run += len(seen.strobes)

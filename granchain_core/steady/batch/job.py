@@ -111,10 +111,10 @@ class BatchJob:
             maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, located_errors, errors)
         maxima = maxima * self.scaled.scales.force
         return SteadyState(self.scene, maxima, replace(regime, distance=distance), errors, self.scaled.to_si(y),
-                          number=self.number)
+                           number=self.number)
 
     def _located_maxima(self, y: np.ndarray, regime: Regime, distance: float,
-                      stop: Stop) -> tuple[np.ndarray, np.ndarray]:
+                        stop: Stop) -> tuple[np.ndarray, np.ndarray]:
         """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
         A batch steps across events, so the jumps it sees have an error of the order of the step. A second orbit with
@@ -157,7 +157,7 @@ def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadySta
     if periods_run >= MOST_PERIODS or (len(record) >= SLOW_RECORD and not converging(record)):
         return _to_measure(job, batch, member, periods_run, record.copy())
     batch.state.return_at[member] = min(here + max(EXAMINED_AFTER // 4, SLOW_RECORD - len(record)),
-                                 job.affordable_periods - job.periods_run)
+                                        job.affordable_periods - job.periods_run)
     return None
 
 

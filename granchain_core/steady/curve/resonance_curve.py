@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import os
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -17,8 +16,10 @@ from ...scene.driven import refuse_undriven
 from ...scheduler import dealt, results
 from ...stop import Stop
 from ..batch.engine import batch_results
+from ..batch.job import Start
+from ..batch.starts import settle_starts
 from ..batch.threads import on_all_cores
-from ..settling.single_chain import settle_or_failure, settled_alone
+from ..settling.single_chain import settle_or_failure
 from .curve import Curve, CurvePoint
 from .order import used_and_missing
 
@@ -119,16 +120,8 @@ def _from_rest(scenes: list[Scene], stop: Stop | None, workers: int | None) -> I
 
 
 def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
-    first = next(scenes, None)
-    if first is None:
-        return
-    rest_of_them = itertools.chain([first], scenes)
-    if can_share_batch(first):
-        for found in batch_results(rest_of_them, ended):
-            yield CurvePoint.of(settled_alone(found, ended) if found.undecided else found)
-        return
-    for one in rest_of_them:
-        yield CurvePoint.of(settle_or_failure(one, None, ended))
+    for found in settle_starts(map(Start, scenes), ended):
+        yield CurvePoint.of(found)
 
 
 def _scheduled(scheduler: Any, scenes: list[Scene], stop: Stop | None) -> Iterator[CurvePoint]:

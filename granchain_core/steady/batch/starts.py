@@ -1,0 +1,32 @@
+"""Steady states of many starts: in a batch where they can share one and it decides, else one by one."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from ...integrate.batch import can_share_batch
+from ...stop import Stop
+from ..settling.single_chain import settle_or_failure, settled_alone
+from ..steady_state import SteadyState
+from .engine import batch_states
+from .job import Start
+
+
+def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
+    """Steady states from starts of one structure and one N, in the order in which they are decided.
+
+    What a batch leaves undecided is settled alone. Raises `Cancelled`.
+    """
+    others = iter(starts)
+    first = next(others, None)
+    if first is None:
+        return
+    together = itertools.chain([first], others)
+    if can_share_batch(first.scene):
+        for result in batch_states(together, stop):
+            yield settled_alone(result, stop) if result.undecided else result
+        return
+    for one in together:
+        yield replace(settle_or_failure(one.scene, one.state, stop), number=one.number)
