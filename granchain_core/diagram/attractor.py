@@ -13,7 +13,7 @@ from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
 from ..state import State
-from ..steady.settling.single_chain import settling_methods
+from ..steady.batch.starts import settling_methods
 from ..tables import (
     MAXIMA,
     Column,

@@ -11,7 +11,7 @@ from ..quantities import QUANTITIES
 from ..regime import NAMES, Regime
 from ..result import ForceErrors
 from ..scene import Scene
-from ..steady.settling.single_chain import settling_methods
+from ..steady.batch.starts import settling_methods
 from ..steady.steady_state import SteadyState
 from ..tables import (
     MAXIMA,

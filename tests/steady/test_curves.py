@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from granchain_core import NumbersFailed, resonance_curve, scene, settled
+from granchain_core.regime import Regime
+from granchain_core.state import rest
 from granchain_core.steady.curve.curve import CurvePoint
+from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
 
 
@@ -67,6 +70,20 @@ def test_up_and_down_sweeps_differ_where_there_is_hysteresis():
     up, down = (resonance_curve(scene("sec2"), frequencies, start) for start in ("up", "down"))
     a, b = up.column("max_output_force_elastic"), down.column("max_output_force_elastic")
     assert np.abs(a - b).max() > 0.05  # newtons; forces are known to 1e-5, so this is another branch
+
+
+def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch):
+    """620 periods in a batch and a failure after them are not 0 periods."""
+    from granchain_core.steady.settling import single_chain as module
+
+    def fails(*_):
+        raise NumbersFailed("made to fail", "not-finite")
+
+    monkeypatch.setattr(module, "settle_to_forces", fails)
+    chain = scene("sec2").evolve(N=3)
+    left = SteadyState(chain, np.zeros(3), Regime.unsettled(620), None, rest(chain), undecided=True)
+    found = module.settled_alone(left, Stop())
+    assert (found.failure, found.regime.periods_run) == ("made to fail", 620)
 
 
 def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):

@@ -7,11 +7,19 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from ...integrate.batch import can_share_batch
+from ...integrate.methods import ADAPTIVE, FIXED_STEP
+from ...scene import Scene
 from ...stop import Stop
 from ..settling.single_chain import settle_or_failure, settled_alone
 from ..steady_state import SteadyState
 from .engine import batch_states
 from .job import Start
+
+
+def settling_methods(scene: Scene, each: str) -> str:
+    """The methods behind many steady states of `scene` in words, for their provenance; `each` is "point", "cell", …"""
+    alone = f"{FIXED_STEP} or {ADAPTIVE} {each} by {each}"
+    return f"rk4 in batches, {alone}" if can_share_batch(scene) else alone
 
 
 def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:

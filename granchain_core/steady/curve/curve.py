@@ -26,7 +26,7 @@ from ...tables import (
 )
 from ...tables.provenance import Attribute
 from ...tables.words import evidence_columns
-from ..settling.single_chain import settling_methods
+from ..batch.starts import settling_methods
 from ..steady_state import SteadyState
 
 

@@ -30,7 +30,7 @@ UNSURE = 1e-5
 #: from the orbit that is then found.
 NEAR_AN_ORBIT = 0.1
 #: Largest relative change over n periods of a motion that is almost periodic. On closed curves of section 2 and of the
-#: rig the least change over 1 to 16 periods was 2e-3 or more, on the slowest approaches 2e-4 or less.
+#: rig the least change over 1 to 16 periods was 1.8e-3 or more, on slow approaches 2.2e-4 or less.
 _ALMOST_PERIODIC = 1e-3
 #: The period tried is the shortest over which the motion changes by at most this factor times the least change.
 _CHANGE_FACTOR = 3.0

@@ -8,8 +8,6 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...integrate import Engine
-from ...integrate.batch import can_share_batch
-from ...integrate.methods import ADAPTIVE, FIXED_STEP
 from ...regime import Regime
 from ...scene import Scene
 from ...state import State
@@ -22,12 +20,6 @@ from .refine_orbit import refined_orbit
 #: Points of curves and maps that are settled alone are computed to this relative accuracy at best, even if the scene
 #: asks for more. A batch does not read the scene's accuracy.
 CURVE_ACCURACY = 1e-5
-
-
-def settling_methods(scene: Scene, each: str) -> str:
-    """The methods behind many steady states of `scene` in words, for their provenance; `each` is "point", "cell", …"""
-    alone = f"{FIXED_STEP} or {ADAPTIVE} {each} by {each}"
-    return f"rk4 in batches, {alone}" if can_share_batch(scene) else alone
 
 
 def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run: int = 0) -> SteadyState:
@@ -61,8 +53,8 @@ def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run
         return settle_to_forces(scene, start, stop, periods_run)
     except NumbersFailed as failed:
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
-        return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(0), None, start or resting, failed.sentence,
-                           failed.status)
+        return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(periods_run), None, start or resting,
+                           failed.sentence, failed.status)
 
 
 def settled_alone(undecided: SteadyState, stop: Stop) -> SteadyState:
