@@ -15,6 +15,7 @@ from ..kernels.batch.unequal import Unequal
 from ..kernels.compiling.by_address import address_of
 from ..kernels.compiling.entry import entry
 from ..kernels.compiling.jit import unknown_slots
+from ..kernels.equations.motion import Slots
 from ..kernels.forces.peaks import PEAKS
 from ..kernels.simd.vector import aligned
 from ..kernels.status import CANCELLED, DONE
@@ -49,6 +50,13 @@ def _rows(rows: int) -> np.ndarray:
     return aligned(rows, BATCH_SIZE)
 
 
+def _slots_of_members(scaled: ScaledChain) -> Slots:
+    """The effects' slots with rows for all members in place of each number and array; chain and drive have others."""
+    effects = scaled.slots._replace(chain=None, driver=None)
+    return Slots(*(None if slot is None else type(slot)(*(_rows(np.size(value)) for value in slot))
+                   for slot in effects))
+
+
 class Batch:
     """BATCH_SIZE lanes for scenes of one structure and one N, run by one thread."""
 
@@ -57,14 +65,10 @@ class Batch:
         self.stop = stop
         self._run: Any = None
         self._check = 0
-        n, slots = example.N, scaled.slots
-        dissipation, foundation, preload = slots.dissipation, slots.foundation, slots.preload
+        n = example.N
         self.members = kernels.Members(
             wall=_rows(1), unequal=None if is_uniform(scaled) else Unequal(_rows(n + 2), _rows(n + 1)),
-            dissipation=None if dissipation is None else type(dissipation)(_rows(1)),
-            foundation=None if foundation is None else type(foundation)(_rows(1)),
-            preload=None if preload is None else type(preload)(_rows(n + 1)),
-            turn=_rows(2), beta=_rows(1), h=_rows(1),
+            slots=_slots_of_members(scaled), turn=_rows(2), beta=_rows(1), h=_rows(1),
         )
         rows = 2 * (n + 2)
         counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
@@ -101,10 +105,10 @@ class Batch:
         if members.unequal is not None:
             members.unequal.inverse_mass[:, member] = slots.chain.inverse_mass
             members.unequal.stiffness[:, member] = slots.chain.stiffness
-        for mine, its in ((members.dissipation, slots.dissipation), (members.foundation, slots.foundation),
-                          (members.preload, slots.preload)):
-            if mine is not None:
-                mine[0][:, member] = its[0]
+        for slot, its in zip(members.slots, slots, strict=True):
+            if slot is not None:
+                for rows, value in zip(slot, its, strict=True):
+                    rows[:, member] = value
         half = np.pi / steps
         members.turn[:, member] = np.cos(half), np.sin(half)
         members.beta[0, member], members.h[0, member] = scaled.beta, scaled.period / steps

@@ -8,6 +8,8 @@ import pytest
 from documents import ROOT
 from edited_tree import copied, edited_copy, files_of, follow
 
+from granchain_core.kernels.compiling.jit import in_simd_kernels
+
 PAGE = ROOT / "docs" / "add-an-effect.md"
 #: The headings under which the effect is mentioned, and under which the force becomes one that is not linear in the
 #: velocity.
@@ -94,28 +96,30 @@ print(np.abs(found - exact).max() / np.abs(exact).max())
 
 
 def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
-    """Unmarked, and marked for the kernels that step 2 names but dop853-root's: a motion without the drag would be
-    wrong.
-    """
-    printed = follow(tree, "-c", """
+    """Unmarked, and marked for other kernels than those of dop853-root: a motion without the drag would be wrong."""
+    file = tree / "granchain_core" / "kernels" / "effects" / "drag.py"
+    text = file.read_text(encoding="utf-8")
+    mark = '@in_simd_kernels("rk4", "batch", "regularised")\n'
+    assert text.count(mark) == 1
+    try:
+        for less, shares in (("", "False"), ('@in_simd_kernels("rk4", "batch")\n', "True")):
+            file.write_text(text.replace(mark, less), encoding="utf-8")
+            printed = follow(tree, "-c", """
 from granchain_core import BadInput, run, scene
 from granchain_core.integrate.batch import can_share_batch
-from granchain_core.kernels.effects.drag import Drag
-from granchain_core.kernels.compiling.jit import in_simd_kernels
-for mark in ((), ("rk4", "batch")):
-    in_simd_kernels(*mark)(Drag)
-    try:
-        run(scene("drag"), periods=1, method="dop853-root")
-    except BadInput as problem:
-        print(can_share_batch(scene("drag")), problem)
 try:
-    in_simd_kernels(Drag)
-except TypeError as problem:
-    print(problem)
-""").splitlines()
-    assert [line.split()[0] for line in printed] == ["False", "True", "in_simd_kernels:"]
-    assert all("use dop853 for this one. It does not know: drag." in line for line in printed[:2])
-    assert "name those with terms of the slot, of rk4, batch, regularised" in printed[2]
+    run(scene("drag"), periods=1, method="dop853-root")
+except BadInput as problem:
+    print(can_share_batch(scene("drag")), problem)
+""")
+            assert printed.startswith(shares) and "use dop853 for this one. It does not know: drag." in printed
+    finally:
+        file.write_text(text, encoding="utf-8")
+
+
+def test_a_mark_names_folders_of_vectors() -> None:
+    with pytest.raises(TypeError, match="name those with terms of the slot, of rk4, batch, regularised"):
+        in_simd_kernels("effects")
 
 
 def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> None:

@@ -10,8 +10,8 @@ _CHAIN, _STEP, _CHANGES = _FOLDER + "chain.py", _FOLDER + "step.py", _FOLDER + "
 _RUN, _FORCES, _INSIDE = _FOLDER + "run.py", _FOLDER + "forces.py", _FOLDER + "inside.py"
 
 REGULARISED = (
-    Mutant("regularised-foundation-on-neighbour", _CHAIN, "from_left(blank(elastic), elastic) - elastic, u)",
-           "from_left(blank(elastic), elastic) - elastic, from_right(u, blank(u)))",
+    Mutant("regularised-foundation-on-neighbour", _CHAIN, "from_left(blank(elastic), elastic) - elastic, u, du)",
+           "from_left(blank(elastic), elastic) - elastic, from_right(u, blank(u)), du)",
            "the foundation pulls each bead by its neighbour's displacement", k.ROOT_FOUNDED),
     Mutant("regularised-without-preload", _CHAIN, "row_overlap(values.preload, u, from_right(u, blank(u)))",
            "u - from_right(u, blank(u))", "a pressed chain is a sonic vacuum", k.ROOT_PRESSED),

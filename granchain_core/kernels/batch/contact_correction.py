@@ -67,23 +67,22 @@ def correct_state(values, y, c, row, error):
 @inline_llvm
 def correct_contacts(values, y, overlaps, h, u0):
     """Correct the last step at contacts that changed in it; `overlaps` are the overlaps before it."""
-    bodies = values.last + 2
+    law, bodies = values.slots.dissipation, values.last + 2
     left = u0
     for c in range(values.last + 1):
         right = load_batch(y, c + 1)
-        overlap = batch_overlap(values.preload, left, right, c)
+        overlap = batch_overlap(values.slots.preload, left, right, c)
         before = load_batch(overlaps, c)
         store(overlaps, c, overlap)
         changed = blank(overlap) - before * overlap
         if positive_mask(changed) != 0:
-            rise = overlap - before
-            speed = larger(rise, blank(overlap) - rise) / h
+            speed = abs(overlap - before) / h
             r = larger(overlap, before) / (speed * h)
             r_mid = clip(r - 0.5)
             impulse = h * three_halves(speed * h) * impulse_error(r, three_halves(r), three_halves(r_mid))
             impulse = times_stiffness(values.unequal, values.wall, c, c == values.last, impulse)
-            shift = displacement_error(values.law, r, r_mid, speed, h)
+            shift = displacement_error(law, r, r_mid, speed, h)
             correct_state(values, y, c, bodies, gate(changed, impulse))
-            correct_displacement(values.law, values, y, c, changed, shift)
+            correct_displacement(law, values, y, c, changed, shift)
             right = load_batch(y, c + 1)
         left = right

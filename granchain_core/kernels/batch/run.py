@@ -13,9 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.jit import inline_llvm, inline_numba, kernel
-from ..effects.dissipation import batch_values
-from ..effects.foundation import batch_foundation
 from ..effects.preload import batch_overlap
+from ..equations.motion import batch_slots
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import load_batch, store
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
@@ -31,15 +30,13 @@ NO_SHADOW, IS_SHADOW = -1, -2
 class Members(NamedTuple):
     """Values of the members' scenes, L of them.
 
-    `wall` (1, L) is the wall's stiffness; the slots hold arrays (1, L) or (rows, L), or are None. `turn` (2, L) is the
-    cosine and sine of the phase of half a step, `beta` (1, L) the scaled drive rate, `h` (1, L) the step.
+    `wall` (1, L) is the wall's stiffness; the effects' `slots` hold arrays (1, L) or (rows, L), or are None. `turn`
+    (2, L) is the cosine and sine of the phase of half a step, `beta` (1, L) the scaled drive rate, `h` (1, L) the step.
     """
 
     wall: np.ndarray
     unequal: Any
-    dissipation: Any
-    foundation: Any
-    preload: Any
+    slots: Any
     turn: np.ndarray
     beta: np.ndarray
     h: np.ndarray
@@ -127,8 +124,8 @@ def take_steps(members, state, count):
     """
     y, before = state.y, flush_subnormals()
     last = y.shape[0] // 2 - 2
-    values = Values(load_batch(members.wall, 0), batch_values(members.dissipation),
-                    batch_foundation(members.foundation), members.preload, members.unequal, last)
+    values = Values(load_batch(members.wall, 0), batch_slots(members.slots), members.unequal, last)
+    preload = values.slots.preload
     h, beta = load_batch(members.h, 0), load_batch(members.beta, 0)
     c, s = load_batch(members.turn, 0), load_batch(members.turn, 1)
     sine, cosine = load_batch(state.phase, 0), load_batch(state.phase, 1)
@@ -136,8 +133,8 @@ def take_steps(members, state, count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
         end, end_cosine = middle * c + middle_cosine * s, middle_cosine * c - middle * s
         correct_contacts(values, y, state.overlaps, h, sine)
-        first_overlap = batch_overlap(values.preload, sine, load_batch(y, 1), 0)
-        last_overlap = batch_overlap(values.preload, load_batch(y, last), load_batch(y, last + 1), last)
+        first_overlap = batch_overlap(preload, sine, load_batch(y, 1), 0)
+        last_overlap = batch_overlap(preload, load_batch(y, last), load_batch(y, last + 1), last)
         ends = batch_step(values, y, state.stages, h, sine, middle, end)
         watch_batch_ends(values, h, first_overlap, last_overlap, beta * cosine, ends, state.ends, state.peaks)
         sine, cosine = end, end_cosine

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from ..compiling.jit import by_slot, by_type_inlined, inline_llvm
 from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, shape
-from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
+from ..equations.body_forces import force_on_bead
 from ..forces.crossings import Approach, brief_touch, closing_rate
 from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_batch
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
@@ -24,9 +24,7 @@ class Values(NamedTuple):
     """Values of the members' scenes. What is one number per scene is a vector in a register."""
 
     wall: Any
-    law: Any
-    foundation: Any
-    preload: Any
+    slots: Any
     unequal: Any
     last: Any
 
@@ -56,9 +54,9 @@ def by_multipliers(d):
 @inline_llvm
 def contact(values, root_of, left, right, c, is_wall):
     """Elastic force and shape G/λ of contact c; `root_of` computes the root."""
-    d = above_zero(batch_overlap(values.preload, left, right, c))
+    d = above_zero(batch_overlap(values.slots.preload, left, right, c))
     r = root_of(d)
-    return times_stiffness(values.unequal, values.wall, c, is_wall, d * r), shape(values.law, d, r)
+    return times_stiffness(values.unequal, values.wall, c, is_wall, d * r), shape(values.slots.dissipation, d, r)
 
 
 @by_slot
@@ -115,9 +113,10 @@ def bead(values, root_of, stage, source, i, left, is_last):
     bodies = values.last + 2
     right = load_batch(source, i + 1)
     e, shape_right = contact(values, root_of, left.u, right, i, is_last)
-    velocity = batch_velocity(values.law, values.unequal, i, load_batch(source, bodies + i), left.shape - shape_right)
+    w, law = load_batch(source, bodies + i), values.slots.dissipation
+    velocity = batch_velocity(law, values.unequal, i, w, left.shape - shape_right)
     use_slope(stage, i, velocity)
-    force = add_foundation_force(values.foundation, left.e - e, left.u)
+    force = force_on_bead(values.slots, i, left.e - e, left.u, velocity)
     use_slope(stage, bodies + i, over_mass(values.unequal, i, force))
     return velocity, Left(right, e, shape_right)
 
@@ -166,11 +165,12 @@ def batch_step(values, y, stages, h, u0, middle, end):
 @inline_llvm
 def watch_batch_ends(values, h, first_overlap, last_overlap, v0, ends, before, peaks):
     """Follow input force, output force and its elastic part in all members, where a step began."""
+    law = values.slots.dissipation
     first, last = Approach(first_overlap, v0 - ends.v_first), Approach(last_overlap, ends.v_last)
-    watch_batch(peaks, INPUT, ends.pushed + dashpot_force(values.law, first.overlap, first.rate))
-    watch_batch(peaks, OUTPUT, ends.passed + dashpot_force(values.law, last.overlap, last.rate))
+    watch_batch(peaks, INPUT, ends.pushed + dashpot_force(law, first.overlap, first.rate))
+    watch_batch(peaks, OUTPUT, ends.passed + dashpot_force(law, last.overlap, last.rate))
     watch_batch(peaks, OUTPUT_ELASTIC, ends.passed)
-    watch_jumps(values.law, values, h, first, last, before, peaks)
+    watch_jumps(law, values, h, first, last, before, peaks)
 
 
 @by_slot

@@ -8,7 +8,7 @@ Values     coefficient: λ in scaled units, at an overlap of one length unit whe
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
 Terms      damping, damping_slope, dashpot_force, onset_force, dashpot_slope, primitive, times_primitive, shape = G/λ,
            velocity and its inverse shifted (absent: v = w); keep_primitive, put_primitive and put_prescribed_primitive
-           write into the array of G, batch_values reads the values of a batch
+           write into the array of G
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from ..compiling.jit import by_slot, by_slot_inlined, in_simd_kernels, inline_ll
 from ..contact_cubic import TINY
 from ..simd.functions import clip, gate, root
 from ..simd.vector import load_batch
+from .members import batch_values
 
 
 @by_slot_inlined
@@ -263,12 +264,6 @@ def shifted(law, inverse_mass, v, G, i):
 @shifted.of(*LAWS)
 def _(law, inverse_mass, v, G, i):
     return v - inverse_mass[i] * (G[i - 1] - G[i])
-
-
-@by_slot
-def batch_values(law):
-    """The law with the values of all members of a batch, read from its (1, L) arrays."""
-    return None
 
 
 def _read_for_batch(slot):

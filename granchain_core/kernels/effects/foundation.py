@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from ..compiling.jit import by_slot, in_simd_kernels
 from ..simd.vector import load_batch
+from .members import batch_values
 
 
 @in_simd_kernels("rk4", "batch", "regularised")
@@ -42,13 +43,7 @@ def _(foundation, u):
     return 0.5 * foundation.stiffness * u * u
 
 
-@by_slot
-def batch_foundation(foundation):
-    """The foundation with the stiffness of all members of a batch, read from its (1, L) array."""
-    return None
-
-
-@batch_foundation.of(Foundation)
+@batch_values.of(Foundation)
 def _(foundation):
     return Foundation(load_batch(foundation.stiffness, 0))
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..compiling.jit import by_slot, in_simd_kernels
 from ..simd.vector import load_like
+from .members import batch_values
 
 
 @in_simd_kernels("rk4", "batch", "regularised")
@@ -41,6 +42,11 @@ def batch_overlap(preload, left, right, c):
 @batch_overlap.of(Preload)
 def _(preload, left, right, c):
     return left - right + load_like(left, preload.static, c)
+
+
+@batch_values.of(Preload)
+def _(preload):
+    return preload
 
 
 @by_slot

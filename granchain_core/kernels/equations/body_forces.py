@@ -3,8 +3,8 @@
 Equation   m_i ẇ_i = F^el_{i-1} − F^el_i + P_i(u_i, v_i),   P = −k u for a foundation
 Terms      P itself; the energy stored in it; the power −P v that it takes away for good; its linearisation
            δP = ∂P/∂u δu + ∂P/∂v δv for tangents; and ∂P/∂v for the trace, which is the rate at which volumes shrink
-Each term is given the bead's number i, 1 to N, for values that differ from bead to bead. The SIMD kernels repeat the
-terms that they support.
+Each term is given the bead's number i, 1 to N, for values that differ from bead to bead. The SIMD kernels use
+`force_on_bead` too, with vectors of all members of a batch, or of all beads of a chain, where i is None.
 """
 
 from __future__ import annotations
@@ -14,9 +14,12 @@ from ..effects.balance import Balance
 from ..effects.foundation import add_foundation_force, add_foundation_slope, foundation_energy
 
 
-@internal
+@inline_llvm
 def force_on_bead(slots, i, contacts, u, v):
-    """Force on bead i at displacement u and velocity v, on which its two contacts act with `contacts`."""
+    """Force on bead i at displacement u and velocity v, on which its two contacts act with `contacts`.
+
+    For numbers and vectors.
+    """
     return add_foundation_force(slots.foundation, contacts, u)
 
 

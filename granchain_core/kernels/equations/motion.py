@@ -20,12 +20,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import check_effects, internal, kernel
+from ..compiling.jit import check_effects, inline_llvm, internal, kernel
 from ..effects.balance import account
 from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
 from ..effects.dissipation import dashpot_force, keep_primitive, shifted, velocity
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.given_force import prescribe_force, prescribe_primitive
+from ..effects.members import batch_values
 from ..effects.preload import overlap
 from ..effects.tension import cut_tension, keep_force_free_primitive, unless_force_free
 from .body_forces import account_for_bodies, force_on_bead, stored_on_bead
@@ -41,6 +42,20 @@ class Slots(NamedTuple):
     preload: Any = None
     driver: Any = None
     balance: Any = None
+
+
+@inline_llvm
+def batch_slots(slots):
+    """The slots of a batch with their numbers as vectors of all members."""
+    return Slots(
+        slots.chain,
+        batch_values(slots.dissipation),
+        slots.tension,
+        batch_values(slots.foundation),
+        batch_values(slots.preload),
+        slots.driver,
+        slots.balance,
+    )
 
 
 class Forces(NamedTuple):

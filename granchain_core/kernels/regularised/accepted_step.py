@@ -9,7 +9,7 @@ from ..compiling.jit import inline_llvm, inline_numba
 from ..dop853.step import RESOLUTION
 from ..dop853.tableau import DENSE_EVALUATIONS, STAGES
 from ..flow.event_time import nonnegative_root
-from ..simd.sums import largest_of, magnitude, rough_sixteenth
+from ..simd.sums import largest_of, rough_sixteenth
 from ..simd.vector import at, splat, with_first
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .chain import ROOT, TIME, Point, powers, transform_at
@@ -86,7 +86,7 @@ def is_too_small(dt, t, beta):
 def new_units(constants, point, scale):
     """Raise the scale of the tolerance to the largest values at a point; returns the `Units` of the errors."""
     for q in range(2):
-        largest = largest_of(magnitude(with_first(point.u if q == 0 else point.w, 0.0)))
+        largest = largest_of(abs(with_first(point.u if q == 0 else point.w, 0.0)))
         scale[q] = max(scale[q], largest)
     tolerance = constants.method.tolerance
     return Units(1.0 / (tolerance * scale[0]), 1.0 / (tolerance * scale[1]), 2.0 * constants.last)

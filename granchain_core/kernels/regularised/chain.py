@@ -10,8 +10,7 @@ q. At a release q passes through zero with everything else smooth, so that a ste
 then a root on the step's dense output: nothing is repeated. Contacts that are open stay so within a step, for the same
 reason. Far from events ξ is the time.
 
-Lane 0 is the driver, which moves as an oscillator: no stage needs a sine. An effect that is to be known here needs its
-terms in `rates_at` and in `end_forces` (forces.py).
+Lane 0 is the driver, which moves as an oscillator: no stage needs a sine.
 """
 
 from __future__ import annotations
@@ -25,8 +24,8 @@ from ..compiling.jit import inline_llvm
 from ..effects.contact import positive_part
 from ..effects.dissipation import shape
 from ..effects.driver import driver_acceleration
-from ..effects.foundation import add_foundation_force
 from ..effects.preload import row_overlap
+from ..equations.body_forces import force_on_bead
 from ..flow.event_time import smooth_power
 from ..rk4.short_chain import chain_velocity
 from ..simd.functions import root
@@ -116,16 +115,17 @@ def signed_shape(law, power, q):
 @inline_llvm
 def rates_at(values, driver, transform, point):
     """All rates in t at a point."""
-    q, u, power = at(point.clock, ROOT), point.u, smooth_power(values.dissipation)
+    law, q, u = values.slots.dissipation, at(point.clock, ROOT), point.u
+    power = smooth_power(law)
     _, r, d = powers(power, q)
     overlap = row_overlap(values.preload, u, from_right(u, blank(u)))
     pressed = positive_part(overlap)
     roots = root(pressed)
     elastic = transform.stiffness * (pressed * roots) + transform.chosen_stiffness * (d * r)
-    shapes = (transform.others * shape(values.dissipation, pressed, roots)
-              + transform.chosen * signed_shape(values.dissipation, power, q))
-    du = chain_velocity(values.dissipation, point.w, values.damping_over_mass, shapes)
-    net_force = add_foundation_force(values.foundation, from_left(blank(elastic), elastic) - elastic, u)
+    shapes = (transform.others * shape(law, pressed, roots)
+              + transform.chosen * signed_shape(law, power, q))
+    du = chain_velocity(law, point.w, values.damping_over_mass, shapes)
+    net_force = force_on_bead(values.slots, None, from_left(blank(elastic), elastic) - elastic, u, du)
     dw = with_first(values.inverse_mass * net_force, driver_acceleration(driver, at(u, 0)))
     return Rates(du, dw, overlap, du - from_right(du, blank(du)), elastic)
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..contact_cubic import hermite_turn
 from ..flow.event_time import nonnegative_root, smooth_power
-from ..simd.sums import largest_of, lowest_bit, magnitude
+from ..simd.sums import largest_of, lowest_bit
 from ..simd.vector import at, positive_mask
 from .chain import ROOT
 from .inside import change_before, take_distance, turn_of
@@ -65,8 +65,8 @@ def size_in_xi(power, q, speed, dt):
 @inline_llvm
 def nearest_event(rates, closed, scale, dt):
     """The closed contact whose onset or release is next; −1 if it is more than `_MOST_STEPS_AWAY` steps of dt away."""
-    speed, still = magnitude(rates.rate), _REST_PART * scale
-    away = (magnitude(rates.overlap) + still) / (speed + 1e-300) + 1e30 * (1.0 - closed)
+    speed, still = abs(rates.rate), _REST_PART * scale
+    away = (abs(rates.overlap) + still) / (speed + 1e-300) + 1e30 * (1.0 - closed)
     least = 0.0 - largest_of(0.0 - away)
     contact = lowest_bit(~positive_mask(away - least))
     return contact if least < _MOST_STEPS_AWAY * dt and at(speed, contact) * dt > still else -1

@@ -12,7 +12,7 @@ from ..dop853.force_search import FORCE_SECTIONS, SEARCHED, WORTH, is_monotone
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import dashpot_force, dashpot_slope
 from ..effects.driver import driver_acceleration
-from ..effects.foundation import add_foundation_force
+from ..equations.body_forces import force_on_bead
 from ..forces.largest import cubic_top, reach
 from ..forces.peaks import row_of
 from ..rk4.short_chain import chain_values, load_row
@@ -54,9 +54,9 @@ def forces_at_ends(dissipation, rates, last):
 @inline_llvm
 def end_forces(values, driver, point, rates, last):
     """The three forces at a point, and their slopes in t."""
-    law, d = values.dissipation, positive_part(rates.overlap)
+    law, d = values.slots.dissipation, positive_part(rates.overlap)
     force = rates.elastic + dashpot_force(law, rates.overlap, rates.rate)
-    net_force = add_foundation_force(values.foundation, from_left(blank(force), force) - force, point.u)
+    net_force = force_on_bead(values.slots, None, from_left(blank(force), force) - force, point.u, rates.du)
     acceleration = with_first(values.inverse_mass * net_force, driver_acceleration(driver, at(point.u, 0)))
     elastic_rises = elastic_slope(values.stiffness, d) * rates.rate
     rises = elastic_rises + dashpot_slope(law, d, rates.rate,

@@ -47,7 +47,7 @@ def _stage(row):
         point = Point(start.u + h * total(slope.u, slopes.u), start.w + h * total(slope.w, slopes.w),
                       start.clock + h * total(slope.clock, slopes.clock))
         rates = rates_at(values, driver, transform, point)
-        return point, rates, keep_slope(work, values.dissipation, transform, at(point.clock, ROOT), rates, row)
+        return point, rates, keep_slope(work, values.slots.dissipation, transform, at(point.clock, ROOT), rates, row)
 
     return stage
 
@@ -64,7 +64,7 @@ def attempt(values, driver, work, transform, start, rates, h, units):
 
     `rates` are those at the start; `units` are `Units`.
     """
-    k = keep_slope(work, values.dissipation, transform, at(start.clock, ROOT), rates, 0)
+    k = keep_slope(work, values.slots.dissipation, transform, at(start.clock, ROOT), rates, 0)
     _, _, k = _stage1(values, driver, work, transform, start, h, k)
     _, _, k = _stage2(values, driver, work, transform, start, h, k)
     _, _, k = _stage3(values, driver, work, transform, start, h, k)

@@ -14,8 +14,8 @@ import numpy as np
 from ..compiling.jit import by_slot, inline_numba, internal
 from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import LAWS, dashpot_force, primitive
-from ..effects.foundation import add_foundation_force
 from ..effects.preload import batch_overlap
+from ..equations.body_forces import force_on_bead
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
 from ..simd.vector import VECTOR_WIDTH, from_left, from_right, load, positive_mask, splat, store, with_first
 from .step import tabulated_displacement, tabulated_velocity
@@ -93,7 +93,7 @@ def first_stage(simd, slots, u0, h):
         e, G = elastic_force(load(simd.stiffness, b), d), primitive(law, d)
         inverse = load(simd.inverse_mass, b)
         du = long_chain_velocity(law, load(now, blocks + b), inverse, G_before, G)
-        dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
+        dw = inverse * force_on_bead(slots, None, from_left(e_before, e) - e, here, du)
         store(simd.overlap, b, overlap)
         store(simd.velocity, b, du)
         store(simd.elastic, b, e)
@@ -118,7 +118,7 @@ def later_stage(simd, slots, u0, y, out, h, forward, weight):
         e, G = elastic_force(load(simd.stiffness, b), d), primitive(law, d)
         inverse = load(simd.inverse_mass, b)
         du = long_chain_velocity(law, load(y, blocks + b), inverse, G_before, G)
-        dw = inverse * add_foundation_force(slots.foundation, from_left(e_before, e) - e, here)
+        dw = inverse * force_on_bead(slots, None, from_left(e_before, e) - e, here, du)
         for row, slope in ((b, du), (blocks + b, dw)):
             store(out, row, load(now, row) + reach * slope)
             store(simd.acc, row, load(simd.acc, row) + share * slope)

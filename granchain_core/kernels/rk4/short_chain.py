@@ -15,8 +15,8 @@ from ..compiling.jit import by_slot, by_type, inline_llvm
 from ..contact_cubic import OVERLAP, RATE
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, shape
-from ..effects.foundation import add_foundation_force
 from ..effects.preload import row_overlap, row_values
+from ..equations.body_forces import force_on_bead
 from ..simd.functions import root
 from ..simd.vector import blank, from_left, from_right, load, load16, load32, store, with_first
 
@@ -66,13 +66,12 @@ class ShortChain(NamedTuple):
 
 
 class ChainValues(NamedTuple):
-    """The chain's values as vectors, and its slots."""
+    """The chain's slots, and those of its values that are vectors."""
 
+    slots: Any
     inverse_mass: Any
     damping_over_mass: Any
     stiffness: Any
-    dissipation: Any
-    foundation: Any
     preload: Any
 
 
@@ -135,20 +134,20 @@ def chain_values(short, slots):
     """The chain's values in registers."""
     width = short.width
     inverse_mass = load_row(width, short.inverse_mass, 0)
-    return ChainValues(inverse_mass, over_masses(slots.dissipation, inverse_mass), load_row(width, short.stiffness, 0),
-               slots.dissipation, slots.foundation, row_values(short.preload, load_row, width))
+    return ChainValues(slots, inverse_mass, over_masses(slots.dissipation, inverse_mass),
+                       load_row(width, short.stiffness, 0), row_values(short.preload, load_row, width))
 
 
 @inline_llvm
 def chain_slope(values, u0, u, w):
     """Overlaps, elastic forces, velocities and forces on the beads; the driver's own velocity is left at zero."""
-    here = with_first(u, u0)
+    law, here = values.slots.dissipation, with_first(u, u0)
     overlap = row_overlap(values.preload, here, from_right(here, blank(here)))
     d = positive_part(overlap)
     r = root(d)
     e = values.stiffness * d * r
-    du = chain_velocity(values.dissipation, w, values.damping_over_mass, shape(values.dissipation, d, r))
-    return overlap, e, du, add_foundation_force(values.foundation, from_left(blank(e), e) - e, here)
+    du = chain_velocity(law, w, values.damping_over_mass, shape(law, d, r))
+    return overlap, e, du, force_on_bead(values.slots, None, from_left(blank(e), e) - e, here, du)
 
 
 @inline_llvm

@@ -84,8 +84,8 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
 def keep_forces(short, values, last, k, x):
     """Write input force, output force and its elastic part at step k of a block; returns them."""
     overlap, rate, elastic = at(x.overlap, last), at(x.rate, last), at(x.elastic, last)
-    input_force = at(x.elastic, 0) + dashpot_force(values.dissipation, at(x.overlap, 0), at(x.rate, 0))
-    output_force = elastic + dashpot_force(values.dissipation, overlap, rate)
+    input_force = at(x.elastic, 0) + dashpot_force(values.slots.dissipation, at(x.overlap, 0), at(x.rate, 0))
+    output_force = elastic + dashpot_force(values.slots.dissipation, overlap, rate)
     short.forces[0, k], short.forces[1, k], short.forces[2, k] = input_force, output_force, elastic
     return input_force, output_force, elastic
 

@@ -1,4 +1,4 @@
-"""Square root, gate, maximum and peak choice for a number or for every lane of a vector.
+"""Square root, absolute value, gate, maximum and peak choice for a number or for every lane of a vector.
 
 A vector's root is computed in one of two ways: by the square-root instruction, which runs on the divider, or, in
 vectors of eight on processors with AVX-512, from the 14 bits of the instruction `vrsqrt14pd` and two terms of the
@@ -145,6 +145,24 @@ def root(value):
 @overload(root)
 def _root(value):
     return (lambda value: _vector_root(value)) if isinstance(value, VectorType) else root
+
+
+@intrinsic
+def _vector_abs(typingctx, value):
+    def codegen(context, builder, sig, args):
+        kind = sig.args[0].ir
+        function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(kind, [kind]),
+                                                  f"llvm.fabs.v{kind.count}f64")
+        return builder.call(function, [args[0]])
+
+    return value(value), codegen
+
+
+@overload(abs)
+def _abs(value):
+    if isinstance(value, VectorType):
+        return lambda value: _vector_abs(value)
+    return None  # Numba has one for numbers
 
 
 @intrinsic

@@ -64,19 +64,6 @@ def largest_of(typingctx, value):
 
 
 @intrinsic
-def magnitude(typingctx, value):
-    """The absolute value of every lane."""
-
-    def codegen(context, builder, sig, args):
-        kind = sig.args[0].ir
-        function = cgutils.get_or_insert_function(builder.module, ir.FunctionType(kind, [kind]),
-                                                  f"llvm.fabs.v{kind.count}f64")
-        return builder.call(function, [args[0]])
-
-    return value(value), codegen
-
-
-@intrinsic
 def only_lane(typingctx, value, lane):
     """1 in one lane and 0 in all others of a vector like `value`."""
 
