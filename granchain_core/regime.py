@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 #: What a motion can be called.
@@ -34,6 +35,8 @@ class Regime:
         Drive periods that were run.
     lyapunov : tuple of float or None
         Lyapunov exponent per drive period and its standard error over blocks of periods, where it was measured.
+    lyapunov_periods : int or None
+        Drive periods over which it was measured.
     multiplier : float or None
         Largest |μ| of the n-period map; None if it was not computed.
     followed : bool
@@ -73,11 +76,14 @@ class Regime:
     return_distance: float | None = None
     return_limit: float | None = None
     window_ratios: tuple[float, float] | None = None
+    lyapunov_periods: int | None = None
 
     @classmethod
-    def unsettled(cls, periods_run: int, lyapunov: tuple[float, float] | None = None) -> Regime:
+    def unsettled(cls, periods_run: int, lyapunov: tuple[float, float] | None = None,
+                  lyapunov_periods: int | None = None) -> Regime:
         """A motion whose regime is not known after `periods_run` periods."""
-        return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, lyapunov=lyapunov)
+        return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, lyapunov=lyapunov,
+                   lyapunov_periods=lyapunov_periods)
 
     @classmethod
     def undriven(cls, periods_run: int) -> Regime:
@@ -114,7 +120,13 @@ class Regime:
             towards = f", on its way to period {self.approaches}{evidence}" if self.approaches else ""
             return f"not settled after {self.periods_run} periods{towards}"
         assert self.lyapunov is not None
-        return f"{self.name}, Lyapunov exponent {self.lyapunov[0]:+.3f} ± {self.lyapunov[1]:.3f} per period"
+        return f"{self.name}, Lyapunov exponent {exponent_words(*self.lyapunov)} per period"
+
+
+def exponent_words(exponent: float, error: float) -> str:
+    """A Lyapunov exponent and its standard error, with two figures of the error, but no more than seven decimals."""
+    decimals = min(7, max(1, 1 - math.floor(math.log10(error)))) if 0.0 < error < math.inf else 3
+    return f"{exponent:+.{decimals}f} ± {error:.{decimals}f}"
 
 
 def modulus_words(modulus: float) -> str:

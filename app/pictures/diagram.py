@@ -26,6 +26,7 @@ from bokeh.transform import factor_cmap, transform
 
 from granchain_core.diagram import Axis, Diagram, Grid
 from granchain_core.diagram.cells import CELL_REGIMES, empty_cells
+from granchain_core.regime import exponent_words
 
 from ..format import in_words, short_error
 from .axes import Scale, knob_scale
@@ -195,7 +196,7 @@ def cell_words(grid: Grid, cell: np.ndarray) -> str:
     regime = f"period {int(cell['period'])}" if cell["period"] else name
     error = float(cell["error_estimate"])
     sure = f", relative error {short_error(error)}" if np.isfinite(error) else ", largest observed, no error stated"
-    exponent = (f"; Lyapunov exponent {cell['lyapunov']:.3f} ± {cell['lyapunov_error']:.3f}"
+    exponent = (f"; Lyapunov exponent {exponent_words(float(cell['lyapunov']), float(cell['lyapunov_error']))}"
                 if np.isfinite(cell["lyapunov"]) else "")
     return f"{place}: {regime}, largest output force {in_words(float(cell['max_output_force']), 'N')}{sure}{exponent}"
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from granchain_core import Settled
+from granchain_core.regime import exponent_words
 
 from .progress import COMPUTING, OFF, READY
 from .session import Session
@@ -34,7 +35,7 @@ def _lyapunov(picture: Settled | None) -> tuple[str, str]:
     """State and detail of the exponent, which is computed only for a motion that does not become periodic."""
     if picture is None or picture.regime.lyapunov is None:
         return OFF, "only for motions that do not become periodic"
-    return READY, f"{picture.regime.lyapunov[0]:+.3f} ± {picture.regime.lyapunov[1]:.3f} per period"
+    return READY, f"{exponent_words(*picture.regime.lyapunov)} per period"
 
 
 def _account(session: Session, busy: bool) -> tuple[str, str]:

@@ -187,14 +187,16 @@ def _regime(regimes: list[Regime]) -> Regime:
     """The regime of a group; of irregular motions with the mean of their Lyapunov exponents and its standard error.
 
     Where the members have different names, the rule of steady/regime_criteria.py decides by this mean. The error that
-    falls as 1/periods is alike in all of them, and their mean does not reduce it: the mean counts as measured over one
-    measurement's periods, and as zero within the error of a single one.
+    falls as 1/periods is alike in all of them, and their mean does not reduce it: the mean counts as measured over the
+    periods of the shortest measurement, and as zero within the error of a single one.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
+    periods = min((one.lyapunov_periods for one in regimes if one.lyapunov_periods is not None),
+                  default=EXPONENT_BLOCKS * PERIODS_IN_BLOCK)
     if regimes[0].period is not None or not known:
         return regimes[0]
     mean, error = sum(value for value, _ in known) / len(known), math.sqrt(sum(e**2 for _, e in known)) / len(known)
-    names, periods = {one.name for one in regimes}, EXPONENT_BLOCKS * PERIODS_IN_BLOCK
+    names = {one.name for one in regimes}
     if len(names) == 1:
         name = regimes[0].name
     elif grows(mean, error, periods):
@@ -202,4 +204,4 @@ def _regime(regimes: list[Regime]) -> Regime:
     else:
         neutral = is_neutral(mean, error * math.sqrt(len(known)), periods)
         name = "quasi-periodic" if neutral and "quasi-periodic" in names else "unsettled"
-    return replace(regimes[0], name=name, lyapunov=(mean, error))
+    return replace(regimes[0], name=name, lyapunov=(mean, error), lyapunov_periods=periods)

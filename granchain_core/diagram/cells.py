@@ -32,12 +32,14 @@ from .grid import Grid
 CELL_REGIMES = (*NAMES, "failed")
 #: One cell. Forces in N, NaN where the computation failed; stated errors are relative, `error_estimate` that of the
 #: output force, NaN where none is stated; `period` in drive periods, 0 where not periodic; `decay` per orbit,
-#: `multiplier` (the largest |μ|) and `lyapunov` (per drive period) NaN where not seen or not computed.
+#: `multiplier` (the largest |μ|), `lyapunov` (per drive period) and `lyapunov_periods`, over which it was measured, NaN
+#: where not seen or not computed.
 CELL = np.dtype([
     ("number", "<i4"), ("regime", "i1"), ("period", "<i2"), ("periods_run", "<i4"), ("max_input_force", "<f8"),
     ("max_output_force", "<f8"), ("max_output_force_elastic", "<f8"), ("error_estimate_input", "<f8"),
     ("error_estimate", "<f8"), ("error_estimate_elastic", "<f8"),
     ("decay", "<f8"), ("multiplier", "<f8"), ("lyapunov", "<f8"), ("lyapunov_error", "<f8"),
+    ("lyapunov_periods", "<f8"),
 ])
 
 
@@ -58,7 +60,8 @@ def cell_of(result: SteadyState) -> np.ndarray:
     mean, error = regime.lyapunov or (np.nan, np.nan)
     return np.array((result.number, CELL_REGIMES.index(name), regime.period or 0, regime.periods_run, *result.maxima,
                      *ForceErrors.of(result.errors).row, _or_nan(regime.decay),
-                     _or_nan(regime.multiplier), mean, error), dtype=CELL)
+                     _or_nan(regime.multiplier), mean, error,
+                     _or_nan(regime.lyapunov_periods)), dtype=CELL)
 
 
 def _or_nan(value: float | None) -> float:
@@ -150,5 +153,7 @@ class Diagram(Labelled):
             return None
         lyapunov = None if np.isnan(cell["lyapunov"]) else (float(cell["lyapunov"]), float(cell["lyapunov_error"]))
         decay, multiplier = (None if np.isnan(cell[name]) else float(cell[name]) for name in ("decay", "multiplier"))
+        measured = None if np.isnan(cell["lyapunov_periods"]) else int(cell["lyapunov_periods"])
         return Regime(name=CELL_REGIMES[cell["regime"]], period=int(cell["period"]) or None, decay=decay, distance=None,
-                      periods_run=int(cell["periods_run"]), lyapunov=lyapunov, multiplier=multiplier)
+                      periods_run=int(cell["periods_run"]), lyapunov=lyapunov, multiplier=multiplier,
+                      lyapunov_periods=measured)

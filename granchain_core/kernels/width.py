@@ -1,4 +1,4 @@
-"""How many scenes one vector of a batch holds: what is fastest on the machine that the kernels are compiled for.
+"""BATCH_SIZE, the number of scenes in one vector of a batch: 8 with AVX-512, else 4.
 
 Where a register holds eight doubles (AVX-512), a batch has eight scenes. Zen 4 executes an instruction on such
 registers in two halves, and is still faster with eight scenes than with four, because only half as many instructions

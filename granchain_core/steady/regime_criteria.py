@@ -114,13 +114,14 @@ def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarr
     mean, error = _mean_and_error(exponents)
     if grows(mean, error, periods):
         return Regime(name="chaotic", period=None, decay=None, distance=None, periods_run=periods_run,
-                      lyapunov=(mean, error))
+                      lyapunov=(mean, error), lyapunov_periods=periods)
     if not is_neutral(mean, error, periods):
-        return Regime.unsettled(periods_run, (mean, error))
+        return Regime.unsettled(periods_run, (mean, error), periods)
     windows, distance, limit = _windows(strobes), return_distance(strobes), return_limit(strobes)
     name = "quasi-periodic" if _neither_converges_nor_departs(windows) and distance < limit else "unsettled"
     return Regime(name=name, period=None, decay=None, distance=None, periods_run=periods_run, lyapunov=(mean, error),
-                  return_distance=distance, return_limit=limit, window_ratios=_window_ratios(windows))
+                  lyapunov_periods=periods, return_distance=distance, return_limit=limit,
+                  window_ratios=_window_ratios(windows))
 
 
 def clearly_chaotic(exponents: np.ndarray) -> bool:

@@ -3,8 +3,8 @@
 /curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, their relative errors
         error_estimate (of the output force), error_estimate_elastic, error_estimate_input (frequency);
         regime, status, period (frequency); the evidence for the regime, which older files lack in part or whole:
-        periods_run, decay, multiplier, lyapunov, lyapunov_error, and followed, approaches, distance, return_distance,
-        return_limit, smallest_window_ratio, largest_window_ratio (frequency);
+        periods_run, decay, multiplier, lyapunov, lyapunov_error, lyapunov_periods, and followed, approaches, distance,
+        return_distance, return_limit, smallest_window_ratio, largest_window_ratio (frequency);
         drive_amplitude (frequency, m) where A0 depends on the frequency, which the root's attribute `amplitude`
         describes
 """
@@ -74,6 +74,7 @@ def _evidence(file: File, shape: tuple[int, ...]) -> list[dict[str, Any]]:
         ("periods_run", np.iinfo(np.int64).max), ("followed", 1), ("approaches", np.iinfo(np.int32).max)))
     return [{"periods_run": int(run[i]), "followed": bool(followed[i]), "approaches": int(approaches[i]) or None,
              "lyapunov": _pair(numbers["lyapunov"][i], numbers["lyapunov_error"][i]),
+             "lyapunov_periods": _count(numbers["lyapunov_periods"][i]),
              "window_ratios": _pair(numbers["smallest_window_ratio"][i], numbers["largest_window_ratio"][i]),
              **{name: or_none(numbers[name][i])
                 for name in ("decay", "multiplier", "distance", "return_distance", "return_limit")}}
@@ -84,6 +85,13 @@ def _whole(file: File, name: str, shape: tuple[int, ...], most: int) -> np.ndarr
     """Whole numbers from 0 to `most`; 0 in files without them."""
     path = f"curve/{name}"
     return within(f"/{path}", file.numbers(path, shape, "i"), 0, most) if file.has(path) else np.zeros(shape, np.int64)
+
+
+def _count(number: float) -> int | None:
+    """A number of drive periods, where it is known. Refuses what is none."""
+    if np.isnan(number):
+        return None
+    return int(within("/curve/lyapunov_periods", np.array([number]), 1, np.iinfo(np.int32).max)[0])
 
 
 def _pair(first: float, second: float) -> tuple[float, float] | None:

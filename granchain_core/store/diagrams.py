@@ -2,7 +2,7 @@
 
 /map    one dimension scale per knob, named as the knob; max_input_force, max_output_force, max_output_force_elastic,
         their relative errors error_estimate_input, error_estimate (of the output force), error_estimate_elastic,
-        decay, multiplier, lyapunov, lyapunov_error, regime, period, periods_run (y, x)
+        decay, multiplier, lyapunov, lyapunov_error, lyapunov_periods, regime, period, periods_run (y, x)
 The root's attribute `amplitude` describes A0 over f where it is not the scene's.
 """
 

@@ -110,7 +110,7 @@ def _regime(file: File) -> Regime:
     values = entries("regime", found, {
         "name": "text", "period": "whole?", "decay": "number?", "distance": "number?", "periods_run": "whole",
         "multiplier": "number?", "followed": "flag?", "approaches": "whole?", "driven": "flag?",
-        "return_distance": "number?", "return_limit": "number?"})
+        "lyapunov_periods": "whole?", "return_distance": "number?", "return_limit": "number?"})
     one_of("regime", values["name"], NAMES)
     if lyapunov is not None:
         values["lyapunov"] = _pair("regime.lyapunov", lyapunov, "mean", "error")

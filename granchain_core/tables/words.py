@@ -45,6 +45,7 @@ EVIDENCE = {
     "multiplier": "modulus of the leading multiplier, NaN where not computed",
     "lyapunov": "largest Lyapunov exponent per drive period, NaN where not measured",
     "lyapunov_error": "standard error of the Lyapunov exponent",
+    "lyapunov_periods": "drive periods over which the Lyapunov exponent was measured, NaN where not measured",
 }
 #: The rest of it, which a map's cells do not keep.
 MORE_EVIDENCE = {
@@ -77,8 +78,8 @@ def evidence_columns(found: Sequence[Regime], along: str) -> dict[str, Column]:
 def _evidence(regime: Regime) -> tuple[float, ...]:
     """The numbers of `EVIDENCE`, then of `MORE_EVIDENCE`."""
     lyapunov, ratios = regime.lyapunov or (np.nan, np.nan), regime.window_ratios or (np.nan, np.nan)
-    return (or_nan(regime.decay), or_nan(regime.multiplier), *lyapunov, or_nan(regime.distance),
-            or_nan(regime.return_distance), or_nan(regime.return_limit), *ratios)
+    return (or_nan(regime.decay), or_nan(regime.multiplier), *lyapunov, or_nan(regime.lyapunov_periods),
+            or_nan(regime.distance), or_nan(regime.return_distance), or_nan(regime.return_limit), *ratios)
 
 
 def bead_axis(beads: int) -> dict[str, Column]:

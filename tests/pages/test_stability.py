@@ -26,7 +26,7 @@ from app.pages.stability.view import (
 )
 from app.pages.stability.work import OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
-from granchain_core.regime import Regime, modulus_words
+from granchain_core.regime import Regime, exponent_words, modulus_words
 from granchain_core.stop import Stop
 
 
@@ -82,6 +82,13 @@ def test_the_observer_is_told_where_it_was_asked_for() -> None:
 @pytest.mark.parametrize(("value", "words"), [(0.361, "0.36"), (0.0995, "0.10"), (0.0123, "0.012"), (3.2e-5, "3e-5"), (0.9939, "0.9939"), (1.00002, "1.000020"), (1.57, "1.57")])
 def test_moduli_are_told_from_one_and_from_zero(value: float, words: str) -> None:
     assert modulus_words(value) == words
+
+
+@pytest.mark.parametrize(("exponent", "error", "words"), [
+    (0.2651, 0.0234, "+0.265 ± 0.023"), (-0.00071, 0.00027, "-0.00071 ± 0.00027"), (0.85, 0.104, "+0.85 ± 0.10"),
+    (0.1, 0.0, "+0.100 ± 0.000"), (1e-12, 1e-12, "+0.0000000 ± 0.0000000"), (3.1, 2.0, "+3.1 ± 2.0")])
+def test_an_exponent_has_the_figures_that_its_error_allows(exponent: float, error: float, words: str) -> None:
+    assert exponent_words(exponent, error) == words
 
 
 def test_a_chosen_multiplier_is_told_and_one_that_is_not_there_is_the_last() -> None:

@@ -68,7 +68,7 @@ def test_a_cell_is_told_with_its_error_or_without_a_claim() -> None:
     cell["error_estimate"] = 3e-5
     assert cell_words(GRID, cell).endswith("2.5 N, relative error 3e-5")
     cell["regime"], cell["period"], cell["lyapunov"], cell["lyapunov_error"] = CELL_REGIMES.index("chaotic"), 0, 0.21, 0.02
-    assert cell_words(GRID, cell).endswith("Lyapunov exponent 0.210 ± 0.020") and ": chaotic," in cell_words(GRID, cell)
+    assert cell_words(GRID, cell).endswith("Lyapunov exponent +0.210 ± 0.020") and ": chaotic," in cell_words(GRID, cell)
 
 
 def test_every_regime_and_period_has_its_category() -> None:

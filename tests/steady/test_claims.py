@@ -36,7 +36,7 @@ def test_the_shortest_period_is_told() -> None:
     """States that alternate repeat after four periods too; their period is two."""
     states = np.zeros((9, 2, 1))
     states[1::2] = 1.0
-    assert periodicity.shortest(states, np.ones(2), 4, 1e-9) == 2
+    assert periodicity.shortest(states, np.ones(2), 4, 1e-10, 1e-10) == 2
 
 
 def test_changes_lost_in_rounding_leave_a_distance() -> None:
@@ -125,6 +125,17 @@ def test_an_uncertain_exponent_is_measured_further() -> None:
     found = regime_criteria.regime_from_exponents(uncertain, 400, turning(1.0), 420)
     assert found.name == "unsettled" and found.lyapunov == (pytest.approx(0.02), pytest.approx(0.01, rel=1e-12))
     assert regime_criteria.regime_from_exponents(sure, 400, turning(1.0), 420).name == "chaotic"
+
+
+@pytest.mark.parametrize(("exponents", "name"), [
+    (0.3 + 0.01 * np.tile([1.0, -1.0], 5), "chaotic"), (1e-4 * np.tile([1.0, -1.0], 5), "quasi-periodic"),
+    (0.004 + 1e-4 * np.tile([1.0, -1.0], 5), "quasi-periodic")])
+def test_the_decision_can_be_repeated_from_what_is_kept(exponents: np.ndarray, name: str) -> None:
+    """Mean, error and periods of the measurement are in the regime; 0.004 over 400 periods is below 6/400."""
+    found = regime_criteria.regime_from_exponents(exponents, 400, turning(1.0), 420)
+    assert found.name == name and found.lyapunov is not None and found.lyapunov_periods == 400
+    assert regime_criteria.grows(*found.lyapunov, found.lyapunov_periods) is (name == "chaotic")
+    assert regime_criteria.is_neutral(*found.lyapunov, found.lyapunov_periods) is (name == "quasi-periodic")
 
 
 def test_the_evidence_for_a_closed_curve_is_kept() -> None:

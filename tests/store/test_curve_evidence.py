@@ -28,7 +28,7 @@ def test_the_evidence_of_every_regime_comes_back(tmp_path: Path) -> None:
     """What decides between quasi-periodic and unsettled, and how a slow motion was followed."""
     regimes = (
         Regime("quasi-periodic", None, None, None, 900, (1e-4, 2e-3), return_distance=0.01, return_limit=0.15,
-               window_ratios=(0.99, 1.01)),
+               window_ratios=(0.99, 1.01), lyapunov_periods=1200),
         Regime("unsettled", None, None, None, 900, (1e-4, 2e-3), approaches=3, multiplier=0.999),
         Regime("periodic", 2, 0.97, 1e-7, 400, followed=True))
     points = [replace(point, regime=regime) for point, regime in zip(CURVE.points, regimes, strict=True)]

@@ -33,16 +33,17 @@ def test_a_run_comes_back_bit_by_bit(tmp_path: Path, result) -> None:  # type: i
 
 def test_the_evidence_for_a_regime_comes_back_and_may_be_missing(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]
     """Files written before the return distance and the ratios were kept open too."""
-    rich = replace(result.regime, name="quasi-periodic", period=None, lyapunov=(1e-4, 2e-3), return_distance=0.01,
-                   return_limit=0.15, window_ratios=(0.99, 1.01))
+    rich = replace(result.regime, name="quasi-periodic", period=None, lyapunov=(1e-4, 2e-3), lyapunov_periods=1000,
+                   return_distance=0.01, return_limit=0.15, window_ratios=(0.99, 1.01))
     kept = replace(result, regime=rich)
     assert load(save(kept, tmp_path / "a.h5")).regime == rich
-    old = {name: value for name, value in asdict(rich).items() if not name.startswith(("return", "window"))}
+    old = {name: value for name, value in asdict(rich).items() if not name.startswith(("return", "window", "lyapunov_"))}
     attributes = {**kept.attributes(), "regime": json.dumps(old)}
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(type(kept), "attributes", lambda self: attributes)
         file = save(kept, tmp_path / "old.h5")
-    assert load(file).regime == replace(rich, return_distance=None, return_limit=None, window_ratios=None)
+    assert load(file).regime == replace(rich, return_distance=None, return_limit=None, window_ratios=None,
+                                        lyapunov_periods=None)
 
 
 def test_xarray_opens_a_run_with_labelled_axes_and_units(tmp_path: Path, result) -> None:  # type: ignore[no-untyped-def]

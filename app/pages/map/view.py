@@ -8,7 +8,7 @@ import numpy as np
 
 from granchain_core.diagram import Attractor, Grid
 from granchain_core.orbits import response
-from granchain_core.regime import modulus_words
+from granchain_core.regime import exponent_words, modulus_words
 
 from ...format import short_error
 from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models
@@ -43,7 +43,7 @@ def described_attractor(attractor: Attractor) -> dict[str, Any]:
         leading = modulus_words(abs(attractor.orbit.multipliers[0]))
         words.append(f"|μ| {leading}" + ("" if attractor.stable else ", unstable"))
     elif regime.lyapunov is not None:
-        words.append(f"Lyapunov exponent {regime.lyapunov[0]:+.3f} ± {regime.lyapunov[1]:.3f} per period")
+        words.append(f"Lyapunov exponent {exponent_words(*regime.lyapunov)} per period")
     return {
         "colour": REGIME_MARKS[regime_key(regime.name, period)][1], "words": ", ".join(words),
         "force": f"{attractor.max_output_force:.4g} N" + (f", error {short_error(error)}" if error else ""),

@@ -13,7 +13,7 @@ from granchain_core import Settled
 from granchain_core.integrate.methods import FIXED_STEP
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
-from granchain_core.regime import modulus_words
+from granchain_core.regime import exponent_words, modulus_words
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
@@ -108,7 +108,7 @@ def no_multipliers(picture: Settled) -> str:
     parts = (f"Neighbouring motions part {math.exp(mean):.2f}-fold per drive period" if regime.name == "chaotic" else
              "Neighbouring motions neither part nor meet")
     return (f"No multipliers: the motion is {regime.name} and never repeats. {parts} (Lyapunov exponent "
-            f"{mean:+.3f} ± {error:.3f}).")
+            f"{exponent_words(mean, error)}).")
 
 
 def multiplier_sentence(orbit: Orbit, rank: int) -> str:
@@ -132,8 +132,9 @@ def evidence(picture: Settled, analysis: OrbitAnalysis | None, section: Section 
             "Bound on the relative distance of the settled picture from the orbit of the method that settled it: its "
             "change over one orbit times r/(1 − r), where r is |μ| if it was computed, else the decay, else ½.")
     if regime.lyapunov is not None:
-        row("Lyapunov exponent", f"{regime.lyapunov[0]:+.4f} ± {regime.lyapunov[1]:.4f} per drive period",
-            "Mean rate at which neighbouring motions separate, with its standard error over blocks of periods.")
+        row("Lyapunov exponent", f"{exponent_words(*regime.lyapunov)} per drive period",
+            "Mean rate at which neighbouring motions separate, with its standard error over blocks of periods"
+            + (f"; measured over {regime.lyapunov_periods} periods." if regime.lyapunov_periods else "."))
     if regime.return_distance is not None:
         row("return of the section", f"{regime.return_distance:.2g}, limit {regime.return_limit or 0.0:.2g}",
             "Median distance from later states of the section to the nearest earlier one, relative to the motion; a "

@@ -29,7 +29,7 @@ class Values(NamedTuple):
     last: Any
 
 
-class Left(NamedTuple):
+class LeftNeighbour(NamedTuple):
     """What a sweep knows of a bead when it arrives there, in all members: its displacement, and elastic force and shape
     G/λ of the contact on its left.
     """
@@ -109,7 +109,7 @@ def _(stage, row, slope):
 
 @inline_llvm
 def bead(values, root_of, stage, source, i, left, is_last):
-    """Bead i of a stage whose state is `source`; returns its velocity and the next bead's `Left`."""
+    """Bead i of a stage whose state is `source`; returns its velocity and the next bead's `LeftNeighbour`."""
     bodies = values.last + 2
     right = load_batch(source, i + 1)
     e, shape_right = contact(values, root_of, left.u, right, i, is_last)
@@ -118,7 +118,7 @@ def bead(values, root_of, stage, source, i, left, is_last):
     use_slope(stage, i, velocity)
     force = force_on_bead(values.slots, i, left.e - e, left.u, velocity)
     use_slope(stage, bodies + i, over_mass(values.unequal, i, force))
-    return velocity, Left(right, e, shape_right)
+    return velocity, LeftNeighbour(right, e, shape_right)
 
 
 class Ends(NamedTuple):
@@ -135,7 +135,7 @@ def run_stage(values, stage, source, driver):
     """One stage at the state `source` with the driver at `driver`; returns its `Ends`."""
     last, u = values.last, load_batch(source, 1)
     pushed, shape_first = contact(values, by_multipliers, driver, u, 0, False)
-    left, v_first = Left(u, pushed, shape_first), u
+    left, v_first = LeftNeighbour(u, pushed, shape_first), u
     if last > 1:
         v_first, left = bead(values, by_multipliers, stage, source, 1, left, False)
     for i in range(2, last - 2, 3):

@@ -57,8 +57,15 @@ _ACCEPTED_FACTOR = 4.0
 #: The same two where tension is cut: a force-free contact may linger at δ = 0 and would chatter with smaller ones.
 _OVERLAP_AIM_CUT = 1e-14
 _ACCEPTED_FACTOR_CUT = 100.0
+#: Most corrections of a step that is to end at an event: Newton's method for one root, which doubles the digits.
+_MOST_CORRECTIONS = 6
 #: A step that is to end at an event may become longer by this factor.
 _EVENT_STRETCH = 1.01
+#: An event within this part of a step of its end needs no shorter step before it is located.
+_NEAR_END = 1e-9
+#: After an event is a term (t − t_e)^{5/2}: the first step is this times tolerance^{2/5}, and errs by about the
+#: tolerance.
+_FIRST_STEP = 2.0
 
 
 class Stretch(NamedTuple):
@@ -130,7 +137,7 @@ def locate_event(method, step, limit, c, counts):
     past, near = event_tolerance(slots.tension)
     past *= max(1.0, workspace.scale[0])
     target = -past if before else past
-    for _ in range(6):
+    for _ in range(_MOST_CORRECTIONS):
         d = overlap(slots.preload, workspace.end, c)
         if (d > 0.0) != before and abs(d) < near * abs(target):
             break
@@ -190,13 +197,12 @@ def located_step(method, trajectory, t, limit, counts):
             aimed, kinked = -1, True
             h *= kink
             continue
-        if aimed < 0 or x > 1.0 - 1e-9:
+        if aimed < 0 or x > 1.0 - _NEAR_END:
             break
         h *= x
     if aimed >= 0:
         h = locate_event(method, step, limit, aimed, counts)
-        # after the event is a term (t − t_e)^{5/2}: a first step of this size errs by about the tolerance
-        next_step[0] = min(next_step[0], 2.0 * method.tolerance**0.4)
+        next_step[0] = min(next_step[0], _FIRST_STEP * method.tolerance**0.4)
     elif not kinked and (h < limit - t or factor < 1.0 or next_step[0] <= h):
         next_step[0] = h * factor  # after a kink the motion is smooth on both sides: the next step need not start small
     counts[EVENTS] += aimed >= 0 or kinked

@@ -2,7 +2,7 @@
 
 Equation   m_i ü_i = … − k u_i
 Source     Zhang et al. 2016, eqs. (3) to (5), figure 8
-Values     stiffness: k in scaled units (κ for a uniform chain), one number
+Values     stiffness: κ = k/(K√A₀) with K of the contact of two beads like bead 1, the same for all beads
 """
 
 from __future__ import annotations

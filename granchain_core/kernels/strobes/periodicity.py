@@ -28,6 +28,14 @@ _LARGEST_SETTLED_CHANGE = 1e-3
 #: A change below this part of the required distance is accepted even if its rate is not steady: a slow mode hidden in
 #: it would have to decay a hundred times more slowly than what is observed.
 _UNEVEN_PART = 1e-2
+#: A decay is steady if both halves of its window agree to this part of the slower one.
+_STEADY_PART = 0.2
+#: Where the last changes are rounding, the decay is read from the last window of changes above rounding times this.
+_ABOVE_ROUNDING = 1e3
+#: A divisor q of a period n is the period if changes over q are at most this many bounds on the distance …
+_DISTANCES_OVER_DIVISOR = 10.0
+#: … or at most the distance at which a state is on its orbit, times this.
+_SETTLED_OVER_DIVISOR = 3.0
 #: Changes over q periods that decay faster than this, per q periods, go to zero; else they may be those of a longer
 #: orbit.
 _SLOWEST_APPROACH = 0.97
@@ -107,7 +115,7 @@ def decay_in(change, count, n):
     power = 2.0 * n / (count - n)
     early, late = (middle / first) ** power, (last / middle) ** power
     decay = max(early, late)
-    return decay, abs(early - late) < 0.2 * decay
+    return decay, abs(early - late) < _STEADY_PART * decay
 
 
 @internal
@@ -117,9 +125,11 @@ def window_of(n):
 
 
 @internal
-def shortest(strobes, scale, n, nothing):
-    """The shortest period that divides n and over which these states change by no more than `nothing`."""
-    run = strobes.shape[0] - 1
+def shortest(strobes, scale, n, distance, settled):
+    """The shortest period that divides n and over which these states hardly change; `distance` bounds theirs to the
+    orbit.
+    """
+    run, nothing = strobes.shape[0] - 1, max(_DISTANCES_OVER_DIVISOR * distance, _SETTLED_OVER_DIVISOR * settled)
     for q in range(1, n):
         largest = 0.0
         for k in range(n if n % q == 0 else 0):
@@ -133,7 +143,7 @@ def shortest(strobes, scale, n, nothing):
 def earlier_decay(strobes, scale, n, rounding, change):
     """The decay over n periods from the last part of the record that is well above rounding; −1 if none is."""
     end, count = strobes.shape[0] - 1, window_of(n)
-    while end >= n and change_between(strobes, scale, end, end - n) <= 1e3 * rounding:
+    while end >= n and change_between(strobes, scale, end, end - n) <= _ABOVE_ROUNDING * rounding:
         end -= 1
     if end < count + n - 1:
         return -1.0
@@ -166,7 +176,7 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
             continue  # a shorter period is being approached, which is why the change over this one is small
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
-            q = shortest(strobes, scale, n, max(10.0 * rounding, 3.0 * settled))
+            q = shortest(strobes, scale, n, rounding, settled)
             return Detected(q, earlier_decay(strobes, scale, q, rounding, change), rounding, 0, 0.0, 0.0)
         decay, even = decay_in(change, count, n)
         recent = largest_change(change, count - n, n)
@@ -181,7 +191,7 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
         decay = max(decay, slowest**n)
         distance = recent * decay / (1.0 - decay)
         if distance <= settled and (even or recent <= _UNEVEN_PART * settled):
-            q = shortest(strobes, scale, n, max(10.0 * distance, 3.0 * settled))
+            q = shortest(strobes, scale, n, distance, settled)
             return Detected(q, decay ** (q / n), distance, 0, 0.0, 0.0)
     return Detected(0, 0.0, 0.0, approached, approach_decay, approach_change)
 
