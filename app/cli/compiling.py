@@ -11,6 +11,7 @@ from contextlib import contextmanager
 
 from granchain_core import Scene
 from granchain_core.child_processes import end_with_parent, starting
+from granchain_core.cores import usable_cores
 from granchain_core.pieces import BRANCH_KERNELS, COMPILE_SECONDS, FIXED_STEP_KERNELS, MOTION_KERNELS
 
 #: From the kernels of one method to those of a branch with the motions that it needs.
@@ -46,7 +47,7 @@ def compiling_beside(chosen: Scene, *pieces: str) -> Iterator[None]:
 
     The block needs the pieces later; it then waits for them or loads them. With one core, nothing is done.
     """
-    if (os.cpu_count() or 1) < 2:
+    if usable_cores() < 2:
         yield
         return
     from numba.core import event

@@ -8,7 +8,6 @@ up its turn at the first pause after a slice of time.
 from __future__ import annotations
 
 import math
-import os
 import threading
 import time
 from collections import deque
@@ -16,6 +15,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple, TypeVar
 
+from granchain_core.cores import usable_cores
 from granchain_core.stop import Stop
 
 from .cpu_time import CpuTime
@@ -169,7 +169,7 @@ class FairScheduler:
         return len(young) < self._at_once or waited
 
 
-TURNS = FairScheduler(max(2, os.cpu_count() or 1))
+TURNS = FairScheduler(max(2, usable_cores()))
 
 
 class Flag(Stop):

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
 
 from ..child_processes import pool, starting
+from ..cores import usable_cores
 from ..errors import NumbersFailed
 from .case import Check, run_case
 from .table import CASES
@@ -23,7 +23,7 @@ def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, li
     Processes, because much of the oracles is Python, which only one thread at a time can run. Raises `NumbersFailed`
     where one of them is ended from outside.
     """
-    count = workers or min(2, os.cpu_count() or 1)
+    count = workers or min(2, usable_cores())
     processes = pool(count)
     try:
         with starting():

@@ -114,7 +114,8 @@ class Twin:
     def verdict(self) -> str:
         """"synchronises", "drifts", "breaks down" (it grows apart otherwise) or "neither yet" (docs/observers.md)."""
         grows = self.rate is not None and self.rate > 1.0
-        if self.rate is None or (grows and self.leading is not None and abs(self.leading) < 1.0):
+        against = self.leading is not None and (abs(self.leading) < 1.0 if grows else abs(self.leading) > 1.0)
+        if self.rate is None or against:  # what the multiplier says will be seen later
             return "neither yet"
         if not grows:
             return "synchronises"

@@ -89,7 +89,7 @@ def compilers() -> list[BaseProcess]:
 
 
 def test_a_second_process_compiles_only_where_numba_does_and_ends_with_the_block(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    monkeypatch.setattr("app.cli.compiling.usable_cores", lambda: 2)
     event = importlib.import_module("numba.core.event")
     with compiling_beside(scene("sec2"), FIXED_STEP_KERNELS):
         assert compilers() == [], "nothing has been compiled yet"
@@ -114,7 +114,7 @@ _compile({os.getpid()}, scene("sec2").evolve(tension="cut"), (ORBIT_KERNELS,))
 
 
 def test_with_one_core_nothing_compiles_beside(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("os.cpu_count", lambda: 1)
+    monkeypatch.setattr("app.cli.compiling.usable_cores", lambda: 1)
     event = importlib.import_module("numba.core.event")
     with compiling_beside(scene("sec2"), FIXED_STEP_KERNELS), event.trigger_event("numba:compile"):
         assert compilers() == []

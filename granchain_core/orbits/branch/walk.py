@@ -9,7 +9,6 @@ the last bit.
 
 from __future__ import annotations
 
-import os
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -17,6 +16,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ...cores import usable_cores
 from ...errors import Cancelled, NumbersFailed
 from .between import Between
 from .ends import Ending, Ends
@@ -76,7 +76,7 @@ class Walk(Iterator[BranchPoint]):
     def __init__(self, equations: BranchEquations, arm: Arm) -> None:
         self.equations, self.arm = equations, arm
         self._ends = Ends(equations, arm.points[0])
-        self._pool = ThreadPoolExecutor(min(_THREADS, os.cpu_count() or 1))
+        self._pool = ThreadPoolExecutor(min(_THREADS, usable_cores()))
         self._known: tuple[BranchPoint, Near] | None = None
         self._go_back(arm.step)
 

@@ -5,12 +5,12 @@ Kernels run without the interpreter's lock, so threads are enough, and a result 
 
 from __future__ import annotations
 
-import os
 import queue
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
 
+from ...cores import usable_cores
 from ...errors import Cancelled
 from ...stop import Stop
 
@@ -48,7 +48,7 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
     """
     shared: _Shared[Item] = _Shared(items, pause)
     found: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    count = workers or os.cpu_count() or 1
+    count = workers or usable_cores()
     threads = [threading.Thread(target=_share, args=(work, shared, found), daemon=True, name=f"core-{i}")
                for i in range(count)]
     for thread in threads:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 
+from ...cores import usable_cores
 from ...errors import BadInput, Cancelled
 from ...integrate.batch import can_share_batch
 from ...scene import Amplitude, Scene
@@ -116,7 +116,7 @@ def _from_rest(scenes: list[Scene], stop: Stop | None, workers: int | None) -> I
     """Independent points on all cores: in batches where they can, else one by one; closing the generator stops them."""
     ended = Stop()
     yield from on_all_cores(lambda shared: _points(shared, ended), scenes, ended, stop,
-                            min(workers or os.cpu_count() or 1, len(scenes)))
+                            min(workers or usable_cores(), len(scenes)))
 
 
 def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
