@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .errors import BadInput
 from .scene import Scene
 
 
@@ -21,7 +22,8 @@ class State:
     velocity : numpy.ndarray, shape (N,)
         Velocity of each bead [m/s].
     phase : float
-        Drive phase as a fraction of a period, 0 to 1.
+        Drive phase as a fraction of a period, 0 to 1. A recorded motion begins at one of its samples, so that
+        `run` takes multiples of 1/samples; `settle` and others go on to phase 0 first and take k/n with n up to 10,000.
 
     Examples
     --------
@@ -34,6 +36,30 @@ class State:
     displacement: np.ndarray
     velocity: np.ndarray
     phase: float = 0.0
+
+
+def checked_start(scene: Scene, start: State) -> State:
+    """`start` with arrays of floats, if a motion of the scene can begin there.
+
+    Raises `BadInput` for what is no state, another number of beads, numbers that are not finite, or a phase outside 0
+    to 1.
+    """
+    if not isinstance(start, State):
+        raise BadInput(f"A start must be a State, not {type(start).__name__}.")
+    try:
+        rows = [np.asarray(row, dtype=float) for row in (start.displacement, start.velocity)]
+        phase = float(start.phase)
+    except (TypeError, ValueError):
+        raise BadInput("A start must have displacements, velocities and a phase that are numbers.") from None
+    for name, row in zip(("displacements", "velocities"), rows, strict=True):
+        if row.shape != (scene.N,):
+            raise BadInput(f"The start has {name} of shape {row.shape}; a chain of {scene.N} beads has ({scene.N},).")
+        if not np.isfinite(row).all():
+            bead = 1 + int(np.argmin(np.isfinite(row)))
+            raise BadInput(f"The start has {name} that are not finite, the first at bead {bead}.")
+    if not 0.0 <= phase <= 1.0:
+        raise BadInput(f"The start has the drive phase {phase:g}, outside 0 to 1: it is a fraction of a period.")
+    return replace(start, displacement=rows[0], velocity=rows[1], phase=phase)
 
 
 def rest(scene: Scene) -> State:

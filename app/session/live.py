@@ -8,6 +8,7 @@ from collections import deque
 from dataclasses import dataclass
 
 from granchain_core import LiveChain, Run, Scene, State
+from granchain_core.integrate.start import at_phase_0
 from granchain_core.run.live import joined
 
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
@@ -39,7 +40,8 @@ class LiveRun:
     def __init__(self, scene: Scene, cpu_time: CpuTime, start: State | None = None) -> None:
         self.samples = samples_for(scene)
         self.flag = TurnFlag(cpu_time)
-        self._chain = LiveChain(scene, samples=self.samples, start=start, stop=self.flag)
+        begin = None if start is None else at_phase_0(scene, start, self.flag)
+        self._chain = LiveChain(scene, samples=self.samples, start=begin, stop=self.flag)
         self._window = LiveWindow(self.samples)
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None

@@ -13,6 +13,7 @@ import binascii
 import numpy as np
 
 from granchain_core import BadInput, Scene, State
+from granchain_core.integrate.start import nearest_fraction
 
 #: Beads of the longest chain whose state a link has room for.
 MOST_BEADS = 40
@@ -39,6 +40,6 @@ def read_start(text: str, scene: Scene) -> State:
     phase, places, speeds = values[0], values[1:scene.N + 1], values[scene.N + 1:]
     # No contact law holds for displacements beyond a bead's size or speeds beyond that of sound in steel.
     sane = np.isfinite(values).all() and 0.0 <= phase < 1.0 and np.abs(places).max() < 1.0
-    if not sane or np.abs(speeds).max() > 6000.0:
+    if not sane or not nearest_fraction(float(phase))[1] or np.abs(speeds).max() > 6000.0:
         raise BadInput("The initial state in the link is impossible for a chain; the motion begins at rest.")
     return State(places, speeds, float(phase))

@@ -21,7 +21,7 @@ from ..integrate.stated import Computations, force_differences, least_errors, re
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
-from ..state import State, rest
+from ..state import State, checked_start, rest
 from ..stop import Stop
 from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
@@ -122,7 +122,8 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     signal : Signal
         How the driver moves.
     start : State, optional
-        Where the chain begins; at rest, or with the initial velocities of the scene, if not given.
+        Where the chain begins; at rest, or with the initial velocities of the scene, if not given. Its phase does not
+        count.
     stop : Stop, optional
         Ends the computation when another thread sets it.
     progress : callable, optional
@@ -153,7 +154,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     if len(signal.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_RECORDED:.0e} values; give a "
                        "shorter signal or fewer beads.")
-    began, begin = clock.perf_counter(), rest(scene) if start is None else start
+    began, begin = clock.perf_counter(), rest(scene) if start is None else checked_start(scene, start)
     chain = MovedChain(scene, signal, Stop() if stop is None else stop)
     before, first, shown = chain.run(begin, 0), chain.maxima, Computations(scene.cuts_tension)
     shown.begin(fixed_step_setting())

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import BadInput
 from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
 from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
 from ..kernels.samples import Output, Samples, first_not_finite
@@ -20,6 +21,8 @@ from .flushed import flushed
 from .methods import METHODS, Setting
 from .stepper import CallStart, empty_samples
 
+#: A start's phase may be this part of a sample away from one: rounding.
+_BETWEEN_SAMPLES = 1e-6
 #: Places for closings of a contact in one period; bounces beyond that are ever weaker.
 _MOST_CLOSINGS = 4
 
@@ -60,9 +63,16 @@ class Engine:
     # --- state ---------------------------------------------------------------------------------------------
 
     def start(self, state: State) -> None:
-        """Put the chain into `state`; the energy account starts at zero."""
-        scales = self.scaled.scales
-        self.grid_index = round(state.phase * self.grid) % self.grid
+        """Put the chain into `state`; the energy account starts at zero.
+
+        Raises `BadInput` where its phase is not that of a sample.
+        """
+        scales, at = self.scaled.scales, state.phase * self.samples
+        if abs(at - round(at)) > _BETWEEN_SAMPLES:
+            raise BadInput(f"The start is at drive phase {state.phase!r}, between two samples. With {self.samples} "
+                           f"samples a period a motion begins at a multiple of 1/{self.samples}; the nearest is "
+                           f"{round(at)}/{self.samples}.")
+        self.grid_index = round(at) % self.samples * (self.grid // self.samples)
         self._begin(state.displacement / scales.length, state.velocity / scales.velocity, from_velocity=True)
 
     def start_scaled(self, x: np.ndarray) -> None:

@@ -25,7 +25,7 @@ from ..integrate.stated import relative_difference
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns, time_axis
 from ..result import Cost
 from ..scene import Scene
-from ..state import State, rest
+from ..state import State, checked_start, rest
 from ..stop import Stop
 from ..tables import Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
@@ -200,7 +200,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
                        f"give at most {MOST_RECORDED // scene.N} samples.")
     began = clock.perf_counter()
     stop = Stop() if stop is None else stop
-    begin = rest(scene) if start is None else start
+    begin = rest(scene) if start is None else checked_start(scene, start)
     chain = PushedChain(scene, record, stop)
     before, halvings = chain.run(begin, 0), 0
     while True:

@@ -9,7 +9,7 @@ d_{k+2} = a d_{k+1} + b d_k where two do, which then solve z² = a z + b.
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ..integrate.methods import ADAPTIVE
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
-from ..state import State
+from ..state import State, checked_start
 from ..steady.settling.advance import run_until_settled
 from ..stop import Stop
 from .drift import is_drift, share_of_translation
@@ -199,9 +199,7 @@ def _check(periods: int, samples: int) -> None:
 def observer_start(scene: Scene, chain: State, perturbation: float | State) -> State:
     """Where the observer starts: in a given state, or displaced from the chain by a fraction of A0."""
     if isinstance(perturbation, State):
-        if len(perturbation.displacement) != scene.N:
-            raise BadInput(f"The observer's start has {len(perturbation.displacement)} beads; the chain has {scene.N}.")
-        return perturbation
+        return replace(checked_start(scene, perturbation), phase=chain.phase)
     if not np.isfinite(perturbation):
         raise BadInput(f"perturbation = {perturbation} is not a number; 1e-6 of the drive amplitude is usual.")
     direction = np.random.default_rng(0).standard_normal(scene.N)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed, check_range
+from ..integrate.start import at_phase_0
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
@@ -232,6 +233,8 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
         settling = run_until_settled(scene, None, stop)
         n = n or settling.regime.period or 1
         start = settling.engine.state
+    else:
+        start = at_phase_0(scene, start, stop)
     n = n or 1
     stroboscopic_map = StroboscopicMap(scene, n, stop)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(start))

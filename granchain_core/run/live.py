@@ -12,7 +12,7 @@ from ..kernels.forces.peaks import next_period
 from ..regime import Regime
 from ..result import Cost, Jumps, Run, run_from, start_words
 from ..scene import Scene
-from ..state import State, rest
+from ..state import State, checked_start, rest
 from ..stop import Stop
 
 LIVE_SETTING = fixed_step_setting(2)
@@ -65,7 +65,7 @@ class LiveChain:
         self._index = 0
         self._waiting: Scene | None = None
         self._began = start_words(scene, start)
-        self._engine = self._new_engine(scene, rest(scene) if start is None else start)
+        self._engine = self._new_engine(scene, rest(scene) if start is None else checked_start(scene, start))
         if start is not None:
             self._index = round(start.phase * samples) % samples
 

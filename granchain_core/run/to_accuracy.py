@@ -22,7 +22,7 @@ from ..regime import Regime
 from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
 from ..scene.validity import overlap_warnings
-from ..state import State, rest
+from ..state import State, checked_start, rest
 from ..steady.regime_criteria import find_period
 from ..steady.settling.regime_decisions import REMEMBERED, regime_without_continuing
 from ..stop import Stop
@@ -116,7 +116,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     _check_sizes(scene, periods, record, samples)
     began, total = time.perf_counter(), Counts()
     stop = Stop() if stop is None else stop
-    begin = rest(scene) if start is None else start
+    begin = rest(scene) if start is None else checked_start(scene, start)
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
     check_budget(scene, setting, periods, record, samples, budget)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..integrate import Engine, fixed_step_setting
+from ..integrate.start import at_phase_0
 from ..scene import Scene
 from ..state import State, rest
 from ..stop import Stop
@@ -65,7 +66,7 @@ def iter_section(scene: Scene, start: State | None, periods: int, samples: int =
     It ends after `most_periods` of `periods`. Raises `NumbersFailed`, `Cancelled`.
     """
     engine = Engine(scene, fixed_step_setting(), samples, stop=stop)
-    engine.start(start if start is not None else rest(scene))
+    engine.start(rest(scene) if start is None else at_phase_0(scene, start, engine.stop))
     most = most_periods(scene, samples, periods)
     displacement = np.zeros((most, samples, scene.N), dtype=np.float32)
     velocity = np.zeros_like(displacement)

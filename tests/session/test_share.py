@@ -148,7 +148,7 @@ def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, am
     shown = scene(name).evolve(f=f, A0=amplitude, D=damping, k=stiffness, N=beads, dissipation="kuwabara-kono",
                                tension="cut", accuracy=1.2345678901234567e-7, F0=1.2345678901234567)
     rng = np.random.default_rng(seed)
-    states = [State(1e-6 * rng.standard_normal(beads), 1e-2 * rng.standard_normal(beads), 0.12345678901234567)
+    states = [State(1e-6 * rng.standard_normal(beads), 1e-2 * rng.standard_normal(beads), 1234 / 9999)
               if started >> place & 1 else None for place in range(1 + pins)]
     left = Session(shown, start="previous", scale="fit", speed=0.25, energy_account=True, curves="rest.up.down.features",
                    started_from=states[0], story="coexisting.2", pins=tuple(Pin(shown, one) for one in states[1:]),

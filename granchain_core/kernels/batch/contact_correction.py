@@ -7,7 +7,7 @@ Simpson's rule integrates force and damping across the kink. Its errors are
     B_p(r) = (r^p + 4 [r − 1/2]_+^p)/6 − r^{p+1}/(p+1), over the step with the kink
     E(r): the same for s^{3/2} over the next step on the closed side, from s = r to r + 1
 
-and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/model.md).
+and subtracting them raises the order of RK4 in a batch from 2 to about 3 (docs/method.md).
 """
 
 from __future__ import annotations

@@ -5,7 +5,7 @@ every file here begins with the SHA-256 of the rest, which is compared before th
 is deleted and its kernel compiled again. A kernel that cannot be written is compiled for this process only.
 
 Numba has no documented interface for this: `KernelCache` replaces the classes by which it finds, reads and writes its
-files. docs/design.md lists the private names that are used; where one is missing, kernels are not kept on disk.
+files. docs/compiling.md lists the private names that are used; where one is missing, kernels are not kept on disk.
 """
 
 from __future__ import annotations

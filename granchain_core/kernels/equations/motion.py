@@ -5,7 +5,7 @@ them in (u, v), and flow/tangent.py and flow/saltation.py linearise them. tests/
 compares this file with the paper's equations; tests/kernels, tests/numerics/test_methods_agree.py and
 tests/orbits/test_tangents.py compare the others with it.
 
-    w_i = v_i − (G_{i-1} − G_i)/m_i          the dashpot is an exact derivative (docs/model.md)
+    w_i = v_i − (G_{i-1} − G_i)/m_i          the dashpot is an exact derivative (docs/method.md)
     u̇_i = w_i + (G_{i-1} − G_i)/m_i
     m_i ẇ_i = F^el_{i-1} − F^el_i + P_i       continuous: no Heaviside function, no velocity differences;
                                               P_i, such as −k u_i, from body_forces.py

@@ -24,12 +24,20 @@ class Approach(NamedTuple):
 
 
 @inline_llvm
+def between_0_and_1(s):
+    """The nearest number in 0 to 1; far above 1 it may be 0. A NaN stays a NaN. For numbers and vectors."""
+    least = clip(s)
+    return least - clip(least - 1.0)
+
+
+@inline_llvm
 def closing_rate(before, after, rate, open_rate, own, h):
     """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
 
     `rate` is δ̇ before the step. `open_rate` is δ̇ after it with the contact's own damping undone: δ̇ + own·δ with
     own = λ(1/m_c + 1/m_{c+1}). Without that damping the rate is smooth across the closing and is taken as a parabola,
-    whose integral is the overlap's change. For numbers and vectors.
+    whose integral is the overlap's change. Newton's method finds the crossing, and is kept within the step: where the
+    rate is almost zero there, it would leave it, and the parabola means nothing outside. For numbers and vectors.
     """
     s = before / (before - after)
     closed = 0.5 * (1.0 - s) * after
@@ -37,7 +45,7 @@ def closing_rate(before, after, rate, open_rate, own, h):
         bend = 6.0 * ((after + own * h * closed - before) / h - 0.5 * (rate + open_rate))
         for _ in range(2):
             delta = before + h * s * (rate + s * (0.5 * (open_rate - rate + bend) - s * (bend * (1.0 / 3.0))))
-            s = s - delta / (h * (rate + s * (open_rate - rate + bend - s * bend)))
+            s = between_0_and_1(s - delta / (h * (rate + s * (open_rate - rate + bend - s * bend))))
         there = rate + s * (open_rate - rate + bend - s * bend)
         left = 1.0 - s
         # ∫δ over the closed part, over h: the trapezium with its slopes at both ends

@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...integrate import Engine, fixed_step_setting
+from ...integrate.start import at_phase_0
 from ...regime import Regime
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
@@ -40,7 +41,7 @@ class SettlingRun:
         self.scene = scene
         self.engine = Engine(scene, fixed_step_setting(), 1, stop=stop)
         self.stop = self.engine.stop
-        self.engine.start(start if start is not None else rest(scene))
+        self.engine.start(rest(scene) if start is None else at_phase_0(scene, start, self.stop))
         self._steps = self.engine.grid
         self.maxima = np.zeros((0, 3))
         self._begin(periods_run)

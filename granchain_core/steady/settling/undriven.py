@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 from ...integrate import Counts, Engine, Setting, fixed_step_setting
 from ...integrate.methods import typical_error
@@ -11,7 +12,7 @@ from ...kernels.samples import Samples
 from ...regime import Regime
 from ...result import Cost, run_from, start_words
 from ...scene import Scene
-from ...state import State, rest
+from ...state import State, checked_start, rest
 from ...stop import Stop
 from ..orbit_errors import errors_between
 from .outcome import Settled
@@ -22,7 +23,8 @@ _FINEST_REFINEMENT = 64
 
 def undriven_motion(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
     """The motion of a chain without a drive from its start, over the time 1/f, to the accuracy asked for."""
-    begin, setting, total = rest(scene) if start is None else start, fixed_step_setting(), Counts()
+    begin = rest(scene) if start is None else replace(checked_start(scene, start), phase=0.0)  # nothing has a phase
+    setting, total = fixed_step_setting(), Counts()
 
     def recorded(chosen: Setting) -> tuple[Engine, Samples]:
         engine = Engine(scene, chosen, samples, stop=stop)

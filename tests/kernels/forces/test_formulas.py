@@ -37,6 +37,21 @@ def test_the_rate_at_a_closing_is_of_third_order(part: float) -> None:
     assert crossing(0.1, part)[0] == pytest.approx(part, abs=1e-4)
 
 
+def test_a_closing_is_within_its_step_whatever_the_step_has_seen() -> None:
+    """Rates that do not fit the overlaps, as where a contact closes, opens and closes again in a step. Without damping
+    of its own the rate is a parabola, which departs from the straight line by a quarter of its bend."""
+    rng = np.random.default_rng(0)
+    for _ in range(2000):
+        before, after, h = -rng.uniform(0.0, 1.0), rng.uniform(1e-9, 1.0), rng.uniform(0.1, 1.0)
+        rate, open_rate = rng.uniform(-1.0, 1.0, 2)
+        s, there = closing_rate.py_func(before, after, rate, open_rate, 0.0, h)
+        bend = 6.0 * ((after - before) / h - 0.5 * (rate + open_rate))
+        assert 0.0 <= s <= 1.0
+        assert abs(there) <= max(abs(rate), abs(open_rate)) + 0.25 * abs(bend) + 1e-12
+        s, there = closing_rate.py_func(before, after, rate, open_rate, OWN, h)
+        assert 0.0 <= s <= 1.0 and np.isfinite(there)
+
+
 def test_a_touch_within_a_step_is_that_of_constant_acceleration() -> None:
     """δ = top − a s²/2 around its turn: it closes at the rate √(2 a top), whatever part of the step lies before."""
     a, top, h = 0.8, 1e-3, 0.3

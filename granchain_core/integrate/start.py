@@ -1,0 +1,43 @@
+"""Starts at any drive phase, for computations that go by whole periods from phase 0."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from fractions import Fraction
+
+from ..errors import BadInput
+from ..scene import Scene
+from ..state import State, checked_start
+from ..stop import Stop
+from .engine import Engine
+from .methods import fixed_step_setting
+
+#: A phase must be k/n with n at most this: the steps of a period are a multiple of n.
+_MOST_PARTS = 10_000
+#: How far a phase may be from k/n [periods]: rounding.
+_ROUNDING = 1e-9
+
+
+def nearest_fraction(phase: float) -> tuple[Fraction, bool]:
+    """The fraction k/n nearest to a phase, and whether it is the phase itself."""
+    part = Fraction(phase).limit_denominator(_MOST_PARTS)
+    return part, abs(float(part) - phase) <= _ROUNDING
+
+
+def at_phase_0(scene: Scene, start: State, stop: Stop | None = None) -> State:
+    """The state in which a motion from `start` comes to its next drive phase 0, by the fixed-step method.
+
+    A state at phase 0 is returned as it is. Raises `BadInput` where `start` is no state of this chain, or its phase is
+    no fraction k/n with n up to 10,000; `NumbersFailed` and `Cancelled`.
+    """
+    begin = checked_start(scene, start)
+    part, same = nearest_fraction(begin.phase)
+    if not same:
+        raise BadInput(f"A start at drive phase {begin.phase!r} cannot be carried on to phase 0; its phase must be a "
+                       f"fraction k/n with n up to {_MOST_PARTS}: the nearest is {part} = {float(part)!r}.")
+    if part.denominator == 1:
+        return replace(begin, phase=0.0)
+    engine = Engine(scene, fixed_step_setting(), part.denominator, stop=stop)
+    engine.start(replace(begin, phase=float(part)))
+    engine.record(part.denominator - part.numerator)
+    return engine.state
