@@ -24,8 +24,8 @@ from granchain_core.steady import regime_criteria
 from granchain_core.steady.curve import resonance
 from granchain_core.steady.settling import nearby_orbit, refine_orbit, regime_decisions
 
-OBSERVERS, DESIGN, REGIMES, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
-                                     for name in ("observers", "design", "regimes", "glossary"))
+MODEL, OBSERVERS, DESIGN, REGIMES, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
+                                     for name in ("model", "observers", "design", "regimes", "glossary"))
 #: Rows of the table of thresholds: the number, the constant's name and its file.
 ROWS = re.findall(r"\| ([\d.e-]+) \| `(\w+)` in `([\w/]+)\.py` \|", REGIMES)
 #: Numbers in the same files that decide no regime: columns of an array, sizes of a record, how a difference is
