@@ -128,8 +128,8 @@ _TABLE = (
              0.0, 1e10, "cubic", 10.0, main=True, short="foundation",
              at_zero="no springs to the ground"),
     Quantity("kappa", "κ", "1", r"\kappa", "foundation stiffness, dimensionless",
-             "k divided by K·√A₀, the contact stiffness at one drive amplitude of overlap.",
-             0.0, 100.0, "cubic", 1e-5, main=True, short="k / (K√A₀)"),
+             "k divided by K·√A₀, the secant stiffness F/δ of a contact of two beads at an overlap of one drive "
+             "amplitude.", 0.0, 100.0, "cubic", 1e-5, main=True, short="k / (K√A₀)"),
     Quantity("N", "N", "1", "N", "number of beads", "Beads between the driver and the wall.",
              1, 10_000, "linear", 1, whole=True, short="beads"),
     Quantity("F0", "F₀", "N", "F_0", "preload",

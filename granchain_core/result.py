@@ -169,10 +169,10 @@ class Run(RecordedMotion):
         Suprema over the recorded time [N], between the samples too, with the right limits at `jumps`.
     force_errors : ForceErrors
         Stated relative errors of these three suprema, `input`, `output`, `elastic`: numerical error only, an empirical
-        bound (docs/design.md), not a proof; None where none is stated.
+        bound (docs/accuracy.md), not a proof; None where none is stated.
     displacement_error : float or None
         Stated largest error of any displacement over the largest displacement: numerical error only, an empirical
-        bound (docs/design.md), not a proof; None where none is stated. Also called `error_estimate`.
+        bound (docs/accuracy.md), not a proof; None where none is stated. Also called `error_estimate`.
     energy_residual : float or None
         |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
         energy; None where no account was kept.

@@ -153,7 +153,7 @@ SWEEPS = Queue("sweeps", 8, patient=True)
 #: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper. One page offers all
 #: five, so two visitors could fill the queue: each has two at a time.
 LONG = Queue("long", 8, patient=True, share=2)
-#: Timings, one at a time for all visitors: two at once would disturb each other.
+#: Timings and hard cases, one at a time for all visitors: two timings at once would disturb each other.
 MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
 COMPILATIONS = Queue("compilations", 2)

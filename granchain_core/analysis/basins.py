@@ -90,7 +90,8 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
     scene : Scene
         The chain.
     x, y : tuple of (str, iterable of float)
-        A coordinate, "u1" … "uN" [m] or "v1" … "vN" [m/s], and its values. All others are 0 at the start.
+        A coordinate, "u1" … "uN" [m] or "v1" … "vN" [m/s], and its values. All others are 0 at the start, which is at
+        drive phase 0; the scene's `strike` does not count.
     stop : Stop, optional
         When set, the computation ends with what is finished; the other starts are −1.
     progress : callable, optional

@@ -185,7 +185,7 @@ METHODS: dict[str, Method] = {
             order_smooth=4.0, order=3.9, adaptive=False, symplectic=False,
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; with more than "
                          "30 beads two changes of one inner contact inside a step are not seen",
-            reference="Kutta 1901; w-variables and events: docs/model.md", stepper=_fixed(Rk4Split, simd=True),
+            reference="Kutta 1901; w-variables and events: docs/method.md", stepper=_fixed(Rk4Split, simd=True),
             cost=StepCost(450e-9, 45e-9), usual_error=_FIXED_STEP_ERROR, converges_regularly=True),
         Method(
             name="rk4-naive", title="RK4 in (u, v), the obvious first attempt", order_smooth=4.0, order=1.0,
@@ -208,7 +208,7 @@ METHODS: dict[str, Method] = {
             order_smooth=8.0, order=7.0, adaptive=True, symplectic=False,
             restrictions="accuracy to about 1e-12; no energy account; chains of up to 30 beads with a driver that is "
                          "harmonic or at rest, without tension cut",
-            reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/model.md",
+            reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/method.md",
             stepper=_adaptive(Regularised), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
             usual_error=1.0, keeps_account=False),
     )

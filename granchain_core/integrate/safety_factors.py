@@ -1,7 +1,7 @@
 """Safety factors on the difference of two computations, from which the stated error follows.
 
-Two errors of displacements have no factor. That of a settled orbit is the difference over 1 − |μ|
-(steady/settling/recording.py); that of a motion without a drive, as the page shows it, is at least the method's typical
+Two errors of displacements have no factor. That of a settled orbit is the difference over 1 − the contraction factor
+(steady/settling/recording.py). That of a motion without a drive, as the page shows it, is at least the method's typical
 error (steady/settling/undriven.py).
 
 Where the error falls with the method's order, the difference is itself a bound: with half the step at order 4 it is
@@ -21,5 +21,5 @@ RUN_FORCES = 1.5
 #: The same where a force jumps: its error varies from one step size to the next.
 RUN_FORCES_THAT_JUMP = 3.0
 #: Largest forces on a periodic orbit, in place of both factors above: only two computations are compared, and their
-#: change is enlarged by 1/(1 − |μ|) as well (`orbit_force_errors`).
+#: change is enlarged by 1/(1 − the contraction factor) as well (`orbit_force_errors`).
 ORBIT_FORCES = 2.0

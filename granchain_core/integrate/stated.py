@@ -55,7 +55,7 @@ def force_differences(now: np.ndarray, before: np.ndarray, jumps: bool) -> np.nd
 class Computations:
     """The errors of several computations of one motion, for several quantities at once.
 
-    Two computations may agree by chance (docs/design.md, "Accuracy is measured, not trusted"). So the stated error is
+    Two computations may agree by chance (docs/accuracy.md, "Accuracy is measured, not trusted"). So the stated error is
     the largest of
       - the difference of the last two, times a factor;
       - the previous difference, reduced by the method's order, or with error control by the ratio of the tolerances;

@@ -57,8 +57,8 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     """Run a chain through discarded and recorded drive periods, to the accuracy its scene asks for.
 
     The motion is computed twice, the second time finer; the stated error starts from their largest difference
-    (integrate/stated.py). While it is above the accuracy asked for, a still finer computation follows (docs/design.md,
-    "Accuracy is measured, not trusted").
+    (integrate/stated.py). While it is above the accuracy asked for, a still finer computation follows
+    (docs/accuracy.md, "Accuracy is measured, not trusted").
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ def test_finer_settings_err_less(measured: WorkPrecision) -> None:
 
 
 def test_naive_methods_are_a_hundred_times_worse_at_the_same_step(measured: WorkPrecision) -> None:
-    # docs/model.md, How it is computed: the dashpot's jump takes RK4 in (u, v) to order one
+    # docs/method.md, w-variables: the dashpot's jump takes RK4 in (u, v) to order one
     assert error(measured, "rk4-naive", 0) > 50.0 * error(measured, "rk4", 0)
     assert error(measured, "rk4-naive", -1) > 1e-4
 

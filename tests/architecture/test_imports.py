@@ -162,7 +162,7 @@ def documented(page: str, folder: str) -> dict[str, set[str]]:
 PRIVATE = documented("dashboard.md", "app")
 #: Those of Numba, by the modules of the core; among them names that a class uses of the one it is derived from, which
 #: `private_uses` does not find.
-PRIVATE_OF_NUMBA = {f"granchain_core.{module}": names for module, names in documented("design.md", "kernels").items()}
+PRIVATE_OF_NUMBA = {f"granchain_core.{module}": names for module, names in documented("compiling.md", "kernels").items()}
 
 
 @pytest.mark.parametrize("module", MODULES)

@@ -46,7 +46,7 @@ def test_it_breaks_without_foundation_synchronises_with_it_and_rests_unseen(visi
     page = visit(reduced_motion="no-preference")
     sheet = opened(page)
     expect(sheet).to_contain_text("it moves away: an offset of its beads grows, because nothing pulls them back", timeout=COMPILED)
-    expect(sheet).to_contain_text("predicted × 4.418")  # docs/model.md, `fig11-free`: one multiplier outside
+    expect(sheet).to_contain_text("predicted × 4.418")  # docs/observers.md: one multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5")
     chains = sheet.locator(".chains canvas")
     assert chains.count() == 3

@@ -22,7 +22,7 @@ def test_run_prints_one_json_object_and_explains_on_stderr(capsys: pytest.Captur
     data = json.loads(out)
     assert data["regime"] == "periodic" and data["period"] == 1 and data["status"] == "done"
     assert data["evidence"]["distance"] <= 1e-6 and data["evidence"]["window_ratios"] is None
-    assert data["max_output_force_elastic"] == pytest.approx(0.62, rel=0.01)  # docs/model.md, `fig3a`
+    assert data["max_output_force_elastic"] == pytest.approx(0.62, rel=0.01)  # docs/lecture.md, `fig3a`
     assert "absent, with no code and no array: tension cut, foundation, preload" in err
 
 

@@ -132,7 +132,7 @@ def at(frequency: float) -> Scene:
     (1280.0, (1, 1), "anti-resonance"), (2500.0, (1, 1), ""),
 ])
 def test_peaks_are_resonances_and_dips_anti_resonances(frequency: float, ratio: tuple[int, int], kind: str) -> None:
-    # docs/model.md, `sec2`: peaks 1:1 … 1:5 and the dips between them; above 2000 Hz is the stop band
+    # docs/lecture.md, `sec2`: peaks 1:1 … 1:5 and the dips between them; above 2000 Hz is the stop band
     found = response(periodic_orbit(at(frequency)))
     assert (found.strong, found.periods) == ratio and found.kind == kind
 

@@ -18,8 +18,8 @@ from app.cli.commands import parser_for
 from granchain_core import BadInput, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 
-MODEL = ROOT / "docs" / "model.md"
-_ROWS = re.findall(r"^\| `granchain (run [^`]+)` \| ([\d.]+) \| ([^|]+) \|$", MODEL.read_text("utf-8"), re.MULTILINE)
+MODEL, LECTURE = ROOT / "docs" / "model.md", ROOT / "docs" / "lecture.md"
+_ROWS = re.findall(r"^\| `granchain (run [^`]+)` \| ([\d.]+) \| ([^|]+) \|$", LECTURE.read_text("utf-8"), re.MULTILINE)
 _FOLDERS = "(?:granchain|granchain_core|app|assets|tests|tools|docs)"
 _COMMANDS = sorted({command for page in PAGES for command in commands(page)})
 
@@ -93,8 +93,8 @@ def test_commands_parse_and_their_scenes_and_knobs_exist(command: str):
 
 
 @pytest.mark.parametrize(("command", "force", "regime"), _ROWS, ids=[row[0] for row in _ROWS])
-def test_the_numbers_of_the_model_page(command: str, force: str, regime: str, capsys: pytest.CaptureFixture[str]):
-    """Rows of docs/model.md give what they say, to the digits that are printed."""
+def test_the_numbers_of_the_lecture_page(command: str, force: str, regime: str, capsys: pytest.CaptureFixture[str]):
+    """Rows of docs/lecture.md give what they say, to the digits that are printed."""
     assert cli.main([*shlex.split(command), "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     half_a_digit = 0.5 * 10.0 ** -len(force.partition(".")[2])
@@ -102,11 +102,11 @@ def test_the_numbers_of_the_model_page(command: str, force: str, regime: str, ca
     assert f"period {told['period']}" == regime.strip()
 
 
-def test_the_model_page_has_rows():
+def test_the_lecture_page_has_rows():
     assert _ROWS
 
 
-@pytest.mark.parametrize("page", [ROOT / "README.md", MODEL, ROOT / "docs" / "python.md", ROOT / "docs" / "fit.md"], ids=lambda page: page.name)
+@pytest.mark.parametrize("page", [ROOT / "README.md", LECTURE, ROOT / "docs" / "python.md", ROOT / "docs" / "fit.md"], ids=lambda page: page.name)
 def test_python_examples_run(page: Path, tmp_path: Path):
     """All Python blocks of a page, one after the other, in an empty folder."""
     code = "\n".join(block.text for block in blocks(page) if block.language == "python")

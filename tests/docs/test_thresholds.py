@@ -161,8 +161,8 @@ def test_the_setting_of_a_refined_orbit_is_the_design_pages() -> None:
 
 
 @pytest.mark.parametrize(("name", "f", "leading", "pages"), [
-    ("fig11-free", 100.0, "4.418", (MODEL, OBSERVERS)), ("fig11-founded", 100.0, "0.760", (MODEL, OBSERVERS)),
-    ("fig11-free", 200.0, "−2.212", (MODEL, OBSERVERS)), ("fig11-founded", 200.0, "0.996", (MODEL, OBSERVERS)),
+    ("fig11-free", 100.0, "4.418", (OBSERVERS,)), ("fig11-founded", 100.0, "0.760", (OBSERVERS,)),
+    ("fig11-free", 200.0, "−2.212", (OBSERVERS,)), ("fig11-founded", 200.0, "0.996", (OBSERVERS,)),
 ])
 def test_the_observers_multipliers_are_the_pages(name: str, f: float, leading: str, pages: tuple[str, ...]) -> None:
     """To the digits that are printed: a real one with its sign, of a pair the modulus."""

@@ -120,7 +120,7 @@ def test_chaos_does_not_win() -> None:
 
 
 def test_peaks_and_valleys_are_found_between_the_points() -> None:
-    """Those of section 2 (docs/model.md): peaks at 340, 620 Hz among periodic points, a valley at 470 Hz."""
+    """Those of section 2 (docs/lecture.md): peaks at 340, 620 Hz among periodic points, a valley at 470 Hz."""
     curve = resonance_curve(scene("sec2"), np.arange(200.0, 560.0, 10.0))
     assert min(abs(np.array(extrema(curve.points, True)) - 340.0)) < 10.0
     assert min(abs(np.array(extrema(curve.points, False)) - 470.0)) < 10.0

@@ -16,7 +16,7 @@ pytestmark = pytest.mark.quick
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: float, period: int) -> None:
     orbit = periodic_orbit(scene("sec2").evolve(f=frequency))
-    assert orbit.period == period  # docs/model.md: what sec2 reaches from rest
+    assert orbit.period == period  # docs/lecture.md: what sec2 reaches from rest
     assert orbit.residual <= 1e-11  # the map is computed to about 1e-12
     assert len(orbit.newton_residuals) - 1 <= 4  # quadratic convergence from a settled start
     assert orbit.stable

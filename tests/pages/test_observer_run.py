@@ -31,7 +31,7 @@ def test_a_run_measures_what_its_multiplier_predicts() -> None:
 
 
 def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
-    # sec2 from rest is of period 2 at 615 Hz (docs/model.md: two periods to a push on this peak)
+    # sec2 from rest is of period 2 at 615 Hz (docs/lecture.md: two periods to a push on this peak)
     shown = scene("sec2").evolve(f=615.0, kappa=0.001)
     picture = settled(shown)
     run = ObserverRun(shown, picture, Stop(), None)

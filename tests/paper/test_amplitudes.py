@@ -18,7 +18,7 @@ MODELLED = [f"{1e6 * amplitude:g}" for amplitude in MODEL_AMPLITUDES]
 NAMED = {
     "README.md": (f"flexures, driven with {RIG} µm",
                   f"the rig at 60 Hz ({AT_60} µm), 90 Hz ({AT_90} µm), and at the 50 Hz ({AT_50} µm)"),
-    "docs/model.md": (f"form peak, valley, peak: {AT_60}, {AT_90} and {AT_50} µm", f"at {RIG} µm the broad high region",
+    "docs/paper.md": (f"form peak, valley, peak: {AT_60}, {AT_90} and {AT_50} µm", f"at {RIG} µm the broad high region",
                       f"At {RIG} µm the model has *no* anti-resonance"),
     "assets/paper/statements.toml": (
         f"with a constant {', '.join(MODELLED[:-1])} and {MODELLED[-1]} µm:",

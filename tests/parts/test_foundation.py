@@ -52,7 +52,7 @@ def test_the_page_says_beside_kappa_what_it_was() -> None:
 
 
 def test_the_presets_of_figure_12_are_peak_valley_peak_in_period_1() -> None:
-    """Amplitudes within the paper's 6 to 13 µm, κ = 0.001 each; the forces themselves stand in docs/model.md."""
+    """Amplitudes within the paper's 6 to 13 µm, κ = 0.001 each; the forces themselves stand in docs/lecture.md."""
     found = [scene(name) for name in ("fig12-60", "fig12-90", "fig12-100")]
     assert [(one.f, one.A0) for one in found] == [(60.0, 11e-6), (90.0, 6e-6), (50.0, 13e-6)]
     for one in found:

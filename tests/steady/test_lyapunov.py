@@ -16,7 +16,7 @@ from granchain_core.steady.lyapunov import MeasuredExponents, exponents, exponen
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.stop import Stop
 
-CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `rig` without flexures (docs/model.md)
+CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `rig` without flexures (docs/lecture.md)
 QUASI = scene("sec2").evolve(f=1640.0)
 
 

@@ -11,7 +11,7 @@ from granchain_core.steady import regime_criteria
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_section_2_from_rest_has_its_periods(f, period):
-    """One push in 1, 2, 3, 4 periods on the peaks (docs/model.md); the picture of the orbit closes on itself and says
+    """One push in 1, 2, 3, 4 periods on the peaks (docs/lecture.md); the picture of the orbit closes on itself and says
     how exactly.
     """
     found = settled(scene("sec2").evolve(f=f))

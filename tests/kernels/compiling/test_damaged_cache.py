@@ -72,7 +72,7 @@ def test_with_another_numba_kernels_are_compiled_for_the_process_and_one_line_sa
     assert len(messages) == 1 and private.split(".")[-1].lstrip("_") in messages[0] and "this process only" in messages[0]
 
 
-#: The private names in the row of docs/design.md, by the classes whose instances have them.
+#: The private names in the row of docs/compiling.md, by the classes whose instances have them.
 OWNERS = {"_load_overload": caching.Cache, "_index_key": caching.Cache, "_guard_against_spurious_io_errors": caching.Cache,
           "_impl_class": caching.FunctionCache, "_impl": caching.Cache, "_cache_file": caching.Cache,
           "_locator_classes": caching.CacheImpl, "_cache_path": caching.UserProvidedCacheLocator,
@@ -117,7 +117,7 @@ def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypa
 
 
 def test_the_table_names_them_all() -> None:
-    rows = [line for line in (ROOT / "docs" / "design.md").read_text(encoding="utf-8").splitlines()
+    rows = [line for line in (ROOT / "docs" / "compiling.md").read_text(encoding="utf-8").splitlines()
             if "| `kernels/compiling/cache.py` |" in line]
     assert set(re.findall(r"`(_[a-z]\w*)`", " ".join(rows))) == set(OWNERS)
 

@@ -22,9 +22,9 @@ class AnotherLibrary:
     """A class of Numba's for compiled code that lacks what link_only.py uses."""
 
 
-#: The private names in the rows of docs/design.md.
+#: The private names in the rows of docs/compiling.md.
 NAMES = re.findall(r"`(_\w+)`", " ".join(re.findall(r"^\| ([^|]+) \| `kernels/compiling/link_only.py` \|", (
-    Path(__file__).parents[3] / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)))
+    Path(__file__).parents[3] / "docs" / "compiling.md").read_text(encoding="utf-8"), re.MULTILINE)))
 
 
 def sum_of_squares(options: dict[str, Any]) -> tuple[Any, Any]:
