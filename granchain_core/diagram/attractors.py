@@ -20,7 +20,8 @@ from ..scene import Scene
 from ..state import State, rest
 from ..steady.batch.job import Start
 from ..steady.exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
-from ..steady.regime_criteria import grows, is_neutral
+from ..steady.regime_criteria import find_period, grows, is_neutral
+from ..steady.settling.regime_decisions import REMEMBERED
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .attractor import Attractor, Attractors, Origin
@@ -39,6 +40,11 @@ _BOX_SIZE = 1.5
 _DEPARTURE = 1e-2
 #: Drive periods before the next check: enough to leave an orbit with |μ| = 1.003.
 _DEPARTURE_PERIODS = 3000
+#: Drive periods that a motion that does not repeat is run on, to see whether it comes to an orbit after all: on the way
+#: to a locked orbit of long period it may wander for thousands beside a closed curve.
+_LATER_PERIODS = 6400
+#: Most times that motions are run on, for either reason.
+_MOST_ROUNDS = 3
 #: Most random states.
 MOST_STATES = 10_000
 
@@ -98,9 +104,12 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
     if results and not any(not result.failure for result in results):
         raise NumbersFailed(results[0].failure, "not-finite")
     groups = merged([found(result) for result in results if not result.failure])
-    again = [start for group in groups if group[0].unstable for start in _beside(group, stop)]
-    if again:
-        kept = [one for group in groups if not group[0].unstable for one in group]
+    for _ in range(_MOST_ROUNDS):
+        left = [group for group in groups if group[0].unstable or _locks(group[0], stop)]
+        if not left:
+            break
+        again = [start for group in left for start in (_beside if group[0].unstable else _later)(group, stop)]
+        kept = [one for group in groups if group not in left for one in group]
         moved = [found(result) for result in _settled(again, stop) if not result.failure]
         groups = merged(kept + moved)
     return [_attractor(group, origins) for group in groups]
@@ -128,6 +137,24 @@ def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
         engine.start(State(u + _DEPARTURE * np.abs(u).max() * shape[0], v + _DEPARTURE * np.abs(v).max() * shape[1]))
         engine.periods(_DEPARTURE_PERIODS)
         yield Start(orbit.scene, engine.state, one.result.number)
+
+
+def _later(group: list[Found], stop: Stop | None) -> Iterator[Start]:
+    """New starts for all results of a group, where each motion is after `_LATER_PERIODS`."""
+    for one in group:
+        engine = Engine(one.result.scene, SECTION_SETTING, 1, stop=stop)
+        engine.start(one.result.state)
+        engine.periods(_LATER_PERIODS)
+        yield Start(one.result.scene, engine.state, one.result.number)
+
+
+def _locks(one: Found, stop: Stop | None) -> bool:
+    """Whether a motion that does not repeat comes to an orbit after all, within `_LATER_PERIODS`."""
+    if one.result.regime.period is not None:
+        return False
+    engine = Engine(one.result.scene, SECTION_SETTING, 1, stop=stop)
+    engine.start(one.result.state)
+    return find_period(engine.periods(_LATER_PERIODS)[0][-REMEMBERED:]).period is not None
 
 
 def share(count: int, of: int) -> tuple[float, float]:

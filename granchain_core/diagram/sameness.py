@@ -6,12 +6,14 @@ the first of each group is brought onto its orbit by Newton's method, and groups
 their `_ORBIT_DIFFERENCE`/(1 − |μ|), with 1 − |μ| at least 1e-3, are joined. A group is not divided again.
 
 Motions that are not periodic are the same if their sections lie in each other: the median distance of the states of one
-to the nearest of the other is no larger than `_SECTION_FACTOR` times that within each.
+to the nearest of the other is no larger than `_SECTION_FACTOR` times that between neighbours within each. Near a
+resonance the states of a closed curve come in short arcs, which shift slowly, so sections that differ are compared
+again with more states.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -31,8 +33,9 @@ _LARGEST_DIFFERENCE = 1e-3
 _ORBIT_DIFFERENCE = 1e-7
 #: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
 _SECTION_FACTOR = 3.0
-#: States in the section of a motion that is not periodic, taken after as many further periods.
-_STATES_OF_SECTION = 400
+#: States in the section of a motion that is not periodic, taken after as many further periods, and in the longer ones
+#: that are compared where sections differ.
+_STATES_OF_SECTION = (400, 1600, 6400)
 #: Method by which a motion's section is taken, and the tolerance for that of an orbit.
 SECTION_SETTING = fixed_step_setting()
 _ADAPTIVE_SETTING = adaptive_setting(1e-11)
@@ -40,11 +43,15 @@ _ADAPTIVE_SETTING = adaptive_setting(1e-11)
 
 @dataclass(eq=False)
 class Found:
-    """One result with its section: n strobes of a periodic orbit, or the record of another motion, (P, 2, N)."""
+    """One result with its section: n strobes of a periodic orbit, or the record of another motion, (P, 2, N).
+
+    `longer` holds longer records of a motion that is not periodic, by their number of states.
+    """
 
     result: SteadyState
     section: np.ndarray
     orbit: Orbit | None = None
+    longer: dict[int, np.ndarray] = field(default_factory=dict)
 
     @property
     def tolerance(self) -> float:
@@ -52,6 +59,14 @@ class Found:
         if self.orbit is not None:
             return _ORBIT_DIFFERENCE / max(1e-3, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
         return min(_LARGEST_DIFFERENCE, self.result.output_force_error or 0.0)
+
+    def section_of(self, states: int) -> np.ndarray:
+        """The section with so many states of a motion that is not periodic; the shortest is `section`."""
+        if states == _STATES_OF_SECTION[0]:
+            return self.section
+        if states not in self.longer:
+            self.longer[states] = _section(self.result, states)
+        return self.longer[states]
 
     @property
     def unstable(self) -> bool:
@@ -62,15 +77,16 @@ class Found:
 def found(result: SteadyState) -> Found:
     """A result with the section of its motion."""
     period = result.regime.period
-    return Found(result, _strobes(result.scene, result.state, period, SECTION_SETTING) if period else _section(result))
+    return Found(result, _strobes(result.scene, result.state, period, SECTION_SETTING) if period
+                 else _section(result, _STATES_OF_SECTION[0]))
 
 
-def _section(result: SteadyState) -> np.ndarray:
-    """Stroboscopic states of displacement and velocity of a motion that is not periodic, scaled, (P, 2, N)."""
+def _section(result: SteadyState, states: int) -> np.ndarray:
+    """Stroboscopic states of displacement and velocity of a motion that is not periodic, scaled, (states, 2, N)."""
     engine = Engine(result.scene, SECTION_SETTING, 1)
     engine.start(result.state)
-    engine.periods(_STATES_OF_SECTION)
-    return engine.periods(_STATES_OF_SECTION)[0][1:]
+    engine.periods(states)
+    return engine.periods(states)[0][1:]
 
 
 def _strobes(scene: Scene, state: State, periods: int, setting: Setting) -> np.ndarray:
@@ -116,7 +132,9 @@ def _polished(one: Found) -> Found:
             orbit = periodic_orbit(one.result.scene, shortest, orbit.state)
     except (BadInput, NumbersFailed):  # a scene that cuts tension has no converged orbits
         return one
-    if _distance(section, one.section) > 10.0 * one.tolerance + 1e-6:
+    # states are known less well than forces; a stable orbit that is as near as this is the one the motion settled on
+    most = _LARGEST_DIFFERENCE if orbit.stable else 10.0 * one.tolerance + 1e-6
+    if _distance(section, one.section) > most:
         return one
     result = replace(one.result, regime=replace(one.result.regime, period=shortest))
     return Found(result, section[:shortest], orbit)
@@ -127,9 +145,13 @@ def _same(a: Found, b: Found) -> bool:
         return False
     if a.result.regime.period is not None:
         return _distance(a.section, b.section) <= a.tolerance + b.tolerance
-    scale = _scale(a.section, b.section)
-    apart = max(_to_nearest(a.section, b.section, scale), _to_nearest(b.section, a.section, scale))
-    return apart <= _SECTION_FACTOR * max(_own(a.section, scale), _own(b.section, scale))
+    for states in _STATES_OF_SECTION:
+        one, other = a.section_of(states), b.section_of(states)
+        scale = _scale(one, other)
+        apart = max(_to_nearest(one, other, scale), _to_nearest(other, one, scale))
+        if apart <= _SECTION_FACTOR * max(_own(one, scale), _own(other, scale)):
+            return True
+    return False
 
 
 def _scale(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -146,13 +168,17 @@ def _distance(a: np.ndarray, b: np.ndarray) -> float:
 
 def _to_nearest(a: np.ndarray, b: np.ndarray, scale: np.ndarray) -> float:
     """Median relative distance of the states of a section (P, 2, N) to the nearest of another; `scale` (1, 2, 1)."""
-    from scipy.spatial.distance import cdist
-
-    flat = [(section / scale).reshape(len(section), -1) for section in (a, b)]
-    return float(np.median(cdist(*flat, metric="chebyshev").min(axis=1)))
+    return _to_neighbour(a, b, scale, 1)
 
 
 def _own(section: np.ndarray, scale: np.ndarray) -> float:
-    """Median relative distance of the states of a section's later half to the nearest of its earlier half."""
-    half = len(section) // 2
-    return _to_nearest(section[half:], section[:half], scale)
+    """Median relative distance of the states of a section to the nearest other one."""
+    return _to_neighbour(section, section, scale, 2)  # the first is the state itself
+
+
+def _to_neighbour(a: np.ndarray, b: np.ndarray, scale: np.ndarray, which: int) -> float:
+    """Median relative distance of the states of a section to their `which`-th nearest of another."""
+    from scipy.spatial import KDTree
+
+    states, others = ((section / scale).reshape(len(section), -1) for section in (a, b))
+    return float(np.median(KDTree(others).query(states, k=[which], p=np.inf)[0]))

@@ -7,10 +7,13 @@ import pytest
 
 from granchain_core import BadInput, Scene, resonance_curve, scene, settled
 from granchain_core.diagram import Attractor, attractors, listing
+from granchain_core.diagram.attractors import _locks, share
 from granchain_core.diagram.attractors import _regime as irregular_regime
-from granchain_core.diagram.attractors import share
+from granchain_core.diagram.sameness import Found
 from granchain_core.orbits import periodic_orbit, response
 from granchain_core.regime import Regime
+from granchain_core.state import rest
+from granchain_core.steady.steady_state import SteadyState
 
 #: Where rest, a sweep up and a sweep down lead to three different motions of sec2.
 MANY = 893.0
@@ -89,6 +92,15 @@ def test_what_only_seems_to_rest_is_not_an_attractor() -> None:
     found = attractors(scene("sec2").evolve(f=1936.0), random_states=24)
     assert all(one.stable is not False for one in found)
     assert {one.regime.period for one in found} == {5, None}
+
+
+@pytest.mark.parametrize(("chain", "comes"), [
+    (scene("sec2").evolve(N=2, f=2000.0), True), (scene("sec2").evolve(N=3, D=0.0, f=2000.0), False)])
+def test_what_was_called_irregular_and_comes_to_an_orbit_is_noticed(chain: Scene, comes: bool) -> None:
+    """A chain that settles within a few periods, and one without damping, which has no attractor."""
+    regime = Regime("quasi-periodic", None, None, None, 400, (1e-4, 1e-4), lyapunov_periods=400)
+    result = SteadyState(chain, np.ones(3), regime, None, rest(chain))
+    assert _locks(Found(result, np.zeros((1, 2, chain.N))), None) is comes
 
 
 @pytest.mark.parametrize(("mean", "error", "name"), [

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.diagram.sameness import Found, merged
+from granchain_core.diagram.sameness import Found, found, merged
+from granchain_core.orbits import periodic_orbit
 from granchain_core.regime import Regime
 from granchain_core.state import rest
 from granchain_core.steady.steady_state import SteadyState
@@ -34,3 +37,36 @@ def test_orbits_a_hundredth_apart_are_two_however_large_the_error_of_their_force
 
 def test_states_within_their_stated_errors_are_one() -> None:
     assert len(merged([result(SECTION, 1e-5), result(SECTION * (1.0 + 1e-5), 1e-5)])) == 1
+
+
+def closed_curve(states: int, turns: float, first: float, radius: float = 1.0) -> np.ndarray:
+    """Strobes (states, 2, N) of a rotation by `turns` per period on a circle, from the angle `first`."""
+    angle = first + 2.0 * np.pi * turns * np.arange(states)
+    return radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)[:, :, None] * np.ones(CUT.N)
+
+
+def quasi_periodic(turns: float, first: float, radius: float = 1.0) -> Found:
+    """A motion on that circle, with its longer sections."""
+    regime = Regime("quasi-periodic", None, None, None, 400, (1e-4, 1e-4))
+    shortest, *longer = (closed_curve(states, turns, first, radius) for states in (400, 1600, 6400))
+    return Found(SteadyState(CUT, np.ones(3), regime, None, rest(CUT)), shortest,
+                 longer={len(section): section for section in longer})
+
+
+def test_arcs_of_one_closed_curve_are_one_once_they_are_long_enough() -> None:
+    """A rotation by 1/5 + 2e-5: 400 states lie on five arcs of 2.9 degrees each, 6400 states on 46 degrees; other arcs
+    that begin 6 degrees further on overlap these and not those. A circle one per cent larger is another motion."""
+    one, further = quasi_periodic(0.2 + 2e-5, 0.0), quasi_periodic(0.2 + 2e-5, np.radians(6.0))
+    assert len(merged([one, further])) == 1
+    assert len(merged([one, quasi_periodic(0.2 + 2e-5, 0.0, 1.05)])) == 2
+
+
+def test_an_orbit_is_found_from_states_that_are_known_less_well_than_their_forces() -> None:
+    """Both are 2e-4 from one stable orbit, on two sides, with forces known to 1e-9: Newton's method joins them."""
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    orbit = periodic_orbit(chain)
+    regime = Regime("periodic", 1, 0.5, 1e-7, 100)
+    results = [SteadyState(chain, np.ones(3), regime, np.full(3, 1e-9), orbit.state, number=number) for number in (0, 1)]
+    near = [replace(found(one), section=found(one).section * factor) for one, factor in zip(
+        results, (1.0 + 2e-4, 1.0 - 2e-4), strict=True)]
+    assert len(merged(near)) == 1
