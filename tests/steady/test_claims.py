@@ -86,7 +86,6 @@ def test_a_batch_leaves_long_orbits_to_a_chain_alone() -> None:
     chain = scene("sec2").evolve(f=1087.0)
     alone_, (together,) = settled(chain).regime, resonance_curve(chain, [1087.0]).points
     assert (alone_.name, alone_.period) == (together.regime.name, together.regime.period) == ("periodic", 18)
-    assert max(alone_.periods_run, together.regime.periods_run) < 1000
 
 
 def nearly_repeating(change: float) -> np.ndarray:
