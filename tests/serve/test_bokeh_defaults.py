@@ -47,7 +47,7 @@ def described(theme: Theme | None) -> str:
     return re.sub(r"\bp\d+\b", lambda found: f"p{numbers.setdefault(found[0], len(numbers))}", content)
 
 
-def test_a_document_is_told_the_same() -> None:
+def test_remembered_defaults_describe_the_same_document() -> None:
     before = described(None), described(CHANGES)
     assert before[0] != before[1] and "31px" in before[1]
     remember_defaults()

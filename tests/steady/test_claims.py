@@ -61,7 +61,7 @@ def test_growth_within_its_error_is_no_chaos() -> None:
     (0.0, 0.004, 200, False), (0.005, 0.5, 200, False),                            # too uncertain to exclude chaos
     (0.02, 0.001, 200, False), (-0.02, 0.001, 200, False),                         # clearly something else
 ])
-def test_a_bad_measurement_is_no_easier(mean: float, error: float, periods: int, neutral: bool) -> None:
+def test_a_large_standard_error_is_not_neutral(mean: float, error: float, periods: int, neutral: bool) -> None:
     """Neutral: within three standard errors or e⁶ over the record, and below 0.01 a period."""
     assert regime_criteria.is_neutral(mean, error, periods) is neutral
 

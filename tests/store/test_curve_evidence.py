@@ -40,7 +40,7 @@ MORE = ("followed", "approaches", *MORE_EVIDENCE)
 
 
 @pytest.mark.parametrize("missing", [MORE, ("periods_run", *EVIDENCE, *MORE)])
-def test_a_file_without_it_opens(tmp_path: Path, missing: tuple[str, ...]) -> None:
+def test_a_file_without_evidence_opens(tmp_path: Path, missing: tuple[str, ...]) -> None:
     path = save(CURVE, tmp_path / "old.h5")
     with h5py.File(path, "r+") as file:
         for name in missing:

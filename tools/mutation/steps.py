@@ -96,7 +96,7 @@ ADAPTIVE = (
            "a step that shrinks to nothing goes on for ever", ("tests/hard/test_outcomes.py::test_step_too_small",)),
     Mutant("chatter-unseen", _DOP853_RUN, "if events > EVENTS_PER_CONTACT * (bodies - 1):", "if events < 0:",
            "contacts that open and close without end are followed without a word",
-           ("tests/hard/test_outcomes.py::test_chatter",)),
+           ("tests/hard/test_outcomes.py::test_endless_touches_fail_with_a_sentence",)),
     Mutant("events-of-all-periods", _DOP853_RUN, "t, g, events = 0.0, 0, 0", "t, g = 0.0, 0",
            "a long run is called chatter", k.MANY_PERIODS),
     Mutant("samples-at-step-ends", _DOP853_RUN, "min(1.0, (at - t) / h)", "1.0",

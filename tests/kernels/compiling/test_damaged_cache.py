@@ -116,7 +116,7 @@ def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypa
     assert bool(caplog.messages) == bool(name) and all("this process only" in line for line in caplog.messages)
 
 
-def test_the_table_names_them_all() -> None:
+def test_the_page_names_every_patched_method() -> None:
     rows = [line for line in (ROOT / "docs" / "compiling.md").read_text(encoding="utf-8").splitlines()
             if "| `kernels/compiling/cache.py` |" in line]
     assert set(re.findall(r"`(_[a-z]\w*)`", " ".join(rows))) == set(OWNERS)
