@@ -39,7 +39,7 @@ def test_motion_and_forces_are_those_of_dop853(knobs):
 
 
 def test_it_takes_less_than_half_of_dop853s_evaluations():
-    """What it is for; at 1e-8 it takes a third once the first wave has passed."""
+    """Fewer evaluations are the method's purpose; measured at 1e-8: a third, once the first wave has passed."""
     ours, theirs = (recorded(name, 1e-8, f=340.0)[0] for name in ("dop853-root", "dop853"))
     before = ours.counts.rhs, theirs.counts.rhs
     ours.record(96)
@@ -83,5 +83,5 @@ def test_what_vectors_do_not_know_is_refused(knobs):
 
 
 def test_a_run_has_no_energy_account():
-    """It would not be this method's."""
+    """The method has none; that of another method would describe another motion."""
     assert run(scene("sec2"), periods=1, record=1, method="dop853-root").energy_residual is None

@@ -43,7 +43,7 @@ class Judged:
 
     @property
     def called(self) -> str:
-        """Its label."""
+        """The regime's label."""
         regime = self.point.regime
         return f"period {regime.period}" if regime.period else regime.name
 

@@ -53,7 +53,7 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
 
 
 def test_across_events_the_adaptive_method_keeps_to_a_hundred_tolerances():
-    """What event location is for: without it a method of order 8 has the order of the kink that it steps over."""
+    """Without event location a method of order 8 has the order of the kink that it steps over."""
     chain = scene("sec2").evolve(F0=0.0)
     true = Engine(chain, Setting("dop853", tolerance=1e-14), 8).record(16).displacement
     found = Engine(chain, Setting("dop853", tolerance=1e-10), 8).record(16).displacement

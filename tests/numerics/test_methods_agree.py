@@ -96,7 +96,7 @@ def test_a_long_chain_moves_with_each_effect_as_dop853_moves_it(name: str) -> No
 
 @pytest.mark.parametrize("name", EFFECT_NAMES)
 def test_a_batch_moves_a_chain_with_each_effect_as_dop853_moves_it(name: str) -> None:
-    """Or says that the chain cannot share a batch, and is settled alone."""
+    """A chain with an effect that batches do not know cannot share one, and is settled alone."""
     one, scaled = chain(name), scale_chain(chain(name))
     assert can_share_batch(one) == (not unknown_slots(scaled.slots, "batch"))
     if not can_share_batch(one):

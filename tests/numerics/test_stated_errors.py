@@ -53,7 +53,7 @@ def test_most_scenes_are_done():
 
 
 def test_the_stated_error_bounds_the_true_one_with_a_tension_cut():
-    """The same demand where tension is cut. Measured: 0.11 of what is stated at most."""
+    """As without the cut, in each scene. Measured: 0.11 of what is stated at most."""
     ratio = excess([v for v in stated_errors.verdicts(20, 21, CUT) if v is not None])
     assert (ratio <= 1.0).all()
 

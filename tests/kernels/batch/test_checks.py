@@ -61,7 +61,7 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 
 @pytest.mark.parametrize(("before", "kept"), [(1e-3, True), (1e-9, False)])
 def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before: float, kept: bool) -> None:
-    """Else the chain goes back to where it was extrapolated from, and waits twice as long."""
+    """If it is not smaller, the chain returns to the state before the extrapolation and waits twice as long."""
     batch = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
     state = batch.state
     state.change_before_extrapolation[MEMBER], state.before[MEMBER, :, 1:-1], state.extrapolate_from[MEMBER], state.pause[MEMBER] = before, 0.25, 10_000, 16
@@ -72,7 +72,7 @@ def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before:
 
 @pytest.mark.parametrize(("before", "slowest"), [(1e-3, 0.9), (1e-9, 0.0)])
 def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated_to(before: float, slowest: float) -> None:
-    """It is neither disturbed nor called followed: the decay known before the extrapolation is known again."""
+    """Such an orbit is neither disturbed nor called followed: the decay is the one known before the extrapolation."""
     batch = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
     state = batch.state
     state.change_before_extrapolation[MEMBER], state.extrapolate_from[MEMBER] = before, 10_000

@@ -101,7 +101,7 @@ def take_away(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("name", ["", *OWNERS])
 def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypatch: pytest.MonkeyPatch,
                                                              caplog: pytest.LogCaptureFixture) -> None:
-    """And without none of them, it is."""
+    """With all of them (the empty name) the compiled code is kept."""
     @numba.njit
     def twice(x):
         return 2 * x
@@ -185,7 +185,7 @@ def test_a_file_that_holds_another_version_is_not_believed(tmp_path: Path) -> No
 
 
 def test_processes_that_compile_at_once_lose_nothing_of_each_other(tmp_path: Path) -> None:
-    """What two have found missing and then written, one after the other, is all there; nothing else is left behind."""
+    """Two find an entry missing and write it, one after the other: every entry is there, and no other file."""
     one, other = (cache._Files(str(tmp_path), "f", "stamp") for _ in range(2))
     assert one.load("a") is None and other.load("b") is None
     one.save("a", 1)
