@@ -94,7 +94,7 @@ def slice_of(kind: str, count: int) -> list[Verdict]:
 @pytest.mark.parametrize(("kind", "count"), [("run", 24), ("curve", 3), ("map", 3)])
 def test_largest_forces_are_within_what_is_stated_of_them(kind, count):
     """All but one of these forces at most, and none is wrong by more than 1e-3 plus ten times what is stated. How many
-    are in thousands of scenes is measured in docs/design.md (`python -m tests.numerics.forces`).
+    are in thousands of scenes is measured in docs/accuracy.md (`python -m tests.numerics.forces`).
     """
     found = slice_of(kind, count)
     judged = np.array([v.judged & ~np.isnan(v.stated) for v in found])

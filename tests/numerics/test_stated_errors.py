@@ -32,7 +32,7 @@ def excess(found: list) -> np.ndarray:
 @pytest.mark.long
 def test_the_stated_error_bounds_the_true_one():
     """At any accuracy from 1e-3 to 1e-9, in each of these scenes; how rare a larger one is in thousands of scenes is
-    measured in docs/design.md, “Accuracy is measured, not trusted”. Measured here: 0.22 of what is stated at most.
+    measured in docs/accuracy.md. Measured here: 0.22 of what is stated at most.
     """
     ratio = excess(uncut())
     print(f"{len(ratio)} scenes: {np.mean(ratio <= 1.0):.1%} bounded, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")

@@ -112,7 +112,7 @@ ADAPTIVE = (
 CLOCK = (
     Mutant("t-plus-dt", _ENGINE, "self.stepper.place(2 * np.pi * self.grid_index / self.grid,",
            "self.stepper.place(2 * np.pi * self.elapsed,", "the drive's phase is summed up, not counted", k.CONTINUATION),
-    Mutant("phase-of-start-forgotten", _ENGINE, "self.grid_index = round(state.phase * self.grid) % self.grid",
+    Mutant("phase-of-start-forgotten", _ENGINE, "self.grid_index = round(at) % self.samples * (self.grid // self.samples)",
            "self.grid_index = 0", "a start inside a period begins at phase 0", k.CONTINUATION),
     Mutant("sample-clock-restarts", _ENGINE, "self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid",
            "self.grid_index = count * (self.grid // self.samples) % self.grid", "a second record begins at another phase", k.CONTINUATION),

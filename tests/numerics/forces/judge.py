@@ -37,7 +37,7 @@ _PATIENCE = 4000
 #: The relative distance from its orbit at which a point is judged.
 _ON_ORBIT = 1e-9
 #: A force wrong by more than this, plus so many times what is stated, is wrong in a way that matters: a definition,
-#: which docs/design.md quotes.
+#: which docs/accuracy.md quotes.
 SILENT, _TIMES_STATED = 1e-3, 10.0
 #: Relative change of a force for a relative distance of displacements: 3/2 of an overlap's change, and an overlap is
 #: the difference of two displacements.
