@@ -36,7 +36,7 @@ def test_on_an_orbit_the_exponents_are_those_of_its_multipliers() -> None:
     assert found.dimension == 0.0
 
 
-def test_their_sum_is_the_mean_trace(undamped: LyapunovSpectrum) -> None:
+def test_the_sum_of_exponents_is_the_mean_trace(undamped: LyapunovSpectrum) -> None:
     """Without damping volumes are kept: the trace is 0, and the sum is what rounding and the tolerance of 1e-13 leave.
     """
     assert undamped.resolved == 6 and undamped.mean_trace == 0.0
@@ -49,7 +49,7 @@ def test_with_damping_their_sum_is_the_mean_trace_too() -> None:
     assert found.liouville is not None and found.liouville < 1e-7
 
 
-def test_they_are_in_descending_order(undamped: LyapunovSpectrum) -> None:
+def test_exponents_are_in_descending_order(undamped: LyapunovSpectrum) -> None:
     """The table calls them ranks, and the dimension adds them up from the largest."""
     for found in (undamped, lyapunov_spectrum(scene("sec2").evolve(N=3, f=1000.0, A0=2e-6), 60)):
         assert np.all(np.diff(found.exponents[:found.resolved]) <= 0.0)
@@ -94,7 +94,7 @@ def test_what_cannot_be_measured_is_refused() -> None:
             lyapunov_spectrum(chain, periods)
 
 
-def test_it_stops() -> None:
+def test_the_spectrum_is_cancelled_by_its_stop() -> None:
     stop = Stop()
     stop.set()
     with pytest.raises(Cancelled):

@@ -69,7 +69,7 @@ def test_code_inlined_by_numba_has_one_caller_or_one_of_each_kind_of_step() -> N
 
 
 def test_kernels_take_few_arguments() -> None:
-    """What belongs together is a named tuple: a step, a trajectory, the arrays that are written."""
+    """At most 8: values that belong together are a named tuple, such as a step or the arrays that are written."""
     many = {f"{_dotted(path)}.{node.name}": len(node.args.args) for path in CORE if "kernels" in path.parts
             for node in ast.walk(parsed(path))
             if isinstance(node, ast.FunctionDef) and len(node.args.args) > 8}

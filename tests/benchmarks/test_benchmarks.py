@@ -64,7 +64,7 @@ class TestC:
     """The C program, where it can be compiled."""
 
     @pytest.mark.parametrize("case", [case for case in c_program.cases() if case.prepare], ids=lambda case: case.label)
-    def test_the_trajectory(self, case, reference: np.ndarray) -> None:
+    def test_the_program_in_c_follows_the_reference(self, case, reference: np.ndarray) -> None:
         # order 2 at contact changes: measured 7.5e-7 at 1920 steps a period
         assert error_of(case.prepare(1920)().states, reference) < 1e-6
 

@@ -8,6 +8,8 @@ from knobs import COMPILED, Visit
 from playwright.sync_api import Locator, Page, expect
 from server import resize
 
+from granchain_core.hard import CASES
+
 #: A case that has a picture and, once its kernels are compiled, takes a second.
 QUICK = "solitary wave, Hertz collision, cradle, a bead on a chain"
 LONG = "near a bifurcation"
@@ -38,7 +40,7 @@ def card(sheet: Locator, name: str) -> Locator:
 def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None:
     page = visit()
     sheet = opened(page)
-    expect(sheet.locator("article")).to_have_count(16)
+    expect(sheet.locator("article")).to_have_count(len(CASES))
     expect(sheet.locator("article").first).to_contain_text("Naive:")
     assert not [one for one in page.evaluate("sent") if one.startswith("hard-")]  # nothing was asked to run
     expect(sheet.locator("table")).to_have_count(0)
@@ -59,10 +61,10 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     box = one.locator(".drawn canvas").first.bounding_box()
     assert box is not None and box["width"] > 300 and box["height"] > 250
     expect(one.get_by_role("button", name="run")).to_have_text("run again")
-    expect(sheet).to_contain_text("1 of 16 cases run")
+    expect(sheet).to_contain_text(f"1 of {len(CASES)} cases run")
     # what was found is told in its tab and stays
     page.keyboard.press("Escape")
-    expect(page.locator("#tabs")).to_contain_text("1 of 16 cases run")
+    expect(page.locator("#tabs")).to_contain_text(f"1 of {len(CASES)} cases run")
 
 
 def test_run_all_is_stopped_at_once_and_all_cases_fit(visit: Visit) -> None:

@@ -75,7 +75,7 @@ def fits(page: Page) -> None:
 
 
 def test_dark_differs_from_light_in_colours_only() -> None:
-    """So what fits in light fits in dark, which is not looked at below."""
+    """The tests below look at the light theme only: with equal sizes, what fits there fits in the dark one."""
     for role in ("line", "type", "small"):
         assert getattr(THEMES["dark"], role) == getattr(THEMES["light"], role)
     dark = next(rule for rule in style_sheet().splitlines() if "data-theme=dark" in rule)

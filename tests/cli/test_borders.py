@@ -156,7 +156,7 @@ def test_a_field_that_comes_twice_is_said():
 @pytest.mark.parametrize("field", ["f=", "f=1e400", "f=-inf", "f=0x10", "N=1e1000", "N=3.5", "wall=", "wall=-1", "tension=",
                                    "dissipation=LINEAR", "k=%00", "A0=%F0%9F%98%80", "accuracy=0", "F0=1,5"])
 def test_every_bad_field_of_a_link_has_its_sentence(field):
-    """And the scene stays what it was, f = 500 Hz included."""
+    """The other fields of the link are taken, and the refused one keeps the scene's own value."""
     found, _, refused = decode(f"v=1&scene=sec2&{field}&D=77")
     assert len(refused) == 1
     assert found == scene("sec2").evolve(D=77.0)

@@ -52,7 +52,7 @@ def test_a_person_at_a_terminal_is_told_once() -> None:
     assert at_a_terminal().count(WORDS) == 1
 
 
-def test_a_script_reads_nothing_of_it() -> None:
+def test_a_script_reads_nothing_of_compiling() -> None:
     done = subprocess.run([sys.executable, "-c", PROGRAM], cwd=ROOT, capture_output=True, text=True, timeout=120, check=True)
     assert (done.stdout.strip(), done.stderr) == ("3", "")
 

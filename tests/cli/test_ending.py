@@ -100,7 +100,7 @@ def test_an_interrupt_in_the_first_second(after: float, entry: str, started: Cal
 
 
 def test_the_entry_imports_next_to_nothing_before_it_listens() -> None:
-    """What is imported outside its guard ends in Python's own traceback when Ctrl-C comes then."""
+    """Ctrl-C during an import outside the guard would end in Python's own traceback."""
     program = ("import sys\nbefore = set(sys.modules)\nimport app.cli\nprint(sorted(set(sys.modules) - before))\n"
                "from app.cli import ending\nprint(any(name.split('.')[0] in {'numpy', 'numba', 'granchain_core', 'argparse'}"
                " for name in sys.modules))\n")
@@ -137,7 +137,7 @@ def test_the_page_of_hard_cases_leaves_no_process_either(started: Callable[..., 
 
 def test_a_second_signal_ends_at_once_what_does_not_listen(started: Callable[..., Command],
                                                                tmp_path: Path) -> None:
-    """And the sentence says where the finished part is."""
+    """The sentence on stderr says where the finished part is."""
     (tmp_path / "out.h5.blocks").mkdir()
     program = ("import time\nfrom app.cli import ending\nending.begin()\nending.keeps('out.h5.blocks')\n"
                "with ending.asking():\n    print('inside', flush=True)\n    time.sleep(1000)\n")

@@ -119,7 +119,7 @@ def test_a_finished_result_is_looked_at_before_its_blocks(finished: tuple[str, P
         assert out.read_bytes() == before
 
 
-def test_another_question_is_refused(finished: tuple[str, Path, bytes], tmp_path: Path,
+def test_resuming_with_other_options_is_refused(finished: tuple[str, Path, bytes], tmp_path: Path,
                                      capsys: pytest.CaptureFixture[str]) -> None:
     name, result, content = finished
     out = Path(shutil.copy(result, tmp_path))
@@ -198,7 +198,7 @@ def test_blocks_without_a_head_are_not_believed(tmp_path: Path) -> None:
     assert not kept.folder.exists()
 
 
-def test_the_head_goes_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_head_of_a_finished_checkpoint_is_removed_last(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     kept = pieces(tmp_path / "a")
     kept.add(1)
     kept.write()

@@ -265,7 +265,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
 
 
 def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    """And stops saying so with the first picture that comes in time."""
+    """The message disappears with the first picture that comes in time."""
     clock = [5.0]
     monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0], thread_time=time.thread_time))
     try:

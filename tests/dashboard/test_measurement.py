@@ -64,7 +64,7 @@ def test_hdf5_never_parses_an_upload_in_the_server(sealed: bool, dashboard: Dash
 
 
 def test_an_hdf5_file_is_called_as_the_visitor_called_it(dashboard: Dashboard, tmp_path: Path) -> None:
-    """What is said of it names no folder of the server."""
+    """The sentences about the file name no folder of the server."""
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["frequency"] = [40.0]
     sentence = after(dashboard, sent((tmp_path / "a.h5").read_bytes()), "understood")

@@ -71,13 +71,13 @@ def test_periodic_ones_are_converged_orbits_and_stable(many: list[Attractor]) ->
 
 
 def test_the_same_seed_gives_the_same_answer_and_another_seed_the_same_attractors(many: list[Attractor]) -> None:
-    def told(found: list[Attractor]) -> list[tuple]:
+    def fingerprint(found: list[Attractor]) -> list[tuple]:
         return [(one.regime.name, one.regime.period, one.share, [o.name for o in one.origins]) for one in found]
 
-    assert told(attractors(scene("sec2").evolve(f=MANY), random_states=48)) == told(many)
+    assert fingerprint(attractors(scene("sec2").evolve(f=MANY), random_states=48)) == fingerprint(many)
     other = attractors(scene("sec2").evolve(f=MANY), random_states=48, seed=1)
     assert {(one.regime.name, one.regime.period) for one in other} == {(o.regime.name, o.regime.period) for o in many}
-    assert told(other) != told(many)
+    assert fingerprint(other) != fingerprint(many)
 
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3)])

@@ -46,6 +46,17 @@ def blocks(page: Path, until: str = "") -> list[Block]:
     return found
 
 
+def lines_outside_fences(page: Path) -> list[tuple[int, str]]:
+    """Number and text of every line that stands in no fenced block."""
+    found, fenced = [], False
+    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
+        fence = line.lstrip().startswith("```")
+        fenced ^= fence
+        if not (fenced or fence):
+            found.append((number, line))
+    return found
+
+
 def edited(text: str, edit: str) -> str:
     """`text` after the edits of a diff block: each must fit at exactly one place."""
     for hunk in edit.split("@@\n"):

@@ -46,17 +46,22 @@ def edited_copy(page: Path, copy: Path, until: str = "") -> Path:
     """
     for part in _PARTS:
         copied(part, copy)
+    edit_files(page, copy, until)
+    return copy
+
+
+def edit_files(page: Path, tree: Path, until: str = "") -> None:
+    """Make the page's edits in a tree that has the files which they are made in."""
     for block in blocks(page, until):
         if block.language == "console":
             continue
-        file = copy / block.path
+        file = tree / block.path
         if block.is_new_file:
             assert not file.exists(), f"{block.path} is there already"
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(block.text, encoding="utf-8")
         else:
             file.write_text(edited(file.read_text(encoding="utf-8"), block.text), encoding="utf-8")
-    return copy
 
 
 def follow(tree: Path, *arguments: str) -> str:

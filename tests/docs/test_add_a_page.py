@@ -56,7 +56,7 @@ print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["
 
 
 def test_the_new_page_computes_in_the_background_until_it_is_told_to_stop(tree: Path) -> None:
-    """What takes long is done by a task: it ends with what it found, with a moved knob, and with the visitor."""
+    """The page's task ends when it has its result, when a knob is moved, and when the visitor leaves."""
     printed = follow(tree, "-c", """
 import sys
 sys.path.insert(0, "tests")

@@ -8,23 +8,12 @@ import shlex
 from pathlib import Path
 
 import pytest
-from documents import PAGES, ROOT
+from documents import PAGES, ROOT, lines_outside_fences
 
 from app.cli.commands import parser_for
 
 _CONTRIBUTING = ROOT / "CONTRIBUTING.md"
 _PROGRAMS = {"granchain", "pip", "playwright", "pre-commit", "python", "python3"}
-
-
-def lines_outside_fences(page: Path) -> list[tuple[int, str]]:
-    """Number and text of every line that stands in no fenced block."""
-    found, fenced = [], False
-    for number, line in enumerate(page.read_text(encoding="utf-8").splitlines(), 1):
-        fence = line.lstrip().startswith("```")
-        fenced ^= fence
-        if not (fenced or fence):
-            found.append((number, line))
-    return found
 
 
 def shell_lines(page: Path) -> list[str]:

@@ -136,7 +136,7 @@ def test_every_scene_is_in_the_readme_and_every_knob_in_the_model():
 
 
 def test_dockerfile_has_a_pinned_base_and_copies_what_the_ignore_file_lets_through():
-    """What is not let through by .dockerignore cannot be copied."""
+    """A file that .dockerignore holds back cannot be copied."""
     allowed = {line[1:] for line in (ROOT / ".dockerignore").read_text().splitlines() if line.startswith("!")}
     docker = (ROOT / "Dockerfile").read_text()
     base, *stages = re.findall(r"^(?:ARG BASE=|FROM )(\S+)", docker, re.MULTILINE)

@@ -201,7 +201,7 @@ def test_what_is_uncertain_is_asked_with_the_first_rows(content: str | bytes, ab
 
 
 @pytest.mark.parametrize(("content", "answers", "sentence"), [one[1:] for one in REFUSED], ids=[one[0] for one in REFUSED])
-def test_what_is_wrong_is_refused(content: str | bytes, answers: Answers | None, sentence: str) -> None:
+def test_a_file_without_usable_data_is_refused(content: str | bytes, answers: Answers | None, sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence) as refused:
         read_data(data(content), answers)
     assert not isinstance(refused.value, Unclear)
@@ -269,7 +269,7 @@ def test_what_a_figure_cannot_use_is_not_read() -> None:
     (["x=1:Hz"], "Unknown quantity 'x'"), (["f=one:Hz"], "'one' is not the number of a column"), (["f=1:N"], "'N' is not a unit of frequency"),
     (["f=0:Hz"], "not the number"), (["F=2:2.248V/Hz"], "not a unit of force"), (["F=2:0V/kN"], "not a unit of force"),
 ])
-def test_an_answer_that_is_none(words: list[str], sentence: str) -> None:
+def test_a_malformed_answer_is_refused(words: list[str], sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         answers_of(words)
 

@@ -62,7 +62,7 @@ def test_netcdf_of_xarray(tmp_path: Path) -> None:
     assert isinstance(found, Shaker) and found.displacement == pytest.approx([7e-6, 8e-6, 6e-6])
 
 
-def test_what_granchain_wrote(tmp_path: Path) -> None:
+def test_granchains_own_curves_are_read(tmp_path: Path) -> None:
     chain = scene("sec2").evolve(N=2)
     curve = resonance_curve(chain, [1800.0, 2000.0])
     save_curve(curve, tmp_path / "curve.h5")
@@ -85,7 +85,7 @@ def test_rows_without_meaning_are_asked_about_and_answered(tmp_path: Path) -> No
     assert isinstance(found, Measured) and found.force == pytest.approx(1e-3 * FORCE)
 
 
-def test_what_is_refused(tmp_path: Path) -> None:
+def test_labelled_files_without_usable_data_are_refused(tmp_path: Path) -> None:
     with pytest.raises(BadInput, match=r"a\.h5.*Row 2 of force is not a finite number"):
         read_experiment(hdf5(tmp_path / "a.h5", f=(F, "Hz"), force=([1.0, np.nan, 2.0], "N")))
     with pytest.raises(BadInput, match="no two rows of numbers"):

@@ -108,7 +108,7 @@ def test_an_amplitude_for_each_frequency_leans_on_its_prior() -> None:
     assert model == pytest.approx(given.force, rel=0.04)
 
 
-def test_chaos_does_not_win() -> None:
+def test_a_chaotic_point_has_no_smaller_misfit() -> None:
     """A point that is not periodic has a wider distribution, and pays for it: no smaller misfit at the same value."""
     irregular = scene("rig").evolve(A0=13e-6, f=100.0, kappa=0.001)  # chaotic, docs/paper.md
     curve = resonance_curve(irregular, [100.0])
@@ -163,7 +163,7 @@ def test_what_cannot_be_fitted_is_refused(free: list[Free], sentence: str) -> No
     ("A0=1:2", None, "outside"), ("D@60=1:2", None, "Unknown parameter"), ("K=0:1", None, "must be above 0"),
     ("D=1:2", "D=1:0", "must be above 0"), ("D=1:2", "D=1", "NAME=mean:sd"),
 ])
-def test_a_parameter_that_is_none(words: str, prior: str | None, sentence: str) -> None:
+def test_a_malformed_parameter_is_refused(words: str, prior: str | None, sentence: str) -> None:
     with pytest.raises(BadInput, match=sentence):
         free_of(words, prior)
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from granchain_core import NumbersFailed, scene
+from granchain_core import NumbersFailed, Scene
 from granchain_core.hard import (
     Case,
     Measurement,
@@ -21,9 +21,12 @@ from granchain_core.hard import (
     run_case,
     touches,
 )
-from granchain_core.integrate import Engine, checkpoint
-from granchain_core.integrate.methods import Setting
+from granchain_core.integrate import checkpoint
+from granchain_core.integrate import engine as engine_module
+from granchain_core.kernels.effects.dissipation import LinearDashpot
 from granchain_core.regime import Regime
+from granchain_core.scaling import ScaledChain
+from granchain_core.state import State
 
 
 def worst(measurements: list[Measurement]) -> Measurement:
@@ -92,17 +95,17 @@ def test_a_clock_that_adds_its_steps_is_out_of_phase() -> None:
 
 
 def test_wrong_scaling_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    real = extremes.scene
+    """The damping in scaled units grows with A0 by a power that should not be there."""
+    real = engine_module.scale_chain
 
-    def other(name: str):  # type: ignore[no-untyped-def]
-        return replace(real(name), k=1.0)  # a foundation in N/m does not scale
+    def wrong(chosen: Scene, *options: bool) -> ScaledChain:
+        scaled = real(chosen, *options)
+        damping = LinearDashpot(scaled.slots.dissipation.coefficient * (1.0 + 1e-6 * np.log(chosen.A0)))
+        return replace(scaled, slots=scaled.slots._replace(dissipation=damping))
 
-    monkeypatch.setattr(extremes, "scene", other)
-    base = extremes.scene("sec2")
-    assert base.k == 1.0
-    one = Engine(base.evolve(A0=1e-8), Setting("rk4-split"), 16).record(16).displacement
-    two = Engine(base.evolve(A0=1e-7, f=10**0.25 * base.f, D=10**0.25 * base.D), Setting("rk4-split"), 16).record(16).displacement
-    assert np.abs(one - two).max() > 1e-12 * np.abs(one).max()
+    monkeypatch.setattr(engine_module, "scale_chain", wrong)
+    assert [name for name in failed(extremes.amplitudes(True)) if name.startswith("scaling")] == [
+        "scaling from 1e-12 to 1e-4 m, fixed steps", "scaling from 1e-12 to 1e-4 m, adaptive"]
 
 
 def test_change_per_period_taken_for_the_distance_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -131,9 +134,12 @@ def test_an_asymmetric_chain_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None
     assert contacts.mirrored(5, 200.0) > 1e-13
 
 
-def test_a_drive_whose_impulse_is_not_counted_is_noticed() -> None:
-    base = scene("sec2").evolve(N=4, D=60.0)
-    engine = Engine(base, Setting("dop853", 1.0, 1e-12), 64)
-    kept = engine.record(64)
-    momentum = kept.velocity.sum(axis=1)
-    assert abs(momentum[-1] - momentum[0]) > 1e-3  # what the balance has to explain
+def test_a_drive_whose_impulse_is_not_counted_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = energy._segment
+
+    def without_impulse(chosen: Scene, state: State, amplitude: float, samples: int) -> tuple[State, float, float]:
+        after, _, largest = real(chosen, state, amplitude, samples)
+        return after, 0.0, largest
+
+    monkeypatch.setattr(energy, "_segment", without_impulse)
+    assert failed(energy.switched_drives(True)) == ["after a jump", "ramp", "chirp", "stop"]

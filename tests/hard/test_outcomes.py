@@ -32,7 +32,7 @@ def test_done_with_its_figures() -> None:
     assert result.cost.steps > 0 and result.displacement_error is not None and result.energy_residual is not None
 
 
-def test_cancelled() -> None:
+def test_a_stopped_run_is_cancelled() -> None:
     stop = Stop()
     stop.set()
     with pytest.raises(Cancelled):
@@ -56,7 +56,7 @@ def test_over_budget_is_refused_before_anything_is_computed_with_what_would_fit(
     assert isinstance(caught.value, BadInput)
 
 
-def test_what_would_fit_fits() -> None:
+def test_the_offered_number_of_periods_fits_into_the_budget() -> None:
     chosen = scene("sec2").evolve(f=1.0)
     with pytest.raises(OverBudget) as caught:
         run(chosen, periods=99, record=1, samples=8, budget=2.0)
@@ -130,7 +130,7 @@ def test_step_too_small() -> None:
     assert caught.value.status == "step-too-small"
 
 
-def test_chatter() -> None:
+def test_endless_touches_fail_with_a_sentence() -> None:
     """One bead between a slow driver and the wall, undamped: thousands of touches in one drive period."""
     engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=1.0), Setting("dop853", 1.0, 1e-4), 1)
     engine.start(State(np.zeros(1), np.array([0.5])))

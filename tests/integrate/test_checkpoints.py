@@ -9,6 +9,6 @@ from granchain_core.integrate import METHODS
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_cuts_change_no_number(method: str) -> None:
+def test_a_run_resumed_from_checkpoints_is_the_same_run(method: str) -> None:
     assert cut_and_gone_on(method, 8, 5) == 0.0
     assert uninterrupted(method, 8, 5) == 0.0

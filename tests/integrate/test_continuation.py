@@ -137,8 +137,8 @@ def steps_after_the_flag(slow: Engine, stop: Stop, computation: Callable[[], obj
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
 @pytest.mark.parametrize("recording", [False, True])
 def test_stop_flag_ends_a_long_run_soon(method, recording):
-    """A stop flag set by another thread ends a long period in its middle: the kernel reads the flag every 4096 steps at
-    most, so up to two such blocks of steps may follow."""
+    """A stop flag set by another thread ends a long period in its middle: the kernel reads the flag every
+    STEPS_BETWEEN_STOP_CHECKS steps at most, so up to two such blocks of steps may follow."""
     stop = Stop()
     quick = Engine(scene("sec2").evolve(f=1e5, N=300), Setting(method, tolerance=1e-3), 1)
     quick.record(1) if recording else quick.periods(1)  # compiling asks no flag
@@ -148,7 +148,9 @@ def test_stop_flag_ends_a_long_run_soon(method, recording):
 
 
 def test_stop_flag_ends_a_lyapunov_exponent_soon():
-    """Two chains side by side for a period of a hundred thousand steps: the flag is asked every 4096 steps of both."""
+    """Two chains side by side for a period of a hundred thousand steps: the flag is read after each
+    STEPS_BETWEEN_STOP_CHECKS steps of both.
+    """
     stop = Stop()
     exponents(Engine(scene("sec2").evolve(f=1e5, N=300), fixed_step_setting(), 1), 1, 1)  # compiling asks no flag
     slow = Engine(scene("sec2").evolve(f=0.5, N=300), fixed_step_setting(16), 1, stop=stop)
@@ -157,14 +159,14 @@ def test_stop_flag_ends_a_lyapunov_exponent_soon():
 
 @pytest.mark.parametrize("beads", [11, 300])
 def test_a_stopped_period_counts_the_steps_that_were_taken(beads):
-    """A flag that is up from the start is seen after 4096 steps at most, of a period of some ten thousand."""
+    """A flag that is up from the start is seen at the first check, in a period of more than three."""
     stop = Stop()
     stop.set()
     engine = Engine(scene("sec2").evolve(f=1.0, N=beads), fixed_step_setting(), 1, stop=stop)
-    assert engine.grid > 3 * 4096
+    assert engine.grid > 3 * STEPS_BETWEEN_STOP_CHECKS
     with pytest.raises(Cancelled):
         engine.periods(1)
-    assert engine.counts.steps <= 4096
+    assert engine.counts.steps <= STEPS_BETWEEN_STOP_CHECKS
 
 
 def test_run_passes_its_stop_flag_on():

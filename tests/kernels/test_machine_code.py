@@ -83,7 +83,7 @@ def added(kernel: str, effect: str) -> dict:
 @x86
 @pytest.mark.parametrize("kernel", KERNELS)
 def test_the_code_is_vector_code(kernel):
-    """Else nothing below would count anything."""
+    """Guards the counts below: the kernels must be vectorised."""
     assert code()[kernel]["nothing"]["packed"]["multiply"] > 100
 
 

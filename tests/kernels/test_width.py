@@ -7,6 +7,8 @@ import os
 import subprocess
 import sys
 
+import llvmlite.binding
+import numba
 import pytest
 
 from granchain_core import BadInput, resonance_curve, scene
@@ -23,11 +25,11 @@ print(json.dumps([[p.regime.name, p.regime.period, p.max_output_force, p.force_e
 
 
 def test_both_sizes_of_a_batch_give_the_same_curve() -> None:
-    other = str(12 - width.BATCH_SIZE)
-    said = subprocess.run([sys.executable, "-c", OTHER, json.dumps(FREQUENCIES)], capture_output=True, text=True,
-                          check=True, env={**os.environ, width.VARIABLE: other}).stdout
+    other, = set(width.CHOICES) - {width.BATCH_SIZE}
+    printed = subprocess.run([sys.executable, "-c", OTHER, json.dumps(FREQUENCIES)], capture_output=True, text=True,
+                             check=True, env={**os.environ, width.VARIABLE: str(other)}).stdout
     here = resonance_curve(scene("sec2"), FREQUENCIES, workers=1).points
-    for mine, (regime, period, force, error) in zip(here, json.loads(said), strict=True):
+    for mine, (regime, period, force, error) in zip(here, json.loads(printed), strict=True):
         assert (mine.regime.name, mine.regime.period) == (regime, period)
         if mine.force_errors.output is None or error is None:  # 130 Hz is quasi-periodic: a maximum of no period
             assert mine.force_errors.output is error
@@ -35,19 +37,40 @@ def test_both_sizes_of_a_batch_give_the_same_curve() -> None:
         assert mine.max_output_force == pytest.approx(force, rel=mine.force_errors.output + error)
 
 
-def test_the_size_of_a_batch_is_the_machines_or_the_one_chosen(monkeypatch: pytest.MonkeyPatch) -> None:
-    for wide, name, members in ((True, "icelake-server", 8), (True, "znver4", 8), (False, "znver3", 4)):
-        monkeypatch.setattr(width, "has_avx512", lambda wide=wide: wide)
-        monkeypatch.setattr(width, "processor", lambda name=name: name)
-        assert width.batch_size(None) == members
+@pytest.mark.quick
+@pytest.mark.parametrize(("features", "name", "host", "wide"), [
+    # Numba's settings name the features: neither the name nor this machine counts
+    ("+avx2,+avx512f,+fma", None, {}, True),
+    ("+avx2,-avx512f", None, {"avx512f": True}, False),
+    ("+avx512fp16", "icelake-server", {"avx512f": True}, False),
+    # they name a processor: its features are not known, and four scenes are right on every one
+    (None, "znver3", {"avx512f": True}, False),
+    # they name nothing: this machine
+    (None, None, {"avx512f": True}, True),
+    (None, None, {"avx512f": False}, False),
+    (None, None, {}, False),
+])
+def test_avx512_is_that_of_the_machine_the_kernels_are_compiled_for(
+        features: str | None, name: str | None, host: dict[str, bool], wide: bool,
+        monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numba.config, "CPU_FEATURES", features)
+    monkeypatch.setattr(numba.config, "CPU_NAME", name)
+    monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", lambda: host)
+    assert width.has_avx512() == wide
+    assert width.batch_size(None) == (8 if wide else 4)
+
+
+@pytest.mark.quick
+def test_the_size_of_a_batch_is_the_one_chosen() -> None:
     assert width.batch_size("4") == 4 and width.batch_size("8") == 8
     with pytest.raises(BadInput, match="GRANCHAIN_BATCH_SIZE is '7'; it may be 4 or 8"):
         width.batch_size("7")
 
 
+@pytest.mark.quick
 def test_the_older_name_of_the_variable_still_works(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(width.VARIABLE, raising=False)
-    for size in (4, 8):
+    for size in width.CHOICES:
         monkeypatch.setenv(width.OLDER_VARIABLE, str(size))
         assert width._batch_size_here() == size
     monkeypatch.setenv(width.OLDER_VARIABLE, "7")

@@ -76,11 +76,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
-    words = parser.parse_args()
+    args = parser.parse_args()
     for base in ("sec2", "rig"):
-        found = list(points(words.count, words.seed, base))
+        found = list(points(args.count, args.seed, base))
         ratio = np.array([p.error / p.stated for p in found])
-        print(f"{base}: {len(found)} periodic points of {words.count}, {np.mean(ratio <= 1.0):.2%} bounded; true/stated median "
+        print(f"{base}: {len(found)} periodic points of {args.count}, {np.mean(ratio <= 1.0):.2%} bounded; true/stated median "
               f"{np.median(ratio):.2g}, worst {ratio.max():.2g}; stated median {np.median([p.stated for p in found]):.1e}")
         for p in found:
             if p.error > p.stated:

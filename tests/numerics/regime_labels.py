@@ -43,7 +43,7 @@ class Judged:
 
     @property
     def called(self) -> str:
-        """Its label."""
+        """The regime's label."""
         regime = self.point.regime
         return f"period {regime.period}" if regime.period else regime.name
 
@@ -111,10 +111,10 @@ def main() -> None:
     parser.add_argument("--width", type=float, default=2.0)
     parser.add_argument("--step", type=float, default=0.25)
     parser.add_argument("--starts", nargs="+", default=["up", "down"], choices=["rest", "up", "down"])
-    words = parser.parse_args()
+    args = parser.parse_args()
     every: list[Judged] = []
-    for place, direction in itertools.product(words.places, words.starts):
-        found = list(judged(place, words.width, words.step, direction))
+    for place, direction in itertools.product(args.places, args.starts):
+        found = list(judged(place, args.width, args.step, direction))
         every += found
         for one in found:
             if one.false or one.missing or one.true == "undecided":

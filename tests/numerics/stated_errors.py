@@ -105,9 +105,9 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--few", action="store_true", help="only the structures of the test suite")
-    words = parser.parse_args()
+    args = parser.parse_args()
     began = time.perf_counter()
-    every = list(verdicts(words.count, words.seed, FEW if words.few else STRUCTURES))
+    every = list(verdicts(args.count, args.seed, FEW if args.few else STRUCTURES))
     found = [v for v in every if v is not None]
     print(f"{len(found)} scenes, {len(every) - len(found)} failed and said so, {time.perf_counter() - began:.0f} s")
     print("    asked   scenes  judged  bounded  below what was asked  done  median true/stated  worst")

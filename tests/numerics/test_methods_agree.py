@@ -1,5 +1,5 @@
-"""Every method moves every chain as dop853 does, or refuses it in a sentence: an effect that a method does not know is
-never left out silently."""
+"""Every method moves every chain as dop853 does, or refuses it in a sentence, and so does a batch: an effect that a
+method does not know is never left out silently."""
 
 from __future__ import annotations
 
@@ -12,10 +12,16 @@ from chains import LAWS
 
 from granchain_core import BadInput, Scene, scene
 from granchain_core.integrate import METHODS, Engine, Setting
+from granchain_core.integrate.batch import NEVER, Batch, can_share_batch
+from granchain_core.integrate.methods import FIXED_STEP
 from granchain_core.integrate.regularised import Regularised
+from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.effects.driver import Moved
+from granchain_core.kernels.rk4.long_chain import LongChain
 from granchain_core.scaling import scale_chain
 from granchain_core.scene.effects import EFFECTS
+from granchain_core.state import rest
+from granchain_core.stop import Stop
 
 #: Every damping law, effect, kind of beads, of walls and of drives; most of these kernels are compiled for other tests
 #: too (tests/numerics/test_orders.py). Every method knows them.
@@ -26,26 +32,39 @@ KNOWN: dict[str, dict[str, object]] = {
 }
 #: Of these dop853-root knows none yet: the tension cut, and any effect that is added, with its usual values.
 CHAINS = KNOWN | {effect.name: dict(effect.usual) for effect in EFFECTS if effect.name not in (*KNOWN, "dashpot")}
+#: Chains that a batch or a method's vectors for long chains may know: one with each effect.
+WITH_EFFECT = CHAINS | {"dashpot": {}}
+EFFECT_NAMES = [effect.name for effect in EFFECTS]
+#: Beads of a chain in one vector, and of one that is too long for it (kernels/rk4/long_chain.py).
+BEADS, LONG = 11, 40
 #: The methods with fixed steps take 32 times the usual ones. In scaled time, in which a motion changes by its size
 #: in about 1, a method of order 1, the least of the table, is off by about a step.
 _REFINED = 32
 #: With error control, as in tests/numerics/test_orders.py, the error is below a thousand tolerances.
 _TOLERANCE, _PER_TOLERANCE = 1e-8, 1000.0
-
+#: A batch with a twelfth of its usual step is off by less than 2e-7 (tests/kernels/batch/test_batch_steps.py).
+_BATCH_REFINED, _BATCH_ERROR = 12.0, 1e-6
+_PERIODS, _SAMPLES = 2, 8
 
 #: dop853 near rounding.
 _TRUE = Setting("dop853", tolerance=1e-12)
 
 
-def chain(name: str) -> Scene:
-    """A scene of the table above."""
-    return scene("sec2").evolve(f=900.0, **CHAINS[name])  # type: ignore[arg-type]
+def chain(name: str, beads: int = BEADS) -> Scene:
+    """A scene of the tables above."""
+    return scene("sec2").evolve(f=900.0, N=beads, **WITH_EFFECT[name])  # type: ignore[arg-type]
 
 
 @functools.cache
-def motion(name: str, setting: Setting) -> np.ndarray:
-    """Eight samples in each of the first two periods, in scaled units."""
-    return Engine(chain(name), setting, 8, balance=METHODS[setting.method].adaptive).record(16).displacement
+def motion(name: str, setting: Setting, beads: int = BEADS) -> np.ndarray:
+    """The samples of the first periods from rest, in scaled units."""
+    engine = Engine(chain(name, beads), setting, _SAMPLES, balance=METHODS[setting.method].adaptive)
+    return engine.record(_PERIODS * _SAMPLES).displacement
+
+
+def difference(found: np.ndarray, true: np.ndarray) -> float:
+    """Largest difference over the largest displacement."""
+    return float(np.abs(found - true).max() / np.abs(true).max())
 
 
 @pytest.mark.parametrize("method", [name for name in METHODS if name != "dop853"])
@@ -53,23 +72,52 @@ def motion(name: str, setting: Setting) -> np.ndarray:
 def test_every_method_moves_a_chain_as_dop853_does_or_refuses_it(name: str, method: str) -> None:
     setting, true = Setting(method, refine=_REFINED, tolerance=_TOLERANCE), motion(name, _TRUE)
     try:
-        error = np.abs(motion(name, setting) - true).max() / np.abs(true).max()
+        error = difference(motion(name, setting), true)
     except BadInput as refusal:
         assert method == "dop853-root" and name not in KNOWN
         assert f"use dop853 for this one. It does not know: {name}." in str(refusal)
         return
-    allowed = _PER_TOLERANCE * _TOLERANCE if METHODS[method].adaptive else setting.step(scale_chain(chain(name)), 8)
+    allowed = _PER_TOLERANCE * _TOLERANCE if METHODS[method].adaptive else setting.step(scale_chain(chain(name)), _SAMPLES)
     print(f"{method}, {name}: {error:.1e} of {allowed:.1e}")
     assert error < allowed
 
 
-@pytest.mark.parametrize("name", [name for name in CHAINS if name != "linear"])
-def test_a_method_that_left_an_effect_out_would_be_noticed(name: str) -> None:
-    """It moves the chain by more than the test above allows."""
-    bare, true = motion("linear", _TRUE), motion(name, _TRUE)
-    seen = np.abs(true - bare).max() / np.abs(true).max()
+@pytest.mark.parametrize("name", EFFECT_NAMES)
+def test_a_long_chain_moves_with_each_effect_as_dop853_moves_it(name: str) -> None:
+    """In vectors along the chain where they know the effect."""
+    setting = Setting(FIXED_STEP, refine=_REFINED)
+    engine = Engine(chain(name, LONG), setting, _SAMPLES)
+    known = not unknown_slots(engine.scaled.slots, "rk4")
+    assert isinstance(engine.stepper.work.simd, LongChain) == known
+    error, allowed = difference(motion(name, setting, LONG), motion(name, _TRUE, LONG)), setting.step(engine.scaled, _SAMPLES)
+    print(f"{name}: {error:.1e} of {allowed:.1e}")
+    assert error < allowed
+
+
+@pytest.mark.parametrize("name", EFFECT_NAMES)
+def test_a_batch_moves_a_chain_with_each_effect_as_dop853_moves_it(name: str) -> None:
+    """A chain with an effect that batches do not know cannot share one, and is settled alone."""
+    one, scaled = chain(name), scale_chain(chain(name))
+    assert can_share_batch(one) == (not unknown_slots(scaled.slots, "batch"))
+    if not can_share_batch(one):
+        return
+    batch = Batch(one, Stop())
+    batch.put(0, scaled, scaled.from_si(rest(one)), _BATCH_REFINED, return_at=_PERIODS, earliest=NEVER)
+    assert batch.run() == (0, True)
+    error = difference(batch.strobes(0)[: _PERIODS + 1, 0], motion(name, _TRUE)[::_SAMPLES])
+    print(f"{name}: {error:.1e}")
+    assert error < _BATCH_ERROR
+
+
+@pytest.mark.parametrize(("name", "beads"), [*((name, BEADS) for name in CHAINS if name != "linear"),
+                                             *((name, LONG) for name in EFFECT_NAMES if name != "dashpot")])
+def test_a_method_that_left_an_effect_out_would_be_noticed(name: str, beads: int) -> None:
+    """It moves the chain by more than the tests above allow, and at the strobes by more than that of a batch does."""
+    bare, true = motion("linear", _TRUE, beads), motion(name, _TRUE, beads)
+    seen = difference(bare, true)
     print(f"{name}: {seen:.3f}")
-    assert seen > 2.0 * Setting("rk4", refine=_REFINED).step(scale_chain(chain(name)), 8)
+    assert seen > 2.0 * Setting("rk4", refine=_REFINED).step(scale_chain(chain(name, beads)), _SAMPLES)
+    assert difference(bare[::_SAMPLES], true[::_SAMPLES]) > 2.0 * _BATCH_ERROR
 
 
 @pytest.mark.parametrize("driver", [Moved(np.zeros(3)), None])

@@ -102,7 +102,7 @@ def test_every_method_has_its_order_in_every_regime(method, regime):
 
 @pytest.mark.parametrize(("method", "most"), LOST.items())
 def test_contact_events_take_orders_from_a_fixed_step(method, most):
-    """What a step across a kink or a jump cannot have; a measure that always said 4 would fail here."""
+    """A step across a kink or a jump has a lower order; a measurement that always gave 4 would fail here."""
     assert order(method, "linear") < most
 
 

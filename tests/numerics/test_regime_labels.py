@@ -101,7 +101,7 @@ def test_one_motion_has_one_name_from_curve_and_page(f: float) -> None:
     assert drawn.max_output_force == pytest.approx(pictured.run.max_output_force, rel=bound + 1e-6)
 
 
-def test_slow_is_not_quasi_periodic() -> None:
+def test_a_slow_approach_is_not_quasi_periodic() -> None:
     """A0 = 0.3 µm at 1500 Hz: |μ| = 0.9995.
 
     300 periods look like a closed curve; `run` claims nothing that it is not yet.

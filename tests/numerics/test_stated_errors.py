@@ -14,8 +14,6 @@ from granchain_core import Run, run, scene
 from granchain_core.integrate.methods import method_for
 from granchain_core.scaling import scale_chain
 
-#: By what factor a stated error may at most be below the true one.
-AT_MOST = 4.0
 UNCUT = [s for s in stated_errors.FEW if s[1] == "allowed"]
 CUT = [s for s in stated_errors.FEW if s[1] == "cut"]
 
@@ -33,32 +31,31 @@ def excess(found: list) -> np.ndarray:
 
 @pytest.mark.long
 def test_the_stated_error_bounds_the_true_one():
-    """At any accuracy from 1e-3 to 1e-9: in 99 % of a thousand scenes (`python -m tests.numerics.stated_errors`), which
-    is one of these forty at most; two computations that agree by chance are then wrong by a small factor only.
+    """At any accuracy from 1e-3 to 1e-9, in each of these scenes; how rare a larger one is in thousands of scenes is
+    measured in docs/accuracy.md. Measured here: 0.22 of what is stated at most.
     """
     ratio = excess(uncut())
     print(f"{len(ratio)} scenes: {np.mean(ratio <= 1.0):.1%} bounded, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
-    assert (ratio > 1.0).sum() <= 1
-    assert ratio.max() < AT_MOST
+    assert (ratio <= 1.0).all()
 
 
 def test_a_run_that_is_done_is_as_accurate_as_asked():
-    """The true error is below what was asked, within the same small factor, and in 95 % of the scenes without it."""
-    met = np.array([v.error / v.asked for v in uncut() if v.status == "done"])
-    assert np.mean(met <= 1.0) >= 0.95
-    assert met.max() < AT_MOST
+    """The true error is below what was asked, in each scene. Measured: 0.10 of it at most."""
+    assert all(v.error <= v.asked for v in uncut() if v.status == "done")
 
 
 def test_most_scenes_are_done():
-    """Only motions that amplify errors beyond what any number of steps can mend are not."""
-    assert np.mean([v.status == "done" for v in uncut()]) > 0.8
+    """33 of the 40 when this was written; that other rounding may lose two is an allowance. The others were asked for
+    5e-8 or less, or amplify errors until nothing can be stated, which is an error of 2.
+    """
+    assert sum(v.status == "done" for v in uncut()) >= 31
+    assert all(v.asked < 5e-8 or v.stated == 2.0 for v in uncut() if v.status != "done")
 
 
 def test_the_stated_error_bounds_the_true_one_with_a_tension_cut():
-    """The same demand where tension is cut."""
+    """As without the cut, in each scene. Measured: 0.11 of what is stated at most."""
     ratio = excess([v for v in stated_errors.verdicts(20, 21, CUT) if v is not None])
-    assert (ratio > 1.0).sum() <= 1
-    assert ratio.max() < AT_MOST
+    assert (ratio <= 1.0).all()
 
 
 def same_steps() -> Run:

@@ -84,11 +84,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--seed", type=int, default=1)
-    words = parser.parse_args()
+    args = parser.parse_args()
     for driven in (True, False):
         run(draw(2, 0, driven), driven)  # compiled
         began = time.perf_counter()
-        cases = draw(words.count, words.seed, driven)
+        cases = draw(args.count, args.seed, driven)
         found = run(cases, driven)
         wrong, touches = missed(cases, found), cases[:, DEPTH] > 0.0
         onset = found[touches, ONSET_ERROR]

@@ -159,6 +159,6 @@ def test_one_multiplier_is_not_told_as_two() -> None:
     (lambda: observer_stability(FREE, "wall", [1.0]), "cannot be followed over"),
     (lambda: observer_stability(FREE, "kappa", []), "0 values"),
 ])
-def test_what_cannot_be_is_refused(call, sentence: str) -> None:  # type: ignore[no-untyped-def]
+def test_an_impossible_observation_is_refused(call, sentence: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=sentence):
         call()

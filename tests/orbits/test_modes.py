@@ -128,7 +128,7 @@ def test_the_orbit_a_doubling_left_unstable_is_found_from_the_middle() -> None:
     assert found.period < 4 and not found.stable
 
 
-def test_least_periods() -> None:
+def test_an_orbit_has_its_least_period() -> None:
     once = orbit_of("sec2")
     assert least_period_of(periodic_orbit(once.scene, period=4, start=once.state)) == 1
     assert least_period_of(orbit_of("sec2", f=1130.0)) == 3

@@ -17,7 +17,7 @@ def followed() -> Branch:
     return continue_branch(scene("sec2"), "f", 340.0, 358.55, 1)
 
 
-def told(found: list[SpecialPoint]) -> list[tuple[object, ...]]:
+def fingerprint(found: list[SpecialPoint]) -> list[tuple[object, ...]]:
     """What a special point is, without where it is."""
     return [(one.kind, one.contact, one.event) for one in found]
 
@@ -49,7 +49,7 @@ def test_the_careful_search_takes_over_and_finds_the_same(fast: Branch, broken: 
     monkeypatch.setattr(Between, "careful", counted)
     slow = followed()
     assert used and check_branch(slow) == []
-    assert told(slow.special) == told(fast.special) != []
+    assert fingerprint(slow.special) == fingerprint(fast.special) != []
     for one, other in zip(fast.special, slow.special, strict=True):
         # both intervals hold the point
         assert one.interval[0] <= other.interval[1] and other.interval[0] <= one.interval[1]

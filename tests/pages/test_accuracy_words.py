@@ -70,7 +70,7 @@ def test_a_measurement_belongs_to_all_knobs_but_the_accuracy() -> None:
         assert measured_for(shown) != measured_for(shown.evolve(**change))
 
 
-def test_every_way_has_all_of_the_table() -> None:
+def test_every_compared_method_is_described() -> None:
     shown = described_methods()
     assert [one["name"] for one in shown] == list(compared_methods())
     for one in shown:
@@ -113,5 +113,5 @@ def test_errors_have_one_figure(value: float, words: str) -> None:
 
 
 @pytest.mark.parametrize(("value", "words"), [(0.0021, "2.1 ms"), (1.234, "1.23 s"), (4.2e-4, "420 µs"), (0.5, "500 ms")])
-def test_durations_have_three(value: float, words: str) -> None:
+def test_durations_have_three_figures(value: float, words: str) -> None:
     assert duration(value) == words

@@ -14,7 +14,7 @@ from granchain_core import scene, settled
 RIG = scene("rig")
 
 
-def said(*settings: str, capsys: pytest.CaptureFixture[str]) -> str:
+def printed(*settings: str, capsys: pytest.CaptureFixture[str]) -> str:
     """What a run with these settings says on stderr; its stdout is one JSON object and nothing else."""
     words = [word for setting in settings for word in ("--set", setting)]
     assert main(["run", "rig", "--periods", "0", "--record", "1", "--json", *words]) == 0
@@ -24,7 +24,7 @@ def said(*settings: str, capsys: pytest.CaptureFixture[str]) -> str:
 
 
 def test_an_amplitude_set_alone_is_said_with_both_kappas(capsys: pytest.CaptureFixture[str]) -> None:
-    told = said("A0=6e-6", capsys=capsys)
+    told = printed("A0=6e-6", capsys=capsys)
     # κ = k/(K√A0): 0.001·√(7/6)
     assert told == "κ was 0.001 before A₀ changed at constant k. It is 0.00108012 now; --set kappa=0.001 keeps it.\n"
 
@@ -32,7 +32,7 @@ def test_an_amplitude_set_alone_is_said_with_both_kappas(capsys: pytest.CaptureF
 @pytest.mark.parametrize("settings", [("A0=6e-6", "kappa=0.001"), ("k=30000", "A0=6e-6"), ("A0=7e-6",), ("D=30",)])
 def test_nothing_is_said_where_kappa_did_not_follow_unasked(settings: tuple[str, ...],
                                                             capsys: pytest.CaptureFixture[str]) -> None:
-    assert "κ" not in said(*settings, capsys=capsys)
+    assert "κ" not in printed(*settings, capsys=capsys)
 
 
 def test_without_a_foundation_there_is_nothing_to_say() -> None:

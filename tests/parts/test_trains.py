@@ -21,7 +21,7 @@ def test_a_jump_is_two_points_at_one_time() -> None:
     assert force.tolist() == [0.0, 0.0, 0.0, 4.0, 3.0]
 
 
-def test_a_force_without_jumps_is_its_rows() -> None:
+def test_a_force_without_jumps_is_drawn_as_it_is() -> None:
     time, force = with_jumps(np.arange(3.0), np.arange(3.0), np.zeros((0, 2)))
     assert time.tolist() == force.tolist() == [0.0, 1.0, 2.0]
 

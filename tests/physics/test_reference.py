@@ -39,7 +39,7 @@ def test_displacements_agree_to_1e_8_at_every_sample(name):
 
 
 @pytest.mark.parametrize("name", REQUIRED + OTHERS)
-def test_asked_for_more_it_comes_nearer(name):
+def test_a_finer_accuracy_comes_nearer_to_the_reference(name):
     """At 1e-11 the difference is below 1e-11 too, the figure to which the reference itself is trusted."""
     true = reference(name)
     result = run(reference_scene(name).evolve(accuracy=1e-11), 0, true["record"]["scene"]["periods"], 8)

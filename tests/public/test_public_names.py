@@ -75,7 +75,8 @@ def alone(program: str) -> str:
 
 
 def test_importing_loads_no_compiler_and_no_file_library() -> None:
-    """They take most of a second, and a page or `granchain scenes` needs neither at once. Pictures load no dashboard.
+    """Importing them takes most of a second, and a page or `granchain scenes` needs neither at once. Pictures load no
+    dashboard.
     """
     modules = "('numba', 'scipy', 'h5py', 'panel', 'bokeh')"
     assert alone(f"import sys, granchain; print([m for m in {modules} if m in sys.modules])") == "[]\n"

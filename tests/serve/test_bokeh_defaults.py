@@ -34,7 +34,7 @@ def restored(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     yield
 
 
-def told(theme: Theme | None) -> str:
+def described(theme: Theme | None) -> str:
     """What a browser is told of a figure and a widget, with models numbered as they come."""
     document = Document(theme=theme) if theme else Document()
     plot = figure(x_axis_label="time (s)")
@@ -47,13 +47,13 @@ def told(theme: Theme | None) -> str:
     return re.sub(r"\bp\d+\b", lambda found: f"p{numbers.setdefault(found[0], len(numbers))}", content)
 
 
-def test_a_document_is_told_the_same() -> None:
-    before = told(None), told(CHANGES)
+def test_remembered_defaults_describe_the_same_document() -> None:
+    before = described(None), described(CHANGES)
     assert before[0] != before[1] and "31px" in before[1]
     remember_defaults()
-    assert (told(None), told(CHANGES)) == before
+    assert (described(None), described(CHANGES)) == before
     assert PropertyDescriptor._get_default.known  # it is in use
-    assert (told(CHANGES), told(None)) == before[::-1]  # what is remembered now belongs to no theme
+    assert (described(CHANGES), described(None)) == before[::-1]  # what is remembered now belongs to no theme
 
 
 def test_models_do_not_share_what_one_of_them_may_change() -> None:

@@ -127,7 +127,7 @@ def test_of_two_changes_of_a_property_the_last_is_kept_and_an_equal_one_is_none(
 @pytest.mark.parametrize(("owner", "name"), [(ServerSession, "_subscribed_connections"), (WSHandler, "ws_connection"),
                                              (WSHandler, "write_lock")], ids=lambda value: getattr(value, "__name__", value))
 @in_a_thread
-def test_answers_come_without_it(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_answers_come_without_a_private_name(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     hide(monkeypatch, changes, owner, name)
     session = pull_session(url=served.address)
     for text in ("first", "second"):

@@ -25,7 +25,7 @@ def test_a_compiler_that_fails_is_reported_with_what_it_said(monkeypatch: pytest
 
 
 def test_a_failure_ahead_of_time_is_in_the_log(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
-    """Nobody waits for it: the first visitor would only find it slow."""
+    """No request waits for this compilation, so only the log can show that it failed."""
     one = Compiler()
 
     def fails(*_: object) -> None:

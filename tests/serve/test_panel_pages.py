@@ -30,7 +30,7 @@ def page_of(one: Listening) -> str:
 
 
 @pytest.mark.usefixtures("own_way")
-def test_pages_are_the_same() -> None:
+def test_remembered_resources_give_panels_page() -> None:
     one = Listening(Access())
     try:
         panels = page_of(one)

@@ -35,7 +35,7 @@ def test_the_attributes_of_these_releases_are_used(served: Served) -> None:
 
 @pytest.mark.parametrize(("owner", "name"), ATTRIBUTES, ids=lambda value: getattr(value, "__name__", value))
 @in_a_thread
-def test_a_message_is_served_without_it(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_message_is_served_without_a_private_name(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
     hide(monkeypatch, socket_tuning, owner, name)
     session = pull_session(url=served.address)
     for text in ("first", "second"):

@@ -189,7 +189,7 @@ def test_a_computation_with_a_result_has_no_longer_just_begun() -> None:
 
 
 def test_a_turn_that_has_become_long_makes_room_for_what_begins() -> None:
-    """It is asked at its pause, and may go on."""
+    """Asked at its pause the long turn may go on, and what begins gets a turn beside it."""
     turns = FairScheduler(1, lambda: 0.0)
     turn = turns.begin(account(0.0), Stop())
     thread, = waiting_threads(turns, account(0.0), is_new=True)

@@ -85,7 +85,7 @@ def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit()
         one.stop()
 
 
-def test_what_is_said_to_fit_fits() -> None:
+def test_the_offered_beads_or_frequency_fit_into_the_budget() -> None:
     chain = scene("sec2").evolve(N=10_000, f=0.5)
     with pytest.raises(OverBudget, match=r"N = (\d+) or f = ([\d.]+) Hz would fit") as refused:
         refuse_long_picture(chain, 6, 384, 5.0)

@@ -120,7 +120,7 @@ def test_an_unknown_scene_or_version_is_said_and_the_first_scene_shown() -> None
 
 @given(chosen=st.fixed_dictionaries({name: st.sampled_from(values) for name, values in EXTRAS.items()}))
 def test_every_view_setting_comes_back_into_its_attribute(chosen: dict[str, str]) -> None:
-    """Also to a session that had others; what the browser adds is read but not written."""
+    """Settings of the link replace those of the session; `look`, which the browser adds, is read but not written."""
     left, back = Session(), Session(mode="live", scale="fit", speed=5.0, energy_account=True, theme="dark", curves="none")
     left.take_view(chosen)
     _, refused = take_address(back, left.link + f"&look={chosen['look']}")

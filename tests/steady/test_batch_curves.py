@@ -46,8 +46,8 @@ def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest
     assert (found.regime.name, found.undecided) == ("quasi-periodic", False) and len(measured) >= 2
 
 
-def test_up_and_down_really_differ_there() -> None:
-    """So the test above could fail: the attractor at 1600 Hz depends on the start."""
+def test_up_and_down_sweeps_differ_at_1600_hz() -> None:
+    """The attractor at 1600 Hz depends on the start, so the test above can fail."""
     frequencies = np.array([1560.0, 1580.0, 1600.0, 1620.0, 1640.0, 1660.0])
     up = resonance_curve(scene("sec2"), frequencies, start="up").points[2]
     down = resonance_curve(scene("sec2"), frequencies, start="down").points[2]

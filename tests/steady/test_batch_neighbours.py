@@ -25,7 +25,7 @@ def results(scenes: list[Scene]) -> dict[tuple[float, float], SteadyState]:
     return {(found.scene.f, found.scene.A0): found for found in batch_results(iter(scenes), Stop())}
 
 
-def told(found: SteadyState) -> tuple[object, ...]:
+def fingerprint(found: SteadyState) -> tuple[object, ...]:
     """All of a result, bit by bit."""
     errors = [None if one is None else float(one).hex() for one in
               (found.force_errors.input, found.force_errors.output, found.force_errors.elastic)]
@@ -38,10 +38,10 @@ def test_a_scene_alone_and_among_others_is_the_same() -> None:
     shuffled = SCENES.copy()
     random.Random(1).shuffle(shuffled)
     for (f, a), found in results(shuffled).items():
-        assert told(found) == told(together[f, a]), (f, a)
+        assert fingerprint(found) == fingerprint(together[f, a]), (f, a)
     for alone in SCENES[::3]:
         (found,) = results([alone]).values()
-        assert told(found) == told(together[alone.f, alone.A0]), (alone.f, alone.A0)
+        assert fingerprint(found) == fingerprint(together[alone.f, alone.A0]), (alone.f, alone.A0)
     assert len({found.regime.name for found in together.values()}) > 1
 
 

@@ -64,7 +64,7 @@ def test_longer_blocks_measure_a_swing() -> None:
     assert found.lyapunov == (pytest.approx(0.0, abs=1e-15), pytest.approx(0.0, abs=1e-15))
 
 
-def test_the_last_one_is_not_continued() -> None:
+def test_the_last_measurement_is_not_continued() -> None:
     measurements = ExponentMeasurements()
     assert measurements.add(blocks(0.0, 0.1), CURVE, 400, last=True) is None
     assert measurements.latest is not None and measurements.latest.name == "unsettled"

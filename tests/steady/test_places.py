@@ -21,7 +21,7 @@ def place(at: float, output: float | None = None, transmission: float = 0.5) -> 
     return place_of(F, FORCE, PERIODS, at, force, transmission)
 
 
-def test_a_flank_is_a_flank() -> None:
+def test_a_large_force_beside_a_peak_is_its_flank() -> None:
     """951.5 Hz, at half a newton on the way up to the 1:3 peak, is no valley."""
     assert place(951.5) == Place("flank", 1130.0, 3)
     assert place_words((2, 3), place(951.5)) == "2:3 motion, flank of the 1:3 peak at 1130 Hz"

@@ -25,7 +25,7 @@ def test_the_evidence_comes_back(tmp_path: Path) -> None:
 
 
 def test_the_evidence_of_every_regime_comes_back(tmp_path: Path) -> None:
-    """What decides between quasi-periodic and unsettled, and how a slow motion was followed."""
+    """The evidence is what decides between quasi-periodic and unsettled, and how a slow motion was followed."""
     regimes = (
         Regime("quasi-periodic", None, None, None, 900, (1e-4, 2e-3), return_distance=0.01, return_limit=0.15,
                window_ratios=(0.99, 1.01), lyapunov_periods=1200),
@@ -40,7 +40,7 @@ MORE = ("followed", "approaches", *MORE_EVIDENCE)
 
 
 @pytest.mark.parametrize("missing", [MORE, ("periods_run", *EVIDENCE, *MORE)])
-def test_a_file_without_it_opens(tmp_path: Path, missing: tuple[str, ...]) -> None:
+def test_a_file_without_evidence_opens(tmp_path: Path, missing: tuple[str, ...]) -> None:
     path = save(CURVE, tmp_path / "old.h5")
     with h5py.File(path, "r+") as file:
         for name in missing:

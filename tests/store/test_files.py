@@ -91,7 +91,7 @@ def test_overlap_follows_from_what_is_stored(result) -> None:  # type: ignore[no
 
 
 def test_a_steady_state_from_a_given_state_comes_back_with_its_start(tmp_path: Path) -> None:
-    """Also where an older file says "previous state" for it."""
+    """Older files say "previous state" for such a start, and are read the same."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
     first = settle(chain, samples=8)
     carried = settle(chain, start=first.state, samples=8)

@@ -141,7 +141,7 @@ def test_numbers_come_from_the_file_itself_alone(kind: str, name: str, files: di
 
 
 def test_data_in_pieces_are_not_read_even_if_all_is_there(changed: Callable[..., Path]) -> None:
-    """So no filter is ever loaded."""
+    """Chunked data may need a filter, and HDF5 would load one."""
     def pieces(file: h5py.File) -> None:
         values = file["run/time"][()]
         del file["run/time"]

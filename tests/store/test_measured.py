@@ -35,6 +35,6 @@ def test_it_opens_with_units_and_the_result_loads_as_before(measured: Measured |
             assert found.drive_velocity.attrs["units"] == "m/s" and "displacement" not in found
 
 
-def test_without_one_there_is_no_group(tmp_path: Path) -> None:
+def test_a_computed_drive_has_no_group_of_measured_values(tmp_path: Path) -> None:
     with h5py.File(save(drive(CHAIN, Signal.burst(CHAIN.A0, 2000.0, 2, 0.002)), tmp_path / "d.h5")) as file:
         assert "measured" not in file

@@ -114,7 +114,7 @@ def test_the_mark_stays_with_the_data() -> None:
     (lambda: virtual_curve_csv(CHAIN, [1000.0], Sensors(), scatter=0.9), "scatter"),
     (lambda: virtual_curve_csv(CHAIN, [], Sensors()), "records"),
     (lambda: virtual_curve_csv(CHAIN, [1000.0], Sensors(), repeats=0), "repeats")])
-def test_what_cannot_be_is_refused(make, sentence: str) -> None:  # type: ignore[no-untyped-def]
+def test_an_impossible_experiment_is_refused(make, sentence: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=sentence):
         make()
 

@@ -34,15 +34,15 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kind", choices=KINDS, help="this kind alone")
     parser.add_argument("--old", action="store_true", help="files without a seal")
-    words = parser.parse_args()
+    args = parser.parse_args()
     found: list[Verdict] = []
-    for kind in [words.kind] if words.kind else KINDS:
+    for kind in [args.kind] if args.kind else KINDS:
         began = time.perf_counter()
-        for verdict in verdicts(kind, not words.old, words.count, words.seed):
+        for verdict in verdicts(kind, not args.old, args.count, args.seed):
             found.append(verdict)
             if verdict.outcome in (TRACEBACK, HANG) or (verdict.outcome == WRONG and verdict.sealed):
                 print(verdict, flush=True)
-        print(f"{kind}: {words.count} files in {time.perf_counter() - began:.0f} s", flush=True)
+        print(f"{kind}: {args.count} files in {time.perf_counter() - began:.0f} s", flush=True)
     print("\n" + table(found, "kind") + "\n\n" + table(found, "harm"))
 
 

@@ -27,20 +27,20 @@ def main() -> None:
     parser.add_argument("--minutes", type=float, default=600.0)
     parser.add_argument("--few", action="store_true", help="only the structures of the test suite")
     parser.add_argument("--only", type=int, help="this draw alone")
-    words = parser.parse_args()
-    structures, found = FEW if words.few else STRUCTURES, []
-    if words.only is not None:
-        one = draw(words.seed, words.only, structures)
+    args = parser.parse_args()
+    structures, found = FEW if args.few else STRUCTURES, []
+    if args.only is not None:
+        one = draw(args.seed, args.only, structures)
         warm([s for s in structures if s[:2] == (one.knobs["dissipation"], one.knobs["tension"])])
         print(describe(check(one, scipy=10.0 * SCIPY, others=OTHERS)))
         return
     warm(structures)
     began = time.perf_counter()
-    for verdict in verdicts(words.count, words.seed, structures, words.workers, words.minutes):
+    for verdict in verdicts(args.count, args.seed, structures, args.workers, args.minutes):
         found.append(verdict)
         if verdict.faults:
             print(describe(verdict), flush=True)
-    print(f"\nseed {words.seed}, draws 0 to {len(found) - 1}, {len(structures)} structures, {time.perf_counter() - began:.0f} s\n")
+    print(f"\nseed {args.seed}, draws 0 to {len(found) - 1}, {len(structures)} structures, {time.perf_counter() - began:.0f} s\n")
     print(table(sorted(found, key=lambda v: v.draw.index)), flush=True)
 
 

@@ -24,12 +24,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=100, help="kills of each command")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--minutes", type=float, default=600.0, help="time for each command")
-    words = parser.parse_args()
-    print(f"{datetime.date.today()}, seed {words.seed}\n\n{Counts.header()}", flush=True)
-    for name in words.commands:
+    args = parser.parse_args()
+    print(f"{datetime.date.today()}, seed {args.seed}\n\n{Counts.header()}", flush=True)
+    for name in args.commands:
         with tempfile.TemporaryDirectory() as folder:
-            rng = random.Random(f"{words.seed} {name}")
-            print(trial(name, words.count, rng, Path(folder), words.minutes).row(name), flush=True)
+            rng = random.Random(f"{args.seed} {name}")
+            print(trial(name, args.count, rng, Path(folder), args.minutes).row(name), flush=True)
 
 
 if __name__ == "__main__":

@@ -40,22 +40,22 @@ def main() -> int:
     parser.add_argument("--seed", type=int, help="draw the order")
     parser.add_argument("--work", type=Path, help="folder for the copy, kept")
     parser.add_argument("--named", action="store_true", help="leave it at the named tests")
-    words = parser.parse_args()
-    chosen = [m for m in MUTANTS if not words.only or any(word in m.name for word in words.only)]
-    if words.seed is not None:
-        random.Random(words.seed).shuffle(chosen)
-    if words.list:
+    args = parser.parse_args()
+    chosen = [m for m in MUTANTS if not args.only or any(word in m.name for word in args.only)]
+    if args.seed is not None:
+        random.Random(args.seed).shuffle(chosen)
+    if args.list:
         for one in chosen:
             print(f"{one.name}: {one.breaks} ({one.path})")
         return 0
     if found := problems():
         print("The table is out of step with the source:", *found, sep="\n  ")
         return 1
-    if words.check:
+    if args.check:
         print(f"{len(MUTANTS)} mutants in step with the source")
         return 0
-    with Bench(words.work) as bench:
-        return _run(bench, chosen, time.perf_counter() + 60.0 * words.minutes, words.named)
+    with Bench(args.work) as bench:
+        return _run(bench, chosen, time.perf_counter() + 60.0 * args.minutes, args.named)
 
 
 def _run(bench: Bench, chosen: list[Mutant], end: float, named_only: bool) -> int:
@@ -64,10 +64,10 @@ def _run(bench: Bench, chosen: list[Mutant], end: float, named_only: bool) -> in
     for one in chosen:
         if time.perf_counter() > end:
             break
-        for words in filter(None, (one.killers, one.blind)):
-            if words not in sound and not _passes(bench, words, _LIMIT, one.optimised):
+        for tests in filter(None, (one.killers, one.blind)):
+            if tests not in sound and not _passes(bench, tests, _LIMIT, one.optimised):
                 return 1
-            sound.add(words)
+            sound.add(tests)
         found = bench.mutated(one, one.killers, _LIMIT)
         if one.blind and (seen := bench.mutated(one, one.blind, _LIMIT)).verdict != "passed":
             print(f"{one.name} was to go unseen by {' '.join(one.blind)}: {seen.verdict} {seen.by}\n{seen.tail}")
@@ -85,19 +85,19 @@ def _run(bench: Bench, chosen: list[Mutant], end: float, named_only: bool) -> in
     died = len(ended) - len(alive)
     late = sum(found.verdict == "timed out" for _, found in ended)
     print(f"\n{died} of {len(ended)} mutants died ({100.0 * died / max(1, len(ended)):.1f} %), {late} of them by the clock")
-    for words, names in DEMANDED.items():
+    for tests, names in DEMANDED.items():
         if set(names) <= {one.name for one, _ in ended}:
-            print(f"{words}: {'survived' if set(names) & set(alive) else 'dead'} ({', '.join(names)})")
+            print(f"{tests}: {'survived' if set(names) & set(alive) else 'dead'} ({', '.join(names)})")
     for name in alive:
         print(f"survived or stillborn: {name}")
     return 1 if alive else 0
 
 
-def _passes(bench: Bench, words: tuple[str, ...], limit: float, optimised: bool) -> bool:
+def _passes(bench: Bench, tests: tuple[str, ...], limit: float, optimised: bool) -> bool:
     """Whether the unchanged core passes; else why not is told."""
-    found = bench.plainly(words, limit, optimised)
+    found = bench.plainly(tests, limit, optimised)
     if found.verdict != "passed":
-        print(f"the unchanged core does not pass {' '.join(words)}: {found.verdict} {found.by}\n{found.tail}")
+        print(f"the unchanged core does not pass {' '.join(tests)}: {found.verdict} {found.by}\n{found.tail}")
     return found.verdict == "passed"
 
 

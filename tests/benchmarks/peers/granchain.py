@@ -30,7 +30,7 @@ FINEST, CURVE_TOLERANCE = 3e-15, 1e-9
 
 
 def missing() -> str:
-    """It is always there."""
+    """granchain itself is always installed."""
     return ""
 
 

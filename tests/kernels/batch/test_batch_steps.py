@@ -44,7 +44,7 @@ def run_all(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def run_batch(scenes, refine: float) -> tuple[np.ndarray, np.ndarray]:
-    """The same of no more scenes than a batch has members."""
+    """Strobes and largest forces, as from `run_all`, of no more scenes than a batch has members."""
     batch = Batch(scenes[0], Stop())
     for member, one in enumerate(scenes):
         put(batch, member, one, refine)

@@ -17,12 +17,19 @@ pytestmark = pytest.mark.quick
 MEMBER, ROW = BATCH_SIZE - 2, 4
 
 
-def seen(record: np.ndarray) -> Batch:
-    """A batch of two-bead chains in one member of which all numbers of the beads were `record`, strobe by strobe."""
+def seen(record: np.ndarray, before: float | None = None, **numbers: float) -> Batch:
+    """A batch of two-bead chains in one member of which all numbers of the beads were `record`, strobe by strobe.
+
+    `before` is what they were before an extrapolation, `numbers` are the member's own in fields of `BatchState`.
+    """
     batch = Batch(scene("sec2").evolve(N=2), Stop())
     batch.state.strobes[MEMBER, : len(record), :, 1:-1] = record[:, None, None]
     batch.state.strobe_count[MEMBER] = batch.state.periods[MEMBER] = len(record)
     batch.state.y[[1, 2, ROW + 1, ROW + 2], MEMBER] = record[-1]
+    if before is not None:
+        batch.state.before[MEMBER, :, 1:-1] = before
+    for name, value in numbers.items():
+        getattr(batch.state, name)[MEMBER] = value
     return batch
 
 
@@ -30,8 +37,7 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
     """States that repeat are periodic where the chain came there by itself; where it was put there they are tried."""
     batch = seen(np.ones(60))
     assert checks.check_coarse.py_func(batch.state, MEMBER)
-    batch = seen(np.ones(60))
-    batch.state.slowest[MEMBER] = 0.9
+    batch = seen(np.ones(60), slowest=0.9)
     assert not checks.check_coarse.py_func(batch.state, MEMBER)
     assert batch.state.testing[MEMBER] == 1
     moved = np.abs(batch.state.y[[1, 2, ROW + 1, ROW + 2], MEMBER] - 1.0)
@@ -47,11 +53,9 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 
     The scale of displacements and velocities is the member's own: others have used the workspace meanwhile.
     """
-    batch = seen(1.0 + 1e-4 * rate ** np.arange(checks._TEST_ORBITS + 1))
-    state = batch.state
-    state.testing[MEMBER], state.slowest[MEMBER], state.last_check[MEMBER, checks.CHECK_PERIOD] = 1, 0.9, 1.0
+    state = seen(1.0 + 1e-4 * rate ** np.arange(checks._TEST_ORBITS + 1), before=1.0, testing=1, slowest=0.9).state
+    state.last_check[MEMBER, checks.CHECK_PERIOD] = 1.0
     state.scale[:] = 1e-12, 1e12
-    state.before[MEMBER, :, 1:-1] = 1.0
     assert checks.judge_disturbance.py_func(state, MEMBER) == stable
     assert state.testing[MEMBER] == 0 and (state.slowest[MEMBER] > 0.0) == stable
     assert (state.y[1, MEMBER] == 1.0) == stable
@@ -61,10 +65,9 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 
 @pytest.mark.parametrize(("before", "kept"), [(1e-3, True), (1e-9, False)])
 def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before: float, kept: bool) -> None:
-    """Else the chain goes back to where it was extrapolated from, and waits twice as long."""
-    batch = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
-    state = batch.state
-    state.change_before_extrapolation[MEMBER], state.before[MEMBER, :, 1:-1], state.extrapolate_from[MEMBER], state.pause[MEMBER] = before, 0.25, 10_000, 16
+    """If it is not smaller, the chain returns to the state before the extrapolation and waits twice as long."""
+    state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), before=0.25, change_before_extrapolation=before,
+                 extrapolate_from=10_000, pause=16).state
     assert not checks.check_coarse.py_func(state, MEMBER)
     assert state.change_before_extrapolation[MEMBER] == 0.0
     assert (state.y[1, MEMBER] != 0.25) == kept and (state.pause[MEMBER] == 16) == kept
@@ -72,11 +75,9 @@ def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before:
 
 @pytest.mark.parametrize(("before", "slowest"), [(1e-3, 0.9), (1e-9, 0.0)])
 def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated_to(before: float, slowest: float) -> None:
-    """It is neither disturbed nor called followed: the decay known before the extrapolation is known again."""
-    batch = seen(1.0 + 1e-3 * 0.9 ** np.arange(60))
-    state = batch.state
-    state.change_before_extrapolation[MEMBER], state.extrapolate_from[MEMBER] = before, 10_000
-    state.slowest[MEMBER], state.slowest_before[MEMBER] = 0.9, 0.0
+    """Such an orbit is neither disturbed nor called followed: the decay is the one known before the extrapolation."""
+    state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), change_before_extrapolation=before, extrapolate_from=10_000,
+                 slowest=0.9, slowest_before=0.0).state
     checks.check_coarse.py_func(state, MEMBER)
     assert state.slowest[MEMBER] == slowest
 
@@ -84,10 +85,8 @@ def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated
 def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None:
     """The record ends with the state from which it was extrapolated, and what was run since is not counted."""
     before = 1.0 + 1e-3 * 0.9 ** np.arange(60)
-    batch = seen(before)
+    batch = seen(before, before=before[-1], periods=59)
     state = batch.state
-    state.periods[MEMBER] = 59
-    state.before[MEMBER, :, 1:-1] = before[-1]
     limit = np.full((2, 4), 2.0)
     record.move_member.py_func(state, MEMBER, limit)
     assert len(batch.strobes(MEMBER)) == 1 and batch.strobes(MEMBER)[0] == pytest.approx(2.0)

@@ -79,7 +79,7 @@ def test_more_scenes_than_places_give_what_each_gives_alone(structure: str) -> N
         assert all((one == other).all() for one, other in zip(together[number], alone, strict=True)), number
 
 
-def told(found: SteadyState) -> tuple[object, ...]:
+def fingerprint(found: SteadyState) -> tuple[object, ...]:
     """All of a steady state, bit by bit."""
     return (found.regime, found.undecided, found.status, [float(top).hex() for top in found.maxima], found.force_errors,
             found.state.displacement.tolist(), found.state.velocity.tolist())
@@ -93,4 +93,4 @@ def test_steady_states_of_more_scenes_than_places_are_those_of_each_alone(draft:
     assert sorted(together) == [one.f for one in scenes]
     for one in scenes:
         (alone,) = batch_results(iter([one]), Stop(), draft)
-        assert told(together[one.f]) == told(alone), one.f
+        assert fingerprint(together[one.f]) == fingerprint(alone), one.f

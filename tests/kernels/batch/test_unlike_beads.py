@@ -1,4 +1,4 @@
-"""Batches of unequal beads move as the adaptive method says; the drive's phase in a batch never drifts."""
+"""Batches of unequal beads move as the adaptive method says."""
 
 from __future__ import annotations
 
@@ -38,12 +38,3 @@ def test_unlike_beads_in_a_batch() -> None:
         found = batch.strobes(member)[: PERIODS + 1, 0]
         assert np.abs(found - true).max() < 1e-6 * np.abs(true).max()
         batch.state.return_at[member] = NEVER
-
-
-def test_the_drive_phase_in_a_batch_is_set_right_every_period() -> None:
-    """Sine and cosine are turned from step to step; at the end of a period they are 0 and 1, not what turning left."""
-    one = scene("sec2").evolve(N=1, f=1130.0)
-    batch = Batch(one, Stop())
-    batch.put(3, scale_chain(one), scale_chain(one).from_si(rest(one)), 1.0, return_at=200, earliest=NEVER)
-    assert batch.run() == (3, True)
-    assert tuple(batch.state.phase[:, 3]) == (0.0, 1.0)

@@ -101,7 +101,7 @@ def take_away(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("name", ["", *OWNERS])
 def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypatch: pytest.MonkeyPatch,
                                                              caplog: pytest.LogCaptureFixture) -> None:
-    """And without none of them, it is."""
+    """With all of them (the empty name) the compiled code is kept."""
     @numba.njit
     def twice(x):
         return 2 * x
@@ -116,7 +116,7 @@ def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypa
     assert bool(caplog.messages) == bool(name) and all("this process only" in line for line in caplog.messages)
 
 
-def test_the_table_names_them_all() -> None:
+def test_the_page_names_every_patched_method() -> None:
     rows = [line for line in (ROOT / "docs" / "compiling.md").read_text(encoding="utf-8").splitlines()
             if "| `kernels/compiling/cache.py` |" in line]
     assert set(re.findall(r"`(_[a-z]\w*)`", " ".join(rows))) == set(OWNERS)
@@ -185,7 +185,7 @@ def test_a_file_that_holds_another_version_is_not_believed(tmp_path: Path) -> No
 
 
 def test_processes_that_compile_at_once_lose_nothing_of_each_other(tmp_path: Path) -> None:
-    """What two have found missing and then written, one after the other, is all there; nothing else is left behind."""
+    """Two find an entry missing and write it, one after the other: every entry is there, and no other file."""
     one, other = (cache._Files(str(tmp_path), "f", "stamp") for _ in range(2))
     assert one.load("a") is None and other.load("b") is None
     one.save("a", 1)

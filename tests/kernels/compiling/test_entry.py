@@ -61,7 +61,7 @@ def test_curves_and_branches() -> None:
     assert continue_branch(chain, "f", 1900.0, 2100.0, most_points=5).arms[0].points
 
 
-def test_another_type_is_told() -> None:
+def test_an_argument_of_another_type_is_refused() -> None:
     compiled = entry.entry(first_not_finite, np.zeros(8), 4)
     assert compiled(np.array([0.0, 0.0, np.nan, *[0.0] * 5]), 4) == 2
     with pytest.raises(TypeError, match="first_not_finite is called with"):

@@ -30,7 +30,7 @@ def terms(law, d):  # type: ignore[no-untyped-def]
 
 @pytest.mark.parametrize("d", [0.2, 1.0, 3.0])
 @pytest.mark.parametrize(("name", "slot", "a"), TABLE)
-def test_a_law_is_its_exponent(name: str, slot: type, a: float, d: float) -> None:
+def test_a_law_has_the_terms_of_its_exponent(name: str, slot: type, a: float, d: float) -> None:
     """g = c δ^a, g' = a c δ^{a−1}, G = c δ^{1+a}/(1 + a), compiled."""
     primitive = d ** (1.0 + a) / (1.0 + a)
     assert terms(slot(0.3), d) == pytest.approx((0.3 * d**a, 0.3 * a * d ** (a - 1.0), 0.3 * primitive, primitive), rel=1e-14)

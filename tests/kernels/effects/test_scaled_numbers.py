@@ -80,7 +80,7 @@ def test_the_damping_named_by_the_knob_is_that_at_the_reference_overlap(law: str
         assert found == pytest.approx(31.0 * (overlap / chosen.reference_overlap) ** power, rel=1e-12)
 
 
-def test_a_measured_force_is_its_cubic() -> None:
+def test_a_measured_force_is_a_cubic_between_samples() -> None:
     """Constant term first, in the time since the sample: what pushes bead 1 of an observer."""
     p = np.array([0.3, -1.2, 2.5, 4.0])
     assert driver_velocity(Sampled(p), 0.7) == pytest.approx(np.polyval(p[::-1], 0.7), rel=1e-14)

@@ -69,7 +69,7 @@ def excess(power: float, r: float) -> float:
 
 
 @pytest.mark.parametrize("r", [0.0, 0.1, 0.5, 0.99, 1.0])
-def test_what_simpsons_rule_gives_too_much(r: float) -> None:
+def test_the_excess_of_simpsons_rule_over_a_kink(r: float) -> None:
     assert events.three_halves_excess.py_func(r) == pytest.approx(excess(1.5, r), abs=1e-14)
     assert events.primitive_excess.py_func(Tsuji(1.0), r) == pytest.approx(excess(1.25, r), abs=1e-14)
     assert events.primitive_excess.py_func(KuwabaraKono(1.0), r) == pytest.approx(excess(1.5, r), abs=1e-14)

@@ -11,8 +11,10 @@ from chains import LAWS
 from granchain_core import Scene, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch, can_share_batch
+from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.rk4.short_chain import WIDTHS
 from granchain_core.scaling import scale_chain
+from granchain_core.scene.effects import EFFECTS
 from granchain_core.state import rest
 from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.curve.curve import CurvePoint
@@ -20,6 +22,10 @@ from granchain_core.steady.settling.single_chain import settle_to_forces
 from granchain_core.stop import Stop
 
 _BOTH = {"kappa": 0.001, "F0": 0.5}
+#: Each effect of the table with its usual values, in chains of one vector and of several, if vectors know it.
+WITH_EFFECTS: dict[str, dict[str, object]] = {
+    f"{effect.name}, {beads} beads": {"N": beads, **effect.usual} for effect in EFFECTS for beads in (11, 40)
+    if not unknown_slots(scale_chain(scene("sec2").evolve(**effect.usual)).slots, "rk4")}
 #: Laws, lengths (up to 6 beads fit into 8 doubles, 14 into 16, 30 into 32; longer chains are in blocks of eight),
 #: foundation, preload, unequal beads: every two values stand together in one of them. Each set of effects is compiled
 #: for each width, which takes 3 to 9 s; most of these sets are compiled for other tests too. Unequal beads cost
@@ -57,7 +63,7 @@ def test_every_two_values_stand_together_in_a_chain() -> None:
         assert {*zip(first, second, strict=True)} == {*itertools.product(first, second)}
 
 
-@pytest.mark.parametrize("changes", CHAINS.values(), ids=CHAINS)
+@pytest.mark.parametrize("changes", (CHAINS | WITH_EFFECTS).values(), ids=CHAINS | WITH_EFFECTS)
 def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) -> None:
     shown = scene("sec2").evolve(**changes)
     # there are no vectors with the energy account, which changes nothing in the motion

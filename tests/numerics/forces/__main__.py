@@ -59,10 +59,10 @@ def _part(true: list) -> str:
     return f"{np.mean(true):9.2%}" if true else "        –"
 
 
-def _summary(words: argparse.Namespace, found: list[Verdict], others: Counter[str], began: float) -> str:
+def _summary(args: argparse.Namespace, found: list[Verdict], others: Counter[str], began: float) -> str:
     """What was judged so far, in one line and a table."""
     apart = "; ".join(f"{count} {name}" for name, count in others.items())
-    return (f"{words.kind}, seed {words.seed}: {len(found)} scenes in {time.perf_counter() - began:.0f} s"
+    return (f"{args.kind}, seed {args.seed}: {len(found)} scenes in {time.perf_counter() - began:.0f} s"
             f"{'; ' if apart else ''}{apart}\n{table(found)}")
 
 
@@ -76,9 +76,9 @@ def judge_one(scene: Scene, periods: int, record: int, most_steps: int) -> int:
     for c, name in enumerate(COLUMNS):
         stated = not np.isnan(verdict.stated[c])
         good &= bool(verdict.judged[c] and (verdict.bounded[c] or not stated))
-        words = ("not judged: the reference is not known well enough" if not verdict.judged[c] else "no error is stated" if not stated
+        claim = ("not judged: the reference is not known well enough" if not verdict.judged[c] else "no error is stated" if not stated
                  else "within it" if verdict.bounded[c] else "NOT WITHIN it")
-        print(f"{name} force: true error {verdict.error[c]:.1e} ± {verdict.known[c]:.0e}, stated error {verdict.stated[c]:.1e}: {words}")
+        print(f"{name} force: true error {verdict.error[c]:.1e} ± {verdict.known[c]:.0e}, stated error {verdict.stated[c]:.1e}: {claim}")
     return int(not good)
 
 
@@ -97,32 +97,32 @@ def main() -> int:
     own.add_argument("--periods", type=int, default=100, help="drive periods before those recorded (%(default)s)")
     own.add_argument("--record", type=int, default=20, help="drive periods recorded (%(default)s)")
     own.add_argument("--most-steps", type=int, default=MOST_STEPS, help="steps after which the reference is given up (%(default)s)")
-    words = parser.parse_args()
-    if words.scene is not None:
-        if words.kind != "run":
+    args = parser.parse_args()
+    if args.scene is not None:
+        if args.kind != "run":
             parser.error("--scene is for run")
         try:
-            chosen = chosen_scene(words)
+            chosen = chosen_scene(args)
             if not chosen.is_driven:
                 parser.error("the reference has a driven chain only")
-            return judge_one(chosen, words.periods, words.record, words.most_steps)
+            return judge_one(chosen, args.periods, args.record, args.most_steps)
         except BadInput as problem:
             parser.error(str(problem))
     began, found, others = time.perf_counter(), [], Counter[str]()
-    first, count = (0, words.count) if words.only is None else (words.only, 1)
-    for verdict in verdicts(words.kind, count, words.seed, FEW if words.few else STRUCTURES, first):
+    first, count = (0, args.count) if args.only is None else (args.only, 1)
+    for verdict in verdicts(args.kind, count, args.seed, FEW if args.few else STRUCTURES, first):
         if isinstance(verdict, str):
             others[verdict] += 1
             continue
         found.append(verdict)
         faults = verdict.judged & ~np.isnan(verdict.stated) & (~verdict.bounded | verdict.silent)
-        if faults.any() or words.only is not None:
+        if faults.any() or args.only is not None:
             print(describe(verdict), flush=True)
         if len(found) % 100 == 0:
-            print(_summary(words, found, others, began), flush=True)
-        if time.perf_counter() > began + 60.0 * words.minutes:
+            print(_summary(args, found, others, began), flush=True)
+        if time.perf_counter() > began + 60.0 * args.minutes:
             break
-    print(_summary(words, found, others, began))
+    print(_summary(args, found, others, began))
     return 0
 
 

@@ -1,0 +1,42 @@
+"""What the pages docs/add-….md write passes the project's own checks of style."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from documents import ROOT, lines_outside_fences
+from edited_tree import edit_files, files_of
+
+PAGES = sorted((ROOT / "docs").glob("add-*.md"))
+
+
+@pytest.fixture(scope="module")
+def trees(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """For each page a folder with the settings of ruff and, edited, the files that the page edits or writes."""
+    made = tmp_path_factory.mktemp("pages")
+    for page in PAGES:
+        tree = made / page.stem
+        for name in {"pyproject.toml", *files_of(page)[0]} - files_of(page)[1]:
+            (tree / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy2(ROOT / name, tree / name)
+        edit_files(page, tree)
+    return made
+
+
+def test_ruff_finds_nothing_in_what_the_pages_write(trees: Path) -> None:
+    done = subprocess.run([sys.executable, "-m", "ruff", "check", "--no-cache", "--output-format", "concise",
+                           "--config", f"src = {['.', str(ROOT)]}",  # what the project's other modules are called
+                           "."], cwd=trees, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_no_line_that_the_pages_write_is_too_long(trees: Path) -> None:
+    """In pages, as test_layout.py has it; ruff sees the lines of Python."""
+    pages = sorted(trees.rglob("*.md"))
+    assert pages
+    assert [f"{page.relative_to(trees)}:{number}" for page in pages for number, line in lines_outside_fences(page)
+            if len(line) > 120 and not line.lstrip().startswith("|")] == []
