@@ -72,14 +72,15 @@ class Batch:
         )
         rows = 2 * (n + 2)
         counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
-            "steps", "left", "periods", "return_at", "earliest", "extrapolate_from", "pause", "due", "shadow",
-            "strobe_count", "testing")}
+            "steps", "left", "periods", "return_at", "next_check", "extrapolate_from", "wait_after_undo", "due",
+            "shadow", "strobe_count", "tested_period")}
         numbers = {name: np.zeros(BATCH_SIZE) for name in (
-            "slowest", "slowest_before", "change_before_extrapolation", "distance")}
+            "slowest_decay", "slowest_decay_before", "change_before_extrapolation", "distance")}
         self.state = kernels.BatchState(
             **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2),
             first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
-            peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)), before=np.zeros((BATCH_SIZE, 2, n + 2)),
+            peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)),
+            state_before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
             last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
@@ -119,10 +120,11 @@ class Batch:
         state.ends[:, member] = 1.0  # counts as closed, so that no closing is recorded here
         state.strobes[member, 0], state.strobe_count[member] = y.reshape(2, -1), 1
         state.first_strobe[:, member] = 0
-        state.periods[member], state.return_at[member], state.earliest[member] = 0, return_at, earliest
-        state.extrapolate_from[member], state.pause[member] = 0, _FIRST_PAUSE
-        state.slowest[member], state.slowest_before[member], state.change_before_extrapolation[member] = 0.0, 0.0, 0.0
-        state.fine_record[member], state.testing[member], state.due[member] = 0.0, 0, 0
+        state.periods[member], state.return_at[member], state.next_check[member] = 0, return_at, earliest
+        state.extrapolate_from[member], state.wait_after_undo[member] = 0, _FIRST_PAUSE
+        state.slowest_decay[member] = state.slowest_decay_before[member] = 0.0
+        state.change_before_extrapolation[member] = 0.0
+        state.fine_record[member], state.tested_period[member], state.due[member] = 0.0, 0, 0
         state.shadow[member] = kernels.NO_SHADOW
 
     def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, contraction: float,
@@ -176,7 +178,7 @@ class Batch:
 
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse member has settled on: from before it was disturbed, if it was."""
-        disturbed = self.state.slowest[member] > 0.0
+        disturbed = self.state.slowest_decay[member] > 0.0
         return (self.state.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy() if disturbed
                 else self.maxima(member, period)[0])
 

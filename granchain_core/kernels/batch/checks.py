@@ -93,10 +93,10 @@ def check_coarse(state, member):
     count = record.shape[0]
     period, decay, distance, n, approach_decay, change = detect_period(  # an int64, as from Python: one version serves
         record[max(0, count - CHECKED) :], np.int64(LONGEST_PERIOD), ROUNDING, SETTLED_DISTANCE,
-        state.slowest[member], state.scale, state.change)
+        state.slowest_decay[member], state.scale, state.change)
     last_check = state.last_check[member]
     last_check[CHECK_PERIOD], last_check[CHECK_DECAY], last_check[CHECK_DISTANCE] = period, decay, distance
-    if period > 0 and state.slowest[member] > 0.0:
+    if period > 0 and state.slowest_decay[member] > 0.0:
         disturb(state, member, period)
         return False
     if period > 0:
@@ -106,24 +106,25 @@ def check_coarse(state, member):
         state.change_before_extrapolation[member] = 0.0
         if not proved:
             undo_extrapolation(state, member)
-            state.slowest[member] = state.slowest_before[member]
+            state.slowest_decay[member] = state.slowest_decay_before[member]
             periods = state.periods[member]
-            state.pause[member] *= 2
-            state.extrapolate_from[member] = periods + state.pause[member]
-            state.earliest[member] = periods + periods_to_next_check(state, member)
+            state.wait_after_undo[member] *= 2
+            state.extrapolate_from[member] = periods + state.wait_after_undo[member]
+            state.next_check[member] = periods + periods_to_next_check(state, member)
             return False
     left = change * approach_decay / (1.0 - approach_decay) if n > 0 else 0.0
     if periods < state.extrapolate_from[member] or left <= SETTLED_DISTANCE:
         return False
     if log(SETTLED_DISTANCE / left) > _FEWEST_ORBITS_LEFT * log(approach_decay):
         return False  # it settles sooner without extrapolation
-    copy(record[count - 1, 0], state.before[member, 0])
-    copy(record[count - 1, 1], state.before[member, 1])
+    copy(record[count - 1, 0], state.state_before[member, 0])
+    copy(record[count - 1, 1], state.state_before[member, 1])
     if extrapolate_member(state, member, n, approach_decay, change):
         state.change_before_extrapolation[member] = change
-        state.slowest_before[member] = state.slowest[member]
-        state.slowest[member] = min(_SLOWEST_ASSUMED_DECAY, max(state.slowest[member], approach_decay ** (1.0 / n)))
-        state.earliest[member] = periods + window_of(n) + n + 1
+        state.slowest_decay_before[member] = state.slowest_decay[member]
+        slowest = max(state.slowest_decay[member], approach_decay ** (1.0 / n))
+        state.slowest_decay[member] = min(_SLOWEST_ASSUMED_DECAY, slowest)
+        state.next_check[member] = periods + window_of(n) + n + 1
         state.extrapolate_from[member] = periods + ORBITS * n
     else:
         state.extrapolate_from[member] = periods + max(_PERIODS_AFTER_FAILURE, count // 4)
@@ -135,14 +136,14 @@ def disturb(state, member, period):
     """Disturb a member that seems to be on an orbit, keeping the orbit's state and forces."""
     bodies, last = state.limit.shape[1], state.strobe_count[member] - 1
     for q in range(2):
-        copy(state.strobes[member, last, q], state.before[member, q])
+        copy(state.strobes[member, last, q], state.state_before[member, q])
         for i in range(bodies):
-            state.limit[q, i] = state.before[member, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
+            state.limit[q, i] = state.state_before[member, q, i] + (1 - 2 * (i % 2)) * _DISTURBANCE * state.scale[q]
     for q in range(3):
         state.fine_record[member, FINE_FORCES + q] = largest_force(state, member, period, q)
     move_member(state, member, state.limit)
-    state.testing[member] = period
-    state.earliest[member] = state.periods[member] + _TEST_ORBITS * period
+    state.tested_period[member] = period
+    state.next_check[member] = state.periods[member] + _TEST_ORBITS * period
 
 
 @inline_numba
@@ -151,16 +152,16 @@ def judge_disturbance(state, member):
 
     The member then goes back to its orbit, and the decay is recorded; else extrapolation pauses.
     """
-    n, bodies = state.testing[member], state.limit.shape[1]
+    n, bodies = state.tested_period[member], state.limit.shape[1]
     record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
-    state.testing[member] = 0
+    state.tested_period[member] = 0
     largest_of(record[: _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
         there, whole = 0.0, 0.0
         for q in range(2):
             for i in range(bodies):
-                offset = (record[k * n, q, i] - state.before[member, q, i]) / state.scale[q]
+                offset = (record[k * n, q, i] - state.state_before[member, q, i]) / state.scale[q]
                 there, whole = max(there, abs(offset)), whole + offset**2
         quarter = 4 * k // (_TEST_ORBITS + 1)
         first = max(first, there) if quarter == 0 else first
@@ -168,11 +169,11 @@ def judge_disturbance(state, member):
         late += whole if quarter == 3 else 0.0
         last = there
     if last <= _PART_LEFT * first:
-        move_member(state, member, state.before[member])
+        move_member(state, member, state.state_before[member])
         decay = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
         state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], min(decay, _SLOWEST_DECAY))
         return True
-    state.slowest[member], state.change_before_extrapolation[member] = 0.0, 0.0
+    state.slowest_decay[member], state.change_before_extrapolation[member] = 0.0, 0.0
     state.last_check[member, CHECK_PERIOD] = 0.0  # this member does not stay on the orbit that was found
     state.extrapolate_from[member] = state.periods[member] + _PAUSE_AFTER_FAILED_TEST
     return False
@@ -204,7 +205,7 @@ def check_fine(state, member):
     state.change_before_extrapolation[member] = 0.0
     if not proved:
         undo_extrapolation(state, member)
-        state.earliest[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
+        state.next_check[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
         fine[FINE_EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
         return False
     moved = 0.0
@@ -215,11 +216,11 @@ def check_fine(state, member):
     if close or fine[FINE_EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:
         return True
     fine[FINE_EXTRAPOLATIONS] += 1.0
-    copy(state.strobes[member, count - 1, 0], state.before[member, 0])
-    copy(state.strobes[member, count - 1, 1], state.before[member, 1])
+    copy(state.strobes[member, count - 1, 0], state.state_before[member, 0])
+    copy(state.strobes[member, count - 1, 1], state.state_before[member, 1])
     if extrapolate_member(state, member, n, decay, change):
         state.change_before_extrapolation[member] = change
-    state.earliest[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
+    state.next_check[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
     return False
 
 
@@ -235,8 +236,8 @@ def check_member(state, member):
 
     If it does not, the next check is set.
     """
-    state.earliest[member] = state.periods[member] + periods_to_next_check(state, member)
-    if state.testing[member] > 0:
+    state.next_check[member] = state.periods[member] + periods_to_next_check(state, member)
+    if state.tested_period[member] > 0:
         return judge_disturbance(state, member)
     if state.fine_record[member, FINE_PERIOD] > 0.0:
         return check_fine(state, member)

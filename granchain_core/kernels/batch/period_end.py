@@ -29,7 +29,7 @@ def end_period(state, member, check):
     state.left[member] = state.steps[member]
     if not finite:
         return True
-    if periods >= state.earliest[member] and call_at(check, (state, member)):
+    if periods >= state.next_check[member] and call_at(check, (state, member)):
         return True
-    pending = state.testing[member] > 0 or state.change_before_extrapolation[member] > 0.0
+    pending = state.tested_period[member] > 0 or state.change_before_extrapolation[member] > 0.0
     return state.periods[member] >= state.return_at[member] and not pending

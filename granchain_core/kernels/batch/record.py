@@ -55,7 +55,7 @@ def move_member(state, member, there):
 @internal
 def undo_extrapolation(state, member):
     """Move a member back to its state before the last extrapolation; its record and its periods go on from there."""
-    set_state(state, member, state.before[member])
+    set_state(state, member, state.state_before[member])
     state.periods[member] -= state.strobe_count[member] - state.first_strobe[0, member] - 1
     state.strobe_count[member] = state.first_strobe[0, member]
     state.first_strobe[0, member] = state.first_strobe[1, member]

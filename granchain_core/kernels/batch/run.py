@@ -55,9 +55,9 @@ class BatchState(NamedTuple):
     peaks (PEAKS, L)         largest forces (forces/peaks.py)
     steps, left (L,)         steps in a period, and how many of them are left
     periods, return_at (L,)  periods run, and the period at which the kernel returns at the latest
-    earliest (L,)            next period at which the strobes are checked
+    next_check (L,)          next period at which the strobes are checked
     extrapolate_from (L,)    period from which a transient may be extrapolated
-    pause (L,)               periods without extrapolation after the next one that is undone
+    wait_after_undo (L,)     periods without extrapolation after the next one that is undone
     due (L,)                 1 where the member is to be returned to the caller, else 0
     shadow (L,)              lane of the member's shadow, a neighbouring trajectory; NO_SHADOW, or IS_SHADOW
     distance (L,)            distance to which the shadow is brought back after each period
@@ -65,12 +65,12 @@ class BatchState(NamedTuple):
     strobe_count (L,)        strobes kept
     first_strobe (2, L)      place of the first strobe since the member was last moved to another state, and of the
                              first since the time before that
-    slowest (L,)             slowest decay per drive period before an extrapolation that was not undone, 0 if there is
+    slowest_decay (L,)       slowest decay per drive period before an extrapolation that was not undone, 0 if there is
                              none; above 0 an orbit that is found must survive a disturbance
-    slowest_before (L,)      the same before the last extrapolation, which may be undone
+    slowest_decay_before (L,)  the same before the last extrapolation, which may be undone
     change_before_extrapolation (L,)  change per orbit before an extrapolation that is not confirmed yet, else 0
-    testing (L,)             period of an orbit that is being disturbed, else 0
-    before (L, 2, N+2)       state before the last extrapolation
+    tested_period (L,)       period of an orbit that is being disturbed, else 0
+    state_before (L, 2, N+2)  state before the last extrapolation
     fine_record (L, FINE_COLUMNS)  record of a fine member (checks.py)
     strobes (L, 2R, 2, N+2)  states at the ends of periods
     maxima (L, R, 5)         of the last R periods, a ring: three largest forces (input, output, elastic output) and two
@@ -90,20 +90,20 @@ class BatchState(NamedTuple):
     left: np.ndarray
     periods: np.ndarray
     return_at: np.ndarray
-    earliest: np.ndarray
+    next_check: np.ndarray
     extrapolate_from: np.ndarray
-    pause: np.ndarray
+    wait_after_undo: np.ndarray
     due: np.ndarray
     shadow: np.ndarray
     distance: np.ndarray
     growth: np.ndarray
     strobe_count: np.ndarray
     first_strobe: np.ndarray
-    slowest: np.ndarray
-    slowest_before: np.ndarray
+    slowest_decay: np.ndarray
+    slowest_decay_before: np.ndarray
     change_before_extrapolation: np.ndarray
-    testing: np.ndarray
-    before: np.ndarray
+    tested_period: np.ndarray
+    state_before: np.ndarray
     fine_record: np.ndarray
     strobes: np.ndarray
     maxima: np.ndarray

@@ -165,7 +165,8 @@ def _periodic(batch: Batch, member: int, periods_run: int) -> Regime:
     """The periodic regime of a coarse member; `followed` where extrapolations led to it."""
     period, decay, distance = batch.state.last_check[member]
     return Regime(name="periodic", period=int(period), decay=float(decay) if decay >= 0.0 else None,
-                  distance=float(distance), periods_run=periods_run, followed=bool(batch.state.slowest[member] > 0.0))
+                  distance=float(distance), periods_run=periods_run,
+                  followed=bool(batch.state.slowest_decay[member] > 0.0))
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:

@@ -27,7 +27,7 @@ def seen(record: np.ndarray, before: float | None = None, **numbers: float) -> B
     batch.state.strobe_count[MEMBER] = batch.state.periods[MEMBER] = len(record)
     batch.state.y[[1, 2, ROW + 1, ROW + 2], MEMBER] = record[-1]
     if before is not None:
-        batch.state.before[MEMBER, :, 1:-1] = before
+        batch.state.state_before[MEMBER, :, 1:-1] = before
     for name, value in numbers.items():
         getattr(batch.state, name)[MEMBER] = value
     return batch
@@ -37,9 +37,9 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
     """States that repeat are periodic where the chain came there by itself; where it was put there they are tried."""
     batch = seen(np.ones(60))
     assert checks.check_coarse.py_func(batch.state, MEMBER)
-    batch = seen(np.ones(60), slowest=0.9)
+    batch = seen(np.ones(60), slowest_decay=0.9)
     assert not checks.check_coarse.py_func(batch.state, MEMBER)
-    assert batch.state.testing[MEMBER] == 1
+    assert batch.state.tested_period[MEMBER] == 1
     moved = np.abs(batch.state.y[[1, 2, ROW + 1, ROW + 2], MEMBER] - 1.0)
     assert moved == pytest.approx(checks._DISTURBANCE, rel=1e-9)
 
@@ -53,11 +53,11 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 
     The scale of displacements and velocities is the member's own: others have used the workspace meanwhile.
     """
-    state = seen(1.0 + 1e-4 * rate ** np.arange(checks._TEST_ORBITS + 1), before=1.0, testing=1, slowest=0.9).state
+    state = seen(1.0 + 1e-4 * rate ** np.arange(checks._TEST_ORBITS + 1), before=1.0, tested_period=1, slowest_decay=0.9).state
     state.last_check[MEMBER, checks.CHECK_PERIOD] = 1.0
     state.scale[:] = 1e-12, 1e12
     assert checks.judge_disturbance.py_func(state, MEMBER) == stable
-    assert state.testing[MEMBER] == 0 and (state.slowest[MEMBER] > 0.0) == stable
+    assert state.tested_period[MEMBER] == 0 and (state.slowest_decay[MEMBER] > 0.0) == stable
     assert (state.y[1, MEMBER] == 1.0) == stable
     assert (state.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was no orbit has no period"
     assert state.scale == pytest.approx(1.0, rel=1e-2)
@@ -67,19 +67,19 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
 def test_an_extrapolation_is_kept_only_if_the_change_after_it_is_smaller(before: float, kept: bool) -> None:
     """If it is not smaller, the chain returns to the state before the extrapolation and waits twice as long."""
     state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), before=0.25, change_before_extrapolation=before,
-                 extrapolate_from=10_000, pause=16).state
+                 extrapolate_from=10_000, wait_after_undo=16).state
     assert not checks.check_coarse.py_func(state, MEMBER)
     assert state.change_before_extrapolation[MEMBER] == 0.0
-    assert (state.y[1, MEMBER] != 0.25) == kept and (state.pause[MEMBER] == 16) == kept
+    assert (state.y[1, MEMBER] != 0.25) == kept and (state.wait_after_undo[MEMBER] == 16) == kept
 
 
 @pytest.mark.parametrize(("before", "slowest"), [(1e-3, 0.9), (1e-9, 0.0)])
 def test_after_an_undone_extrapolation_an_orbit_is_not_one_that_was_extrapolated_to(before: float, slowest: float) -> None:
     """Such an orbit is neither disturbed nor called followed: the decay is the one known before the extrapolation."""
     state = seen(1.0 + 1e-3 * 0.9 ** np.arange(60), change_before_extrapolation=before, extrapolate_from=10_000,
-                 slowest=0.9, slowest_before=0.0).state
+                 slowest_decay=0.9, slowest_decay_before=0.0).state
     checks.check_coarse.py_func(state, MEMBER)
-    assert state.slowest[MEMBER] == slowest
+    assert state.slowest_decay[MEMBER] == slowest
 
 
 def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None:
