@@ -110,9 +110,17 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
             break
         again = [start for group in left for start in (_beside if group[0].unstable else _later)(group, stop)]
         kept = [one for group in groups if group not in left for one in group]
-        moved = [found(result) for result in _settled(again, stop) if not result.failure]
+        ran = {one.result.number: one.result.regime.periods_run
+               + (_DEPARTURE_PERIODS if group[0].unstable else _LATER_PERIODS) for group in left for one in group}
+        moved = [found(_counted(result, ran[result.number])) for result in _settled(again, stop)
+                 if not result.failure]
         groups = merged(kept + moved)
     return [_attractor(group, origins) for group in groups]
+
+
+def _counted(result: SteadyState, before: int) -> SteadyState:
+    """A result whose periods run include those `before` its start."""
+    return replace(result, regime=replace(result.regime, periods_run=before + result.regime.periods_run))
 
 
 def _settled(starts: list[Start], stop: Stop | None,
