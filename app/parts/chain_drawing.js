@@ -205,7 +205,8 @@ export class ChainDrawing {
 
   bodies(place, pitch, radius, y, beads) {
     const { context: g, ink } = this;
-    const tall = 1.5 * radius,
+    const under = y - 5 - 1.25 * parseFloat(ink.small); // the words over the chain stay free
+    const tall = Math.max(radius, Math.min(1.5 * radius, under)),
       deep = Math.min(26, 0.8 * pitch + 6);
     const driver = place(0) + radius;
     g.fillStyle = this.driven ? ink.drive : ink.steel; // only a driver has a rod; a plate is at rest
@@ -248,6 +249,11 @@ export class ChainDrawing {
     g.stroke();
   }
 
+  // How many times larger displacements are drawn.
+  get magnification() {
+    return `× ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`;
+  }
+
   // The magnification, with a bar as long as a displacement of 1, 2 or 5 times a power of ten.
   words() {
     const { context: g, ink } = this;
@@ -262,12 +268,12 @@ export class ChainDrawing {
     g.fillText("wall", this.width - 8, 5);
     const [metres, name] = tape((0.22 * this.width) / (this.pitch * this.exaggeration));
     const long = metres * this.pitch * this.exaggeration;
-    const factor = this.factor.toLocaleString("en").replaceAll(",", "\u202f");
+    const { magnification } = this;
     // The bar is magnified as the displacements of the beads are. With little room it has fewer words.
     const forms = [
-      [`displacements drawn × ${factor}`, `${name} of displacement`],
-      [`drawn × ${factor}`, `${name} of displacement`],
-      [`× ${factor}`, name],
+      [`displacements drawn ${magnification}`, `${name} of displacement`],
+      [`drawn ${magnification}`, `${name} of displacement`],
+      [magnification, name],
     ];
     const widthOf = (form) => form.reduce((sum, one) => sum + g.measureText(one).width, 18 + long);
     const room = this.width - 2 * g.measureText(left).width - 40;
