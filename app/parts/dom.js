@@ -1,7 +1,7 @@
 // Elements and controls that several parts of the page use.
 
-// Whether the page is arranged for a phone, as page.css has it.
-export const PHONE = matchMedia("(max-width: 820px)");
+// Whether the page is arranged for a phone, or for another low window, as page.css has it.
+export const PHONE = matchMedia("(max-width: 820px), (max-height: 560px)");
 
 // An element with its properties and children.
 export const element = (tag, properties = {}, ...children) => {
