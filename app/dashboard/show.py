@@ -9,7 +9,7 @@ import numpy as np
 from granchain_core import Run, Scene, Settled
 
 from ..format import prefixed
-from ..frames import Frames, prepared_frames, round_up
+from ..frames import PERIODS, Frames, prepared_frames, round_up
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
 from ..serve.changes import change
@@ -41,12 +41,14 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
     """Show the last periods of the live run, with the present at the bottom."""
     frames, run = picture.frames, picture.run
     views.shown = None
-    unit, since = "drive periods", f"drive period {picture.periods:.0f}"
+    time, unit, since = frames.time, "drive periods", f"drive period {picture.periods:.0f}"
     if not run.scene.is_driven:
-        unit, since = "1/f", f"{1e3 * picture.periods / run.scene.f:.0f} ms after the start"
-    views.trains.name_time(f"time ({unit} before now)")
+        factor, letter = prefixed(PERIODS / run.scene.f)
+        time, unit = frames.time / (run.scene.f * factor), f"{letter}s"
+        since = f"{1e3 * picture.periods / run.scene.f:.0f} ms after the start"
+    views.trains.name_time(f"time before now ({unit})")
     here = frames.extremes
-    _draw(views, number, frames, run, frames.time, "periods", (here.input_force, here.output_force), live=True,
+    _draw(views, number, frames, run, time, unit, (here.input_force, here.output_force), live=True,
           running=running)
     views.curve.now(run.scene.knobs["f"], frames.largest_output)
     views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",

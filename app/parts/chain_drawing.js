@@ -128,8 +128,9 @@ export class ChainDrawing {
     const place = (i) => this.home(i) + at.u(i) * this.exaggeration * pitch;
     this.ground(frames, radius, y, place);
     this.driven = frames.driven ?? true;
-    this.bodies(place, pitch, radius, y, beads);
     const sizes = frames.radii.map((one) => radius * (one / this.largest));
+    for (let i = 1; i <= beads; i++) this.halo(place(i), y, sizes[i - 1], at.energy(i) / frames.energy_high);
+    this.bodies(place, pitch, radius, y, beads);
     for (let i = 1; i <= beads; i++) this.bead(i, place, y, sizes, at.energy(i) / frames.energy_high);
     for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, radius, y);
     this.words();
@@ -157,6 +158,14 @@ export class ChainDrawing {
     g.stroke();
     g.setLineDash([]);
     g.lineCap = "butt";
+  }
+
+  // The light behind a bead with much energy. All are drawn before the beads, so that no neighbour cuts it.
+  halo(x, y, radius, share) {
+    const made = this.steel.halo(radius, share, this.ratio);
+    if (!made) return;
+    const half = made.reach * radius;
+    this.context.drawImage(made.picture, x - half, y - half, 2 * half, 2 * half);
   }
 
   // A bead. Where it presses on a neighbour, each of the two is cut by half of the overlap.

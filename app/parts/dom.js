@@ -10,6 +10,12 @@ export const element = (tag, properties = {}, ...children) => {
   return made;
 };
 
+// The pieces of a text with its numbers and |μ|, of which none is broken at the end of a line.
+export const unbroken = (text) =>
+  text
+    .split(/(\|μ\| [\d.]+\)?|\d[\d.]*e-\d+[.,;]?)/)
+    .map((piece, i) => (i % 2 ? element("span", { className: "unbroken", textContent: piece }) : piece));
+
 export const paragraph = (textContent = "", className = "") => element("p", { textContent, className });
 
 // A button that calls `act` when it is clicked.

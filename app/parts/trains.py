@@ -100,7 +100,8 @@ class ForceTrains:
         change(self._axes[0], visible=driven)
         change(self._lines[0], visible=driven)
         change(self._zero_of_drive, visible=driven)
-        scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
+        far = -1 if frames.time[-1] else 0  # of a live picture the last row is now, at 0
+        scale = float(time[far] / frames.time[far]) if frames.time[far] else 1.0
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
         drive_high = round_up(moved)
         pinned, measured = self._pinned.largest, self._measured.largest

@@ -150,6 +150,8 @@ def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> 
         ("now", {"value": "this page now"}, "ink", {"x_offset": 13, "y_offset": -8}),
     ]
     texts = [themed(plot.text("ms", "error", text=text, source=made[name], text_font_style="bold",
-                              text_alpha=0.0 if compact else 1.0, text_font_size="14px", **place), text_color=role)
+                              text_alpha=0.0 if compact else 1.0, text_font_size="14px",
+                              background_fill_alpha=0.0 if compact else 0.8, padding=1, **place),
+                    text_color=role, background_fill_color="card")
              for name, text, role, place in words]
     return [ring, now, *texts[:2]]

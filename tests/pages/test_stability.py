@@ -93,7 +93,7 @@ def test_an_exponent_has_the_figures_that_its_error_allows(exponent: float, erro
 
 def test_a_chosen_multiplier_is_told_and_one_that_is_not_there_is_the_last() -> None:
     orbit = with_leading(-1.5)
-    assert multiplier_sentence(orbit, 0) == "ringed: μ = -1.5000, |μ| 1.50"
+    assert multiplier_sentence(orbit, 0) == "ringed: μ = −1.5000, |μ| 1.50"
     assert multiplier_sentence(orbit, 99) == multiplier_sentence(orbit, 21)
 
 
