@@ -1,7 +1,8 @@
 // A chain drawn on a canvas, for every part of the page that shows one.
 
 import { extremes, sampler } from "./chain_series.js";
-import { prefixed, stepBelow } from "./plot.js";
+import { writeWords } from "./chain_words.js";
+import { stepBelow } from "./plot.js";
 import { Steel } from "./steel.js";
 
 const NUMBERED = 13; // px; smaller beads have no number
@@ -263,50 +264,7 @@ export class ChainDrawing {
     return `× ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`;
   }
 
-  // The magnification, with a bar as long as a displacement of 1, 2 or 5 times a power of ten.
   words() {
-    const { context: g, ink } = this;
-    const size = parseFloat(ink.small);
-    g.font = `${size}px ${ink.font}`;
-    g.textBaseline = "top";
-    g.fillStyle = g.strokeStyle = ink.text;
-    g.textAlign = "left";
-    const left = this.driven ? "driver" : "at rest";
-    g.fillText(left, 8, 5);
-    g.textAlign = "right";
-    g.fillText("wall", this.width - 8, 5);
-    const [metres, name] = tape((0.22 * this.width) / (this.pitch * this.exaggeration));
-    const long = metres * this.pitch * this.exaggeration;
-    const { magnification } = this;
-    // The bar is magnified as the displacements of the beads are. With little room it has fewer words.
-    const forms = [
-      [`displacements drawn ${magnification}`, `${name} of displacement`],
-      [`drawn ${magnification}`, `${name} of displacement`],
-      [magnification, name],
-    ];
-    const widthOf = (form) => form.reduce((sum, one) => sum + g.measureText(one).width, 18 + long);
-    const room = this.width - 2 * g.measureText(left).width - 40;
-    const [shown, length] = forms.find((form) => widthOf(form) < room) ?? forms.at(-1);
-    let x = 0.5 * (this.width - widthOf([shown, length]));
-    g.textAlign = "left";
-    g.fillText(shown, x, 5);
-    x += g.measureText(shown).width + 12;
-    g.lineWidth = 1.5 * ink.bold;
-    g.beginPath();
-    for (const end of [x, x + long]) {
-      g.moveTo(end, 5 + 0.1 * size);
-      g.lineTo(end, 5 + 0.9 * size);
-    }
-    g.moveTo(x, 5 + 0.5 * size);
-    g.lineTo(x + long, 5 + 0.5 * size);
-    g.stroke();
-    g.fillText(length, x + long + 6, 5);
+    writeWords(this);
   }
-}
-
-// The largest length that is 1, 2 or 5 times a power of ten [m] and not above `most`, with its name.
-function tape(most) {
-  const metres = stepBelow(most);
-  const [unit, letter] = prefixed(metres);
-  return [metres, `${Number((metres / unit).toPrecision(1))} ${letter}m`];
 }
