@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"),
              (1e-12, "p"), (1e-15, "f"), (1e-18, "a"))
 
@@ -28,8 +30,47 @@ def duration(seconds: float) -> str:
     return f"{seconds / factor:.3g} {letter}s"
 
 
+#: The numbers that are written without a power of ten.
+_SMALLEST_PLAIN, _LARGEST_PLAIN = 1e-6, 1e9
+
+
+def with_figures(value: float, figures: int) -> str:
+    """A number to so many significant figures, zeros included, "5.040", "150"; very large and small ones in powers."""
+    if not math.isfinite(value):
+        return f"{value}"
+    if value and not _SMALLEST_PLAIN <= abs(value) < _LARGEST_PLAIN:
+        mantissa, exponent = f"{value:.{figures - 1}e}".split("e")
+        return f"{mantissa}e{int(exponent)}"
+    rounded = float(f"{value:.{figures - 1}e}")
+    return with_decimals(rounded, figures - 1 - math.floor(math.log10(abs(rounded))) if rounded else 0)
+
+
+def with_decimals(value: float, decimals: int) -> str:
+    """A number rounded to a decimal place, left of the point where `decimals` is negative; its sign is a minus sign."""
+    return f"{round(value, decimals) + 0.0:.{max(0, decimals)}f}".replace("-", "\N{MINUS SIGN}")
+
+
+#: Figures of a number whose error is not known.
+UNSURE_FIGURES = 2
+
+
+def figures_of(relative_error: float | None, most: int = 4) -> int:
+    """How many figures of a number its relative error leaves: at least two, at most `most`; two where it is unknown."""
+    if relative_error is None or not math.isfinite(relative_error):
+        return UNSURE_FIGURES
+    if relative_error <= 10.0 ** -most:
+        return most
+    return max(UNSURE_FIGURES, math.ceil(-math.log10(relative_error)))
+
+
 def in_words(value: float, unit: str, figures: int = 4) -> str:
     """A value in SI with its prefix, "597.2 mN"."""
+    factor, letter = prefixed(abs(value))
+    return f"{with_figures(value / factor, figures)} {letter}{unit}"
+
+
+def given_in_words(value: float, unit: str, figures: int = 4) -> str:
+    """The same of a number that somebody measured: without zeros that nobody wrote, "5.5 N"."""
     factor, letter = prefixed(abs(value))
     return f"{value / factor:.{figures}g} {letter}{unit}"
 

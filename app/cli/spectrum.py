@@ -66,7 +66,8 @@ def _json(found: Spectrum, through: Transfer | None) -> dict[str, Any]:
 def _show(found: Spectrum, through: Transfer | None) -> None:
     """The largest lines as a table."""
     gains = {} if through is None else dict(zip(through.frequency.tolist(), through.gain.tolist(), strict=True))
-    kind = f"Fourier series of a motion of period {found.period}" if found.period else "windowed record, no lines"
+    kind = (f"Fourier series of a motion of period {found.period}" if found.period else
+            "peaks of a windowed record (not periodic)")
     print(f"{found.run.scene.name}: {found.force} force, {kind}; resolution {found.resolution:.4g} Hz, "
           f"folded back about {found.aliasing:.1e} N")
     print("frequency_Hz  amplitude_N  phase_rad  output_over_input")

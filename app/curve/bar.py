@@ -30,5 +30,6 @@ class CurveBar(Component):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "chapters": [], "stated": [],
-                                          "kinds": KINDS, "strong": STRONG_PART, "driven": True, "rig": False},
+                                          "kinds": KINDS, "strong": STRONG_PART, "driven": True, "too_long": False,
+                                          "rig": False},
                          **params)

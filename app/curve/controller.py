@@ -111,7 +111,7 @@ class CurveController:
         self._cancel()
         self._wanted_for = without_frequency(scene)
         self._figure.expected = self._visible and self._wanted["rest"] and curve_affordable(scene)
-        self._bar.update_state(driven=scene.is_driven)
+        self._bar.update_state(driven=scene.is_driven, too_long=scene.is_driven and not curve_affordable(scene))
         self._quiet.start(self._begin_when_compiled, scene)
 
     def _cancel(self) -> None:
@@ -122,10 +122,10 @@ class CurveController:
     def _begin_when_compiled(self, scene: Scene) -> None:
         if not curve_affordable(scene):
             self.stop()
-            if not scene.is_driven:  # another drive has no curve that could stay
-                self._computed.clear()
-                with unlocked():
-                    self._figure.clear()
+            self._computed.clear()
+            with unlocked():
+                self._figure.clear()  # another chain's curve is none of this picture
+            self._placed()
             return
         if COMPILER.has(scene, *PICTURE_PIECES):
             self._begin(scene)

@@ -40,6 +40,14 @@ function keyOf({ kinds, strong }) {
   ];
 }
 
+// Why there is no curve; empty where there is one.
+function reason({ driven, too_long: tooLong }) {
+  if (!driven) return "This chain has no drive, so there is no resonance curve.";
+  return tooLong
+    ? "The resonance curve of this chain takes too long for the page; on the command line granchain curve computes it."
+    : "";
+}
+
 export function render({ model }) {
   const { choices } = model.state;
   const boxes = new Map(choices.map(([name]) => [name, choiceBox(model, name)]));
@@ -62,9 +70,8 @@ export function render({ model }) {
   const key = element("div", { className: "key" });
   const places = new ChapterLabels((f) => model.send_msg({ do: "set", name: "f", value: f }));
   const name = () => {
-    key.replaceChildren(
-      ...(model.state.driven ? keyOf(model.state) : ["This chain has no drive, so there is no resonance curve."]),
-    );
+    const none = reason(model.state);
+    key.replaceChildren(...(none ? [none] : keyOf(model.state)));
     places.show(model.state.chapters, model.state.stated);
   };
   model.on("state", () => {

@@ -28,7 +28,7 @@ from granchain_core.scene import ASSETS
 from granchain_core.scene.driven import refuse_undriven
 
 from ..curve.controller import CurveController
-from ..format import in_words, signed_in_words
+from ..format import given_in_words, in_words, signed_in_words
 from ..serve.compiler import PICTURE_PIECES
 from ..serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from ..serve.queues import FILES
@@ -231,7 +231,7 @@ def _misfit(difference: Difference | None) -> dict[str, Any] | None:
     if difference is None:
         return None
     measured = difference.measured
-    rows = [[f"{f:g} Hz", in_words(float(force), "N"), in_words(float(model), "N"),
+    rows = [[f"{f:g} Hz", given_in_words(float(force), "N"), in_words(float(model), "N"),
              signed_in_words(float(gap), "N")]
             for f, force, model, gap in zip(measured.frequency, measured.force, difference.model, difference.residuals,
                                             strict=True) if not math.isnan(gap)]

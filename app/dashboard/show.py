@@ -9,7 +9,7 @@ import numpy as np
 from granchain_core import Run, Scene, Settled
 
 from ..format import prefixed
-from ..frames import Frames, prepared_frames, round_up
+from ..frames import PERIODS, Frames, prepared_frames, round_up
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
 from ..serve.changes import change
@@ -22,8 +22,8 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
     frames = prepared_frames(picture.run)
     factor, letter = prefixed(float(frames.time[-1]))
     views.trains.name_time(f"time ({letter}s){_periods_shown(frames, picture.run.scene)}")
-    _draw(views, number, frames, picture.run.scene, frames.time / factor, f"{letter}s",
-          (picture.run.max_input_force, picture.run.max_output_force), _is_known(picture.run), final=picture.final)
+    _draw(views, number, frames, picture.run, frames.time / factor, f"{letter}s",
+          (picture.run.max_input_force, picture.run.max_output_force), final=picture.final)
     views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
     views.shown = picture
     show_regime(views)
@@ -33,7 +33,7 @@ def show_regime(views: Views) -> None:
     """Write the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
     if views.shown is not None:
         run = views.shown.run
-        force = views.trains.output_words(run.max_output_force, _is_known(run))
+        force = views.trains.output_words(run.max_output_force, run.force_errors.output)
         views.status_line.update_state(**settled_entries(views.shown, views.curve.place(run), force))
 
 
@@ -41,21 +41,19 @@ def show_live(views: Views, number: int, picture: LivePicture, running: bool) ->
     """Show the last periods of the live run, with the present at the bottom."""
     frames, run = picture.frames, picture.run
     views.shown = None
-    unit, since = "drive periods", f"drive period {picture.periods:.0f}"
+    time, unit, since = frames.time, "drive periods", f"drive period {picture.periods:.0f}"
     if not run.scene.is_driven:
-        unit, since = "1/f", f"{1e3 * picture.periods / run.scene.f:.0f} ms after the start"
-    views.trains.name_time(f"time ({unit} before now)")
+        factor, letter = prefixed(PERIODS / run.scene.f)
+        time, unit = frames.time / (run.scene.f * factor), f"{letter}s"
+        since = f"{1e3 * picture.periods / run.scene.f:.0f} ms after the start"
+    views.trains.name_time(f"time before now ({unit})")
     here = frames.extremes
-    _draw(views, number, frames, run.scene, frames.time, "periods", (here.input_force, here.output_force),
-          _is_known(run), live=True, running=running)
+    _draw(views, number, frames, run, time, unit, (here.input_force, here.output_force), live=True,
+          running=running)
     views.curve.now(run.scene.knobs["f"], frames.largest_output)
     views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
-                                   **run_entries(run, views.trains.output_words(frames.largest_output, _is_known(run))))
-
-
-def _is_known(run: Run) -> bool:
-    """Whether the error of the largest output force is stated; it is not for live runs and motions without a period."""
-    return run.force_errors.output is not None
+                                   **run_entries(run, views.trains.output_words(frames.largest_output,
+                                                                                run.force_errors.output)))
 
 
 def _periods_shown(frames: Frames, scene: Scene) -> str:
@@ -64,13 +62,13 @@ def _periods_shown(frames: Frames, scene: Scene) -> str:
     return f", {count} drive period{'s' * (count != 1)}" if scene.is_driven else ""
 
 
-def _draw(views: Views, number: int, frames: Frames, scene: Scene, time: np.ndarray, unit: str,
-          largest: tuple[float, float], known: bool, live: bool = False, running: bool = False,
-          final: bool = False) -> None:
+def _draw(views: Views, number: int, frames: Frames, run: Run, time: np.ndarray, unit: str,
+          largest: tuple[float, float], live: bool = False, running: bool = False, final: bool = False) -> None:
+    scene, errors = run.scene, (run.force_errors.input, run.force_errors.output)
     change(views.time, start=float(time[-1]), end=float(time[0]))
     high = views.scales.of(frames, scene)
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
     views.trains.update(frames, time, high, scene.is_driven)
     views.energy.update(frames, time, unit, high.kinetic_energy)
-    peaks = views.trains.peak_words(frames, largest, known)
+    peaks = views.trains.peak_words(frames, largest, errors)
     views.chain.send(**frames_message(number, frames, scene, high, views.scales.fit, peaks, live, running, final))

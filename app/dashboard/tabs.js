@@ -201,5 +201,6 @@ export function render({ model }) {
   const { tab = tabs.first, page } = model.state.place;
   tabs.choose(tab);
   if (page) window.granchain.openPage(page);
+  else window.granchain.setLocation({ page: "" }); // one that there is not leaves the address
   return tabs.root;
 }

@@ -149,8 +149,8 @@ class Chain {
     this.showScale(frames);
     this.crosshair.roll();
     if (this.sound.on) this.sound.play(frames);
-    const { scene, f, knobs, number, live, final } = frames;
-    window.granchain.shown = { scene, f, knobs, number, live, final };
+    const { scene, f, knobs, number, live, final, energy_high, scale } = frames;
+    window.granchain.shown = { scene, f, knobs, number, live, final, scales: { energy_high, scale } };
     window.granchain.emit("shown", window.granchain.shown);
     const { beads } = this.drawing;
     this.drawing.load(frames);

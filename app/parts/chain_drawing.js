@@ -1,7 +1,8 @@
 // A chain drawn on a canvas, for every part of the page that shows one.
 
 import { extremes, sampler } from "./chain_series.js";
-import { prefixed, stepBelow } from "./plot.js";
+import { writeWords } from "./chain_words.js";
+import { stepBelow } from "./plot.js";
 import { Steel } from "./steel.js";
 
 const NUMBERED = 13; // px; smaller beads have no number
@@ -128,8 +129,9 @@ export class ChainDrawing {
     const place = (i) => this.home(i) + at.u(i) * this.exaggeration * pitch;
     this.ground(frames, radius, y, place);
     this.driven = frames.driven ?? true;
-    this.bodies(place, pitch, radius, y, beads);
     const sizes = frames.radii.map((one) => radius * (one / this.largest));
+    for (let i = 1; i <= beads; i++) this.halo(place(i), y, sizes[i - 1], at.energy(i) / frames.energy_high);
+    this.bodies(place, pitch, radius, y, beads);
     for (let i = 1; i <= beads; i++) this.bead(i, place, y, sizes, at.energy(i) / frames.energy_high);
     for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, radius, y);
     this.words();
@@ -157,6 +159,14 @@ export class ChainDrawing {
     g.stroke();
     g.setLineDash([]);
     g.lineCap = "butt";
+  }
+
+  // The light behind a bead with much energy. All are drawn before the beads, so that no neighbour cuts it.
+  halo(x, y, radius, share) {
+    const made = this.steel.halo(radius, share, this.ratio);
+    if (!made) return;
+    const half = made.reach * radius;
+    this.context.drawImage(made.picture, x - half, y - half, 2 * half, 2 * half);
   }
 
   // A bead. Where it presses on a neighbour, each of the two is cut by half of the overlap.
@@ -205,7 +215,8 @@ export class ChainDrawing {
 
   bodies(place, pitch, radius, y, beads) {
     const { context: g, ink } = this;
-    const tall = 1.5 * radius,
+    const under = y - 5 - 1.25 * parseFloat(ink.small); // the words over the chain stay free
+    const tall = Math.max(radius, Math.min(1.5 * radius, under)),
       deep = Math.min(26, 0.8 * pitch + 6);
     const driver = place(0) + radius;
     g.fillStyle = this.driven ? ink.drive : ink.steel; // only a driver has a rod; a plate is at rest
@@ -248,50 +259,12 @@ export class ChainDrawing {
     g.stroke();
   }
 
-  // The magnification, with a bar as long as a displacement of 1, 2 or 5 times a power of ten.
-  words() {
-    const { context: g, ink } = this;
-    const size = parseFloat(ink.small);
-    g.font = `${size}px ${ink.font}`;
-    g.textBaseline = "top";
-    g.fillStyle = g.strokeStyle = ink.text;
-    g.textAlign = "left";
-    const left = this.driven ? "driver" : "at rest";
-    g.fillText(left, 8, 5);
-    g.textAlign = "right";
-    g.fillText("wall", this.width - 8, 5);
-    const [metres, name] = tape((0.22 * this.width) / (this.pitch * this.exaggeration));
-    const long = metres * this.pitch * this.exaggeration;
-    const factor = this.factor.toLocaleString("en").replaceAll(",", "\u202f");
-    // The bar is magnified as the displacements of the beads are. With little room it has fewer words.
-    const forms = [
-      [`displacements drawn × ${factor}`, `${name} of displacement`],
-      [`drawn × ${factor}`, `${name} of displacement`],
-      [`× ${factor}`, name],
-    ];
-    const widthOf = (form) => form.reduce((sum, one) => sum + g.measureText(one).width, 18 + long);
-    const room = this.width - 2 * g.measureText(left).width - 40;
-    const [shown, length] = forms.find((form) => widthOf(form) < room) ?? forms.at(-1);
-    let x = 0.5 * (this.width - widthOf([shown, length]));
-    g.textAlign = "left";
-    g.fillText(shown, x, 5);
-    x += g.measureText(shown).width + 12;
-    g.lineWidth = 1.5 * ink.bold;
-    g.beginPath();
-    for (const end of [x, x + long]) {
-      g.moveTo(end, 5 + 0.1 * size);
-      g.lineTo(end, 5 + 0.9 * size);
-    }
-    g.moveTo(x, 5 + 0.5 * size);
-    g.lineTo(x + long, 5 + 0.5 * size);
-    g.stroke();
-    g.fillText(length, x + long + 6, 5);
+  // How many times larger displacements are drawn.
+  get magnification() {
+    return `× ${this.factor.toLocaleString("en").replaceAll(",", "\u202f")}`;
   }
-}
 
-// The largest length that is 1, 2 or 5 times a power of ten [m] and not above `most`, with its name.
-function tape(most) {
-  const metres = stepBelow(most);
-  const [unit, letter] = prefixed(metres);
-  return [metres, `${Number((metres / unit).toPrecision(1))} ${letter}m`];
+  words() {
+    writeWords(this);
+  }
 }

@@ -55,7 +55,7 @@
       if (name === "k") query.delete("kappa");
       if (name === "kappa") query.delete("k");
     }
-    if (page.themeChosen || url.searchParams.has("look")) query.set("look", page.theme());
+    if (page.themeChosen || url.searchParams.get("look") === page.theme()) query.set("look", page.theme());
     for (const [name, value] of Object.entries(place)) if (value) query.set(name, value);
     url.search = query;
     return url;

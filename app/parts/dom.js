@@ -1,7 +1,7 @@
 // Elements and controls that several parts of the page use.
 
-// Whether the page is arranged for a phone, as page.css has it.
-export const PHONE = matchMedia("(max-width: 820px)");
+// Whether the page is arranged for a phone, or for another low window, as page.css has it.
+export const PHONE = matchMedia("(max-width: 820px), (max-height: 560px)");
 
 // An element with its properties and children.
 export const element = (tag, properties = {}, ...children) => {
@@ -9,6 +9,12 @@ export const element = (tag, properties = {}, ...children) => {
   made.append(...children);
   return made;
 };
+
+// The pieces of a text with its numbers and |μ|, of which none is broken at the end of a line.
+export const unbroken = (text) =>
+  text
+    .split(/(\|μ\| [\d.]+\)?|\d[\d.]*e-\d+[.,;]?)/)
+    .map((piece, i) => (i % 2 ? element("span", { className: "unbroken", textContent: piece }) : piece));
 
 export const paragraph = (textContent = "", className = "") => element("p", { textContent, className });
 

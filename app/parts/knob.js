@@ -40,7 +40,7 @@ export class Knob {
       { className: "knob" },
       element("label", {
         title: `${spec.label}: ${spec.meaning}`,
-        innerHTML: `${spec.symbol || ""} <small>${spec.short}</small>`,
+        innerHTML: `${spec.symbol.replace(/_(\w)/, "<sub>$1</sub>")} <small>${spec.short}</small>`,
       }),
     );
     this.el.dataset.knob = spec.name;

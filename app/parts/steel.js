@@ -23,25 +23,36 @@ export class Steel {
     this.made = new Map();
   }
 
-  // A square picture of a bead with its glow, and half its side in radii of the bead.
-  bead(room, share, ratio, ink) {
+  // A square picture of a bead, and half its side in radii of the bead.
+  bead(radius, share, ratio, ink) {
+    return this.madeOnce("bead", 1.05, radius, share, ratio, (...of) => this.body(...of, ink));
+  }
+
+  // The same of the halo behind it; null for a bead that does not glow, as most do.
+  halo(radius, share, ratio) {
+    if (!this.palette || Math.sqrt(share) <= GLOWS) return null;
+    return this.madeOnce("halo", 3, radius, share, ratio, (...of) => this.light(...of));
+  }
+
+  madeOnce(name, reach, room, share, ratio, draw) {
     const radius = Math.max(room, 0.5); // a page that is being resized may have no room for a moment
     const step = Math.round(STEPS * Math.sqrt(Math.max(0, Math.min(1, share))));
-    const key = `${radius.toFixed(1)} ${step}`;
-    if (!this.made.has(key)) this.made.set(key, this.draw(radius, step / STEPS, ratio, ink));
+    const key = `${name} ${radius.toFixed(1)} ${step}`;
+    if (!this.made.has(key)) {
+      const half = reach * radius;
+      const side = Math.max(2, Math.ceil(2 * half * ratio));
+      const picture = Object.assign(document.createElement("canvas"), { width: side, height: side });
+      const g = picture.getContext("2d");
+      g.scale(side / (2 * half), side / (2 * half));
+      g.translate(half, half);
+      draw(g, radius, step / STEPS);
+      this.made.set(key, { picture, reach });
+    }
     return this.made.get(key);
   }
 
-  draw(radius, glow, ratio, ink) {
-    const reach = glow > GLOWS ? 3 : 1.05; // most beads do not glow, and a small picture is copied faster
-    const half = reach * radius;
-    const side = Math.max(2, Math.ceil(2 * half * ratio));
-    const picture = Object.assign(document.createElement("canvas"), { width: side, height: side });
-    const g = picture.getContext("2d");
-    g.scale(side / (2 * half), side / (2 * half));
-    g.translate(half, half);
+  body(g, radius, glow, ink) {
     const hot = this.palette ? colourOf(this.palette, glow ** 2) : ink.steel;
-    if (glow > GLOWS) this.halo(g, radius, glow, hot);
     const body = Math.min(1, 1.7 * glow); // the part of the steel's own colour that the energy replaces
     const shade = g.createRadialGradient(-0.35 * radius, -0.4 * radius, 0.05 * radius, 0, 0, radius);
     shade.addColorStop(0, mixed(ink.shine, hot, 0.6 * body));
@@ -51,16 +62,15 @@ export class Steel {
     g.beginPath();
     g.arc(0, 0, radius, 0, 2 * Math.PI);
     g.fill();
-    return { picture, reach };
   }
 
-  halo(g, radius, glow, hot) {
+  light(g, radius, glow) {
+    const hot = colourOf(this.palette, glow ** 2);
     const halo = g.createRadialGradient(0, 0, 0.9 * radius, 0, 0, 2.6 * radius);
     halo.addColorStop(0, hot);
     halo.addColorStop(1, `${hot}00`);
-    g.globalAlpha = 0.75 * (glow - GLOWS);
+    g.globalAlpha = Math.max(0, 0.75 * (glow - GLOWS));
     g.fillStyle = halo;
     g.fillRect(-3 * radius, -3 * radius, 6 * radius, 6 * radius);
-    g.globalAlpha = 1;
   }
 }

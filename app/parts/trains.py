@@ -13,7 +13,7 @@ from bokeh.models import BasicTicker, ColumnDataSource, GlyphRenderer, Line, Lin
 
 from granchain_core import Run
 
-from ..format import in_words, prefixed
+from ..format import figures_of, prefixed, with_decimals, with_figures
 from ..frames import Extremes, Frames, round_up
 from ..pictures.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
 from ..pictures.theme import GREY
@@ -34,6 +34,8 @@ _ZERO: dict[str, Any] = {"line_width": 1, "line_alpha": 0.35, "level": "underlay
 _TICKS = (3, 6)
 #: The smallest number that is written in the unit of an axis.
 _SMALLEST_READABLE = 0.01
+#: Most figures of a force under its axis, where there is little room.
+_PEAK_FIGURES = 3
 #: Smallest pull that is shown beside the largest force, over that force.
 _SHOWN_PULL = 0.01
 #: Smallest pressure of an always pressed contact that is shown beside the largest force, over that force.
@@ -98,7 +100,8 @@ class ForceTrains:
         change(self._axes[0], visible=driven)
         change(self._lines[0], visible=driven)
         change(self._zero_of_drive, visible=driven)
-        scale = 1.0 if frames.time[-1] == 0.0 else float(time[-1] / frames.time[-1])
+        far = -1 if frames.time[-1] else 0  # of a live picture the last row is now, at 0
+        scale = float(time[far] / frames.time[far]) if frames.time[far] else 1.0
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
         drive_high = round_up(moved)
         pinned, measured = self._pinned.largest, self._measured.largest
@@ -127,32 +130,39 @@ class ForceTrains:
         """The title of the axis of time."""
         change(self._time_axis, axis_label=title)
 
-    def peak_words(self, frames: Frames, largest: tuple[float, float], known: bool) -> list[list[str]]:
-        """The largest input and output force [N] of the picture; two figures where their errors are not known.
+    def peak_words(self, frames: Frames, largest: tuple[float, float],
+                   errors: tuple[float | None, float | None]) -> list[list[str]]:
+        """The largest input and output force [N] of the picture, with the figures that their relative errors leave.
 
-        With it the smallest of the rows where it says something: a contact pulls, or is never free of force.
+        With it the smallest of the rows where it says something: a contact pulls, or is never free of force. Of a pull
+        one figure: it may be larger between the rows.
         """
-        figures = 3 if known else 2
         words = []
-        for series, force, factor, unit in zip((frames.input_force, frames.output_force), largest, self._factors,
-                                               self._units[1:], strict=True):
+        for series, force, error, axis, unit in zip((frames.input_force, frames.output_force), largest, errors,
+                                                    self._factors, self._units[1:], strict=True):
             least = float(series.min())
-            has_least = least < -_SHOWN_PULL * force or least > _SHOWN_PRESSURE * force
-            words.append([f"max {force / factor:#.{figures}g}".rstrip(".") + f"\N{NO-BREAK SPACE}{unit}",
-                          f"min ≈ {least / factor:.{1 if least < 0.0 else 2}g}\N{NO-BREAK SPACE}{unit}".replace(
-                              "-", "\N{MINUS SIGN}") if has_least else ""])
+            factor, unit = self._readable(max(force, -least), axis, unit)
+            most = with_figures(force / factor, figures_of(error, _PEAK_FIGURES))
+            words.append([f"max {most}\N{NO-BREAK SPACE}{unit}", ""])
+            if least < -_SHOWN_PULL * force:
+                words[-1][1] = f"min ≈ {with_figures(least / factor, 1)}\N{NO-BREAK SPACE}{unit}"
+            elif least > _SHOWN_PRESSURE * force:
+                decimals = len(most.partition(".")[2])  # so that the smallest never reads larger than the largest
+                words[-1][1] = f"min ≈ {with_decimals(least / factor, decimals)}\N{NO-BREAK SPACE}{unit}"
         return words
 
-    def output_words(self, force: float, known: bool) -> str:
-        """A force at the wall [N] in the unit of its axis; in its own where it is too small for that.
+    def output_words(self, force: float, error: float | None) -> str:
+        """A force at the wall [N] in the unit of its axis, or in its own; its relative error says how many figures."""
+        factor, unit = self._readable(force, self._factors[1], self._units[2])
+        return f"{'about ' if error is None else ''}{with_figures(force / factor, figures_of(error))} {unit}"
 
-        Two figures where its error is not `known`.
-        """
-        factor, unit = self._factors[1], self._units[2]
-        figures, about = (4, "") if known else (2, "about ")
-        if force < _SMALLEST_READABLE * factor:
-            return about + in_words(force, "N", figures)
-        return f"{about}{force / factor:.{figures}g} {unit}"
+    @staticmethod
+    def _readable(force: float, factor: float, unit: str) -> tuple[float, str]:
+        """The unit of an axis, or the one of `force` itself where it is too small for that of the axis."""
+        if force >= _SMALLEST_READABLE * factor:
+            return factor, unit
+        factor, letter = prefixed(force)
+        return factor, f"{letter}N"
 
     def pin(self, runs: Sequence[Run | None]) -> None:
         """Let these motions stay, as dashed grey lines over the same time; None leaves a place free."""

@@ -1,4 +1,4 @@
-"""Error against computing time for every method, both logarithmic, with what is asked and what is cheapest."""
+"""Error against processor time for every method, both logarithmic, with what is asked and what is cheapest."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def marks(asked: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
 
 
 def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: bool = False) -> figure:
-    """Largest error over largest displacement against the computing time of ten drive periods in ms.
+    """Largest error over largest displacement against the processor time of ten drive periods in ms.
 
     The sources have the names of the methods; `points` and `marks` give what changes while a measurement goes on.
     """
@@ -104,7 +104,7 @@ def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: boo
     for data_range in (plot.x_range, plot.y_range):
         data_range.update(renderers=shown, range_padding=0.06)
     if not compact:
-        plot.xaxis.axis_label = "computing time of ten drive periods (ms)"
+        plot.xaxis.axis_label = "processor time of ten drive periods (ms)"
         plot.yaxis.axis_label = "largest error / largest displacement"
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker.desired_num_ticks = 4 if compact else 6
@@ -150,6 +150,8 @@ def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> 
         ("now", {"value": "this page now"}, "ink", {"x_offset": 13, "y_offset": -8}),
     ]
     texts = [themed(plot.text("ms", "error", text=text, source=made[name], text_font_style="bold",
-                              text_alpha=0.0 if compact else 1.0, text_font_size="14px", **place), text_color=role)
+                              text_alpha=0.0 if compact else 1.0, text_font_size="14px",
+                              background_fill_alpha=0.0 if compact else 0.8, padding=1, **place),
+                    text_color=role, background_fill_color="card")
              for name, text, role, place in words]
     return [ring, now, *texts[:2]]

@@ -13,9 +13,9 @@ from bokeh.plotting import figure
 from granchain_core import Curve, CurvePoint
 from granchain_core.regime import Regime
 
-from ..format import in_words, short_error
+from ..format import figures_of, in_words, short_error
 from .axes import force_scale, knob_scale
-from .regimes import REGIME_MARKS, regime_key
+from .regimes import REGIME_MARKS, batch_sentence, regime_key
 from .theme import Theme, apply_theme, frame, themed
 
 #: Dashes of the line by the start of a sweep.
@@ -89,9 +89,9 @@ def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:
 def _force(newtons: float, relative: float | None) -> str:
     """Remembered: a growing curve is drawn again and again, for every visitor of a class."""
     error = ", no error stated" if relative is None else f", relative error {short_error(relative)}"
-    return in_words(newtons, "N", 5) + error
+    return in_words(newtons, "N", figures_of(relative, 5)) + error
 
 
 @functools.lru_cache(maxsize=1024)
 def _sentence(regime: Regime) -> str:
-    return regime.sentence
+    return batch_sentence(regime)

@@ -28,7 +28,7 @@ from granchain_core.diagram import Axis, Diagram, Grid
 from granchain_core.diagram.cells import CELL_REGIMES, empty_cells
 from granchain_core.regime import exponent_words
 
-from ..format import in_words, short_error
+from ..format import figures_of, in_words, short_error
 from .axes import Scale, knob_scale
 from .regimes import REGIME_MARKS, regime_key
 from .theme import BROWN, Theme, apply_theme, frame, themed
@@ -198,7 +198,8 @@ def cell_words(grid: Grid, cell: np.ndarray) -> str:
     sure = f", relative error {short_error(error)}" if np.isfinite(error) else ", largest observed, no error stated"
     exponent = (f"; Lyapunov exponent {exponent_words(float(cell['lyapunov']), float(cell['lyapunov_error']))}"
                 if np.isfinite(cell["lyapunov"]) else "")
-    return f"{place}: {regime}, largest output force {in_words(float(cell['max_output_force']), 'N')}{sure}{exponent}"
+    force = in_words(float(cell["max_output_force"]), "N", figures_of(error))
+    return f"{place}: {regime}, largest output force {force}{sure}{exponent}"
 
 
 def _scales(grid: Grid) -> tuple[Scale, Scale]:

@@ -10,7 +10,7 @@ from bokeh.plotting import figure
 
 from granchain_core.experiment import Measured
 
-from ..format import in_words, signed_in_words
+from ..format import given_in_words, signed_in_words
 from .theme import frame, themed
 
 COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual", "word")
@@ -32,7 +32,7 @@ def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | 
     return {"frequency": measured.frequency.tolist(), "force": (measured.force / factor).tolist(),
             "low": (low / factor).tolist(), "high": (high / factor).tolist(),
             "word": [measured.word] * len(low),
-            "value": [in_words(float(force), "N", 5) for force in measured.force], "repeats": count.tolist(),
+            "value": [given_in_words(float(force), "N", 5) for force in measured.force], "repeats": count.tolist(),
             "residual": ["no model here" if not np.isfinite(one) else
                          signed_in_words(float(one), "N") for one in gap]}
 

@@ -146,7 +146,8 @@ def multiplier_words(mu: complex, orbit: Orbit) -> tuple[str, str, str, str]:
         periods = n / abs(math.log(size))
         decay = (f"{'decays' if size < 1.0 else 'grows'} by a factor e in {periods:.3g} drive periods "
                  f"({duration(periods * orbit.scene.period)})")
-    return (f"{mu.real:+.4f}" + (f" {'+' if mu.imag > 0 else '−'} {abs(mu.imag):.4f} i" if mu.imag else ""),
+    real = f"{mu.real:+.4f}".replace("-", "\N{MINUS SIGN}")
+    return (real + (f" {'+' if mu.imag > 0 else '−'} {abs(mu.imag):.4f} i" if mu.imag else ""),
             modulus_words(size),
             f"{turn:.3f}: {turn / n:.3g} of the drive frequency, {turn * orbit.scene.f / n:.3g} Hz", decay)
 

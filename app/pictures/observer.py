@@ -22,7 +22,7 @@ _LONGEST_PREDICTION = 10_000.0
 
 def observer(period: Sequence[float], distance: Sequence[float], prediction: Sequence[tuple[float, float]],
              theme: Theme, compact: bool = False) -> figure:
-    """Scaled distance |y − x| at `period`, and a straight line through the points of `prediction`.
+    """Distance |y − x| at `period`, and a straight line through the points of `prediction`.
 
     The sources are named "distance" and "prediction": a page adds to them while the chains move.
     """
@@ -43,7 +43,7 @@ def observer(period: Sequence[float], distance: Sequence[float], prediction: Seq
         ("drive period", "@period{0.00}"), ("distance |y − x|", "@distance{0.00e}")]))
     plot.legend.update(location="bottom_left", orientation="horizontal", padding=2, visible=not compact)
     if not compact:
-        plot.xaxis.axis_label, plot.yaxis.axis_label = "drive periods", "distance |y − x|, scaled"
+        plot.xaxis.axis_label, plot.yaxis.axis_label = "drive periods", "distance |y − x| over A₀"
     plot.yaxis.ticker.desired_num_ticks = 5
     plot.yaxis.ticker.num_minor_ticks = 0
     return apply_theme(plot, theme)

@@ -5,12 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from granchain_core import BadInput, Run, Scene, State
 from granchain_core.quantities import QUANTITIES
 
-from ..format import in_words, signed_in_words
+from ..format import figures_of, in_words, signed_in_words
 from .share import PINS, START, decode, encode
 from .starts import read_start, start_text
 
@@ -82,11 +80,10 @@ def compared_rows(now: Run, pinned: Sequence[Run | None]) -> list[dict[str, obje
 
 
 def _stated(run: Run, attribute: str, error: str) -> str:
-    """A force with the digits that its error leaves, at most six."""
+    """A force with the figures that its error leaves, at most six."""
     value = float(getattr(run, attribute))
     relative = getattr(run.force_errors, error)
-    digits = 3 if relative is None else int(np.clip(np.floor(-np.log10(max(relative, 1e-12))), 1, 6))
-    return in_words(value, "N", digits)
+    return in_words(value, "N", figures_of(relative, 6))
 
 
 def _beside(now: Run, run: Run | None, attribute: str, error: str) -> list[str]:

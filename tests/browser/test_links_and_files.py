@@ -19,6 +19,13 @@ def test_a_shared_link_brings_the_picture_back(visit: Visit) -> None:
     assert (knob(other, "f"), knob(other, "D")) == ("615.3", "80")
 
 
+def test_what_a_link_names_and_is_not_there_leaves_the_address(visit: Visit) -> None:
+    """A reload would complain again, and the theme would stay what it happened to be."""
+    page = visit("?v=1&scene=sec2&tab=foo&page=bar&look=pink")
+    expect(page.locator("#foot .sentence")).to_contain_text("bar")
+    page.wait_for_function("!/foo|bar|look/.test(location.search)")
+
+
 def test_the_address_follows_the_page_and_a_reload_keeps_everything(visit: Visit) -> None:
     page = visit()
     page.locator("select.scene").select_option("fig3b")

@@ -48,6 +48,8 @@ def test_it_breaks_without_foundation_synchronises_with_it_and_rests_unseen(visi
     expect(sheet).to_contain_text("it moves away: an offset of its beads grows, because nothing pulls them back", timeout=COMPILED)
     expect(sheet).to_contain_text("predicted × 4.418")  # docs/observers.md: one multiplier outside
     page.wait_for_function(f"{LAST}?.[1] > 0.5")
+    # as the main picture, which is the same chain
+    expect(sheet.locator(".chains")).to_contain_text("as in the main picture; displacements drawn × 10\u202f000")
     chains = sheet.locator(".chains canvas")
     assert chains.count() == 3
     # the force pushes the observer: an arrow in its colour, which is there in most of a drive period

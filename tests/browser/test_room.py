@@ -99,6 +99,19 @@ def test_no_control_and_no_word_is_cut_hidden_or_covered(at: Visit, scene: str) 
         page.get_by_role("button", name="Theme: light, dark, projector").click()
 
 
+def test_a_low_window_keeps_the_height_of_its_pictures(at: Visit) -> None:
+    """A phone held sideways, and a page enlarged to twice and 1.5 times its size."""
+    page = at("?v=1&scene=sec2&k=1234567&look=light")  # with as many digits as a knob ever has
+    side = page.locator("#side").evaluate("(one) => one.getBoundingClientRect().right")
+    knobs = page.locator("#knobs .knob *")
+    assert knobs.evaluate_all("(all) => Math.max(...all.map((one) => one.getBoundingClientRect().right))") <= side - 9
+    for width, height in ((844, 390), (640, 400), (853, 533)):
+        page.set_viewport_size({"width": width, "height": height})
+        fits(page)
+        heights = {name: page.locator(f"#{name}").evaluate("(one) => one.offsetHeight") for name in ("map", "curve")}
+        assert heights["map"] > 300 and heights["curve"] > 250, (width, heights)
+
+
 def test_the_projector_has_whole_titles_and_on_a_phone_a_menu(visit: Visit) -> None:
     """The menu has what the bar has no room for."""
     page = visit("?look=projector", viewport={"width": 390, "height": 844})

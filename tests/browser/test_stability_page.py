@@ -92,14 +92,14 @@ def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Vis
         page.mouse.move(0, 0)
         page.mouse.move(*place(page, "multipliers", within["x"][0], within["y"][0]), steps=3)
         page.wait_for_timeout(100)
-        return "-0.2882" in tooltips(page)
+        return "−0.2882" in tooltips(page)
 
     until(page, told)
     for words in ("0.36", "of the drive frequency", "decays by a factor e in 0.981 drive periods (2.89 ms)"):
         assert words in tooltips(page)
-    expect(sheet.locator(".readout")).to_contain_text("μ = -0.2882")
+    expect(sheet.locator(".readout")).to_contain_text("μ = −0.2882")
     expect(sheet.locator("path.swing")).to_have_count(11)
-    expect(sheet).to_contain_text("the slowest to die out")
+    expect(sheet).to_contain_text("the slowest-decaying disturbance")
     before = sheet.locator("path.swing").first.get_attribute("d")
     page.mouse.click(*place(page, "multipliers", within["x"][3], within["y"][3]))
     expect(sheet).to_contain_text("the chosen disturbance")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import json
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -115,3 +117,13 @@ def test_errors_have_one_figure(value: float, words: str) -> None:
 @pytest.mark.parametrize(("value", "words"), [(0.0021, "2.1 ms"), (1.234, "1.23 s"), (4.2e-4, "420 µs"), (0.5, "500 ms")])
 def test_durations_have_three_figures(value: float, words: str) -> None:
     assert duration(value) == words
+
+
+def test_what_a_method_costs_is_the_time_of_its_own_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A neighbour who computes meanwhile makes no method dearer."""
+    module = importlib.import_module("granchain_core.accuracy.work_precision")
+    times = iter((1.0, 1.25))
+    monkeypatch.setattr(module.time, "thread_time", lambda: next(times))
+    monkeypatch.setattr(module, "Engine", lambda *_, **__: SimpleNamespace(
+        record=lambda rows: SimpleNamespace(displacement=np.zeros((rows, 1))), counts=SimpleNamespace(rhs=5)))
+    assert module._ours(scene("sec2"), Setting("rk4"), Stop()).seconds == 0.25

@@ -26,9 +26,9 @@ NAMED = {
         f"N with {AT_60} µm, **6.55** N with {AT_90} µm, **15.18** N with {AT_50} µm",
         f"100 Hz: with {RIG} and with 10 µm", f"with {AT_50} µm the motion is **chaotic**. 50 Hz with {AT_50} µm:",
         f"{AT_50} µm at 50 Hz and **6.5** µm at 100 Hz"),
-    "assets/scenes/fig12-60.toml": (f"A peak at {AT_60} µm:", f"At {RIG} µm the same chain"),
+    "assets/scenes/fig12-60.toml": (f"first peak, at {AT_60} µm:", f"At {RIG} µm the same chain"),
     "assets/scenes/fig12-90.toml": (f"The valley, at {AT_90} µm:", f"move A0 alone to {RIG} µm"),
-    "assets/scenes/fig12-100.toml": (f"A peak at {AT_50} µm:", f"is chaotic with {AT_50} µm, and period 1 with {RIG} and"),
+    "assets/scenes/fig12-100.toml": (f"second peak, at {AT_50} µm:", f"is chaotic with {AT_50} µm, and period 1 with {RIG} and"),
 }
 
 

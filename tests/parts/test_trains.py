@@ -4,6 +4,8 @@ on.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from bokeh.models import Range1d
@@ -47,15 +49,32 @@ def test_a_pull_and_a_lasting_pressure_are_told_beside_the_largest_force() -> No
         run = settled(scene("sec2").evolve(f=f)).run
         frames, trains = settled_frames(run), ForceTrains(Range1d())
         trains.update(frames, frames.time, frames.extremes, True)
-        words = trains.peak_words(frames, (run.max_input_force, run.max_output_force), True)
+        words = trains.peak_words(frames, (run.max_input_force, run.max_output_force), (run.force_errors.input, run.force_errors.output))
         assert tuple(bool(least) for _, least in words) == told
         for (most, least), series in zip(words, (frames.input_force, frames.output_force), strict=True):
             number, unit = most.removeprefix("max ").split("\N{NO-BREAK SPACE}")
             assert float(number) * {"N": 1.0, "mN": 1e-3}[unit] == pytest.approx(series.max(), rel=1e-2)
             if least:
+                assert float(least.removeprefix("min ≈ ").split("\N{NO-BREAK SPACE}")[0].replace("\N{MINUS SIGN}", "-")) <= float(number)
                 number = least.removeprefix("min ≈ ").split("\N{NO-BREAK SPACE}")[0].replace("\N{MINUS SIGN}", "-")
                 low = float(number) * {"N": 1.0, "mN": 1e-3}[unit]
                 assert low == pytest.approx(series.min(), rel=0.5 if low < 0.0 else 0.05)  # one figure and two
+
+
+@pytest.mark.parametrize(("least", "most", "axis", "error", "words"), [
+    (-0.3271, 0.8014, "mN", None, ["max 800 mN", "min ≈ −300 mN"]),
+    (8.1627, 8.1634, "N", 1e-5, ["max 8.16 N", "min ≈ 8.16 N"]),
+    (-1.2e-6, 1.449e-6, "N", 1e-5, ["max 1.45 µN", "min ≈ −1 µN"]),
+    (0.0, 8.0, "N", None, ["max 8.0 N", ""])])
+def test_forces_under_the_axes_have_no_power_of_ten(least: float, most: float, axis: str, error: float | None,
+                                                    words: list[str]) -> None:
+    series, trains = np.array([least, most]), ForceTrains(Range1d())
+    frames = replace(settled_frames(settled(CHAIN).run), input_force=series, output_force=series)
+    trains._factors, trains._units = ({"N": 1.0, "mN": 1e-3}[axis],) * 2, ("m", axis, axis)
+    for found in trains.peak_words(frames, (most, most), (error, error)):
+        assert [one.replace("\N{NO-BREAK SPACE}", " ") for one in found] == words
+    assert trains.output_words(8.0, None) == {"N": "about 8.0 N", "mN": "about 8000 mN"}[axis]
+    assert trains.output_words(1.449e-6, 1e-5) == "1.449 µN"
 
 
 def test_live_jumps_move_with_the_picture() -> None:

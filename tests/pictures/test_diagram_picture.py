@@ -66,7 +66,7 @@ def test_a_cell_is_told_with_its_error_or_without_a_claim() -> None:
     cell = filled(4).cells[4]
     assert cell_words(GRID, cell) == "2000 Hz, 1 µm: period 2, largest output force 2.5 N, largest observed, no error stated"
     cell["error_estimate"] = 3e-5
-    assert cell_words(GRID, cell).endswith("2.5 N, relative error 3e-5")
+    assert cell_words(GRID, cell).endswith("2.500 N, relative error 3e-5")
     cell["regime"], cell["period"], cell["lyapunov"], cell["lyapunov_error"] = CELL_REGIMES.index("chaotic"), 0, 0.21, 0.02
     assert cell_words(GRID, cell).endswith("Lyapunov exponent +0.210 ± 0.020") and ": chaotic," in cell_words(GRID, cell)
 

@@ -1,6 +1,6 @@
 // The Accuracy page, over the pictures: what accuracy costs for this scene, and the force that naive steps would draw.
 
-import { button, element, meter, pageHead, paragraph, table } from "../../parts/dom.js";
+import { button, element, meter, pageHead, paragraph, table, unbroken } from "../../parts/dom.js";
 import { BokehFigure } from "../../parts/bokeh_figure.js";
 import { fillAccuracy, showAccuracy } from "./accuracy_tab.js";
 import { NaiveForces } from "./naive_forces.js";
@@ -79,7 +79,7 @@ class AccuracyPage {
     this.meter.hidden = this.stop.hidden = !running;
     this.again.hidden = running || !state.status || state.status === "none";
     this.meter.value = state.done ?? 0;
-    this.agreement.textContent = state.agreement_words ?? "";
+    this.agreement.replaceChildren(...unbroken(state.agreement_words ?? ""));
     this.agreement.title = state.reference ? `Reference: ${state.reference}. Second: ${state.second}.` : "";
     this.machine.textContent = state.machine ? `on this machine: ${state.machine}` : "";
     this.methods.replaceChildren(paragraph(SYMBOLS, "symbols"), methodTable(state.ways ?? [], state.rows ?? []));
@@ -91,8 +91,8 @@ class AccuracyPage {
     const { drawn = {}, running, progress, done } = model.state;
     this.known = { drawn, running, progress, done, small: model.figures.small, asked };
     this.root.classList.toggle("stale", Boolean(asked?.stale));
-    this.line.textContent = asked?.sentence ?? "";
-    this.used.textContent = asked?.used ?? "";
+    this.line.replaceChildren(...unbroken(asked?.sentence ?? ""));
+    this.used.replaceChildren(...unbroken(asked?.used ?? ""));
     this.warning.textContent = model.state.failure || (asked?.stale ? STALE : "");
     this.warning.hidden = !this.warning.textContent;
     if (window.granchain.overlay === "accuracy") showAccuracy(this.figure, model.figures.page, this.known);

@@ -3,11 +3,12 @@
 import { button, element, meter, pageHead, table } from "../../parts/dom.js";
 import { ResultFigure } from "../../parts/result_figure.js";
 
-// Text in which powers such as "10^5" and "F^{1/6}" are raised.
+// Text in which powers such as "10^5" and "F^{1/6}" are raised, and what is between backticks is code.
 const raised = (text) =>
-  text
-    .split(/(\^\{[^}]+\}|\^-?\d+)/)
-    .map((piece) => (piece.startsWith("^") ? element("sup", { textContent: piece.replace(/[\^{}]/g, "") }) : piece));
+  text.split(/(\^\{[^}]+\}|\^-?\d+|`[^`]+`)/).map((piece) => {
+    if (piece.startsWith("^")) return element("sup", { textContent: piece.replace(/[\^{}]/g, "") });
+    return piece.startsWith("`") ? element("code", { textContent: piece.slice(1, -1) }) : piece;
+  });
 const EXPLAINED_AFTER = 20; // s; after that the card says why the first run on a computer takes long
 
 function rowTable(rows) {

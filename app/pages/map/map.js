@@ -28,9 +28,13 @@ class MapTab {
     this.host.addEventListener("keydown", (event) => this.key(event));
     this.host.addEventListener("blur", () => this.moveCursor(null));
     this.found = element("div");
+    this.following = false; // from the click until what was found is on the screen
     this.figure = new BokehFigure(this.host, (one) => this.fill(one));
     const segments = element("span", { className: "segments" }, ...this.choices);
-    const find = button("all attractors at this setting", () => this.send("map-attractors"));
+    const find = button("all attractors at this setting", () => {
+      this.following = true;
+      this.send("map-attractors");
+    });
     this.content = [
       element("div", { className: "row top" }, segments, this.meter, this.stop, this.again, this.status),
       element("div", { className: "mapbox" }, this.host),
@@ -92,6 +96,10 @@ class MapTab {
     this.showProgress();
     if (what === undefined || what === "map-attractors")
       this.found.replaceChildren(...attractorList((number) => this.send("map-load", { number })));
+    if (what === "map-attractors" && this.following) {
+      this.following = MAP.search !== "done";
+      this.found.scrollIntoView({ block: "nearest" }); // it is below the map, and often below the window
+    }
     if (what !== "map-cells") this.dress();
     if (MAP.head && this.host.isConnected) this.figure.load(MAP.head.figure, WORDS);
   }

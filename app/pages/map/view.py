@@ -10,7 +10,7 @@ from granchain_core.diagram import Attractor, Grid
 from granchain_core.orbits import response
 from granchain_core.regime import exponent_words, modulus_words
 
-from ...format import short_error
+from ...format import figures_of, in_words, short_error
 from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models
 from ...pictures.item import figure_item
 from ...pictures.regimes import REGIME_MARKS, regime_key
@@ -46,7 +46,8 @@ def described_attractor(attractor: Attractor) -> dict[str, Any]:
         words.append(f"Lyapunov exponent {exponent_words(*regime.lyapunov)} per period")
     return {
         "colour": REGIME_MARKS[regime_key(regime.name, period)][1], "words": ", ".join(words),
-        "force": f"{attractor.max_output_force:.4g} N" + (f", error {short_error(error)}" if error else ""),
+        "force": in_words(attractor.max_output_force, "N", figures_of(error))
+        + (f", error {short_error(error)}" if error else ""),
         "share": attractor.share, "share_words": f"{100 * attractor.share:.0f} ± {100 * attractor.share_error:.0f} %",
         "from": [origin.name for origin in attractor.origins if not origin.name.startswith("random")],
         "starts": len(attractor.origins),

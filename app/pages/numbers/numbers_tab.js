@@ -2,7 +2,7 @@
 // pictures to a screen reader.
 
 import { modelsNamed } from "../../parts/bokeh.js";
-import { element, paragraph, table } from "../../parts/dom.js";
+import { element, paragraph, table, unbroken } from "../../parts/dom.js";
 import { compared } from "./compared.js";
 
 const TABLES = {
@@ -49,7 +49,7 @@ export function numbersTab(model) {
   const place = element("div", { className: "numbers" });
   const show = () => {
     pins.show();
-    words.textContent = numbers.summary || "The first picture is being computed.";
+    words.replaceChildren(...unbroken(numbers.summary || "The first picture is being computed."));
     const [title, titles] = TABLES[chosen];
     place.replaceChildren(table(titles, rowsOf(chosen), { ariaLabel: title }));
   };

@@ -91,7 +91,7 @@ function drawForce(canvas, { message, chain }, row) {
 }
 
 const label = (text, detail) =>
-  element("div", { className: "label" }, element("b", { textContent: text }), element("span", { textContent: detail }));
+  element("div", { className: "label" }, element("b", { textContent: text }), element("span", {}, detail));
 
 // The three drawings, one above the other.
 export class Chains {
@@ -102,14 +102,16 @@ export class Chains {
     this.force = between;
     this.chain = new WholeChain(above, palette);
     this.observer = new PushedChain(below, palette);
+    this.magnified = element("span");
     this.push = element("span");
-    const forceLabel = element("div", { className: "label force" }, element("b", { textContent: "F_in" }), this.push);
+    const name = element("b", {}, "F", element("sub", { textContent: "in" }));
+    const forceLabel = element("div", { className: "label force" }, name, this.push);
     this.root = element(
       "div",
       { className: "chains" },
-      element("div", {}, label("chain x", "driven, as in the main picture"), above),
+      element("div", {}, label("chain x", this.magnified), above),
       element("div", { className: "between" }, forceLabel, between),
-      element("div", {}, label("observer y", "feels F_in and nothing else of x"), below),
+      element("div", {}, label("observer y", "feels this force and nothing else of x"), below),
     );
   }
 
@@ -118,12 +120,16 @@ export class Chains {
     this.observer.measure();
   }
 
-  // Both chains are drawn on the scale of the first.
-  load({ chain, message }) {
+  // Colours and displacements of both chains are on the scales of the main picture, once there is one.
+  load({ chain, observer, message }) {
+    const { scales } = window.granchain.shown ?? {};
+    Object.assign(chain, scales);
+    Object.assign(observer, scales);
     this.chain.load({ ...chain, live: true });
     this.observer.factor = this.chain.factor;
     this.observer.load({ ...chain, live: true });
     this.observer.exaggeration = this.chain.exaggeration;
+    this.magnified.textContent = `driven, as in the main picture; displacements drawn ${this.chain.magnification}`;
     this.push.textContent = `at most ${message.push}`;
   }
 

@@ -43,7 +43,7 @@ function thinned({ distance, message: { rows, number } }) {
 function rateWords({ predicted, measured }) {
   if (!predicted) return "";
   const seen = measured ? `, measured × ${measured.toPrecision(4)}` : "";
-  return `per drive period: predicted × ${predicted.toPrecision(4)}${seen}`;
+  return `distance per drive period: predicted × ${predicted.toPrecision(4)}${seen}`;
 }
 
 class ObserverPage {

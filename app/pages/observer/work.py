@@ -174,12 +174,15 @@ class ObserverRun:
         if mu is None or factor is None:
             return self.failure or ("The multiplier's prediction appears once the picture has settled to a periodic "
                                     "motion.")
-        beginning = f"Observer |μ| = {abs(mu):.4g}:"
+        periods = self._every
+        per = "" if periods == 1 else f" per {periods} drive periods (× {factor:.4g} in each)"
+        beginning = f"Observer |μ| = {abs(mu):.4g}{per}:"
         if factor < 1.0:
             tenfold = np.log(0.1) / np.log(factor)
             return (f"{beginning} it synchronises with its chain: the distance falls tenfold every {tenfold:.3g} drive "
                     "periods.")
-        side = ", to the other side each time" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
+        every = "drive period" if periods == 1 else f"{periods} drive periods"
+        turns = f", alternating in sign every {every}" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
         if self.drifts:
-            return f"{beginning} it moves away: an offset of its beads grows, because nothing pulls them back{side}."
-        return f"{beginning} it leaves its chain{side}."
+            return f"{beginning} it moves away{turns}: an offset of its beads grows, because nothing pulls them back."
+        return f"{beginning} it diverges from its chain{turns}."

@@ -76,7 +76,7 @@ export class ModeView {
 
   // Says which disturbance it is. `rank` is that of the chosen multiplier; 0 is the largest.
   showTitle(rank) {
-    const leading = this.mode?.size < 1 ? "the slowest to die out" : "the fastest to grow";
+    const leading = this.mode?.size < 1 ? "the slowest-decaying disturbance" : "the fastest-growing disturbance";
     this.title.textContent = this.mode ? (rank ? "the chosen disturbance" : leading) : "mode";
     this.note.textContent = this.mode ? "exaggerated; starts again with every period of the orbit" : "";
   }

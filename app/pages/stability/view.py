@@ -17,7 +17,7 @@ from granchain_core.regime import exponent_words, modulus_words
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
-from ...format import duration, prefixed, short_error
+from ...format import UNSURE_FIGURES, duration, figures_of, prefixed, short_error, with_figures
 from ...parts.chain import drawn_chain
 from ...parts.component import text
 from ...parts.figure_part import FigurePart
@@ -27,6 +27,9 @@ from ...pictures.section import SectionPoints, close_up, section, section_state
 from ...pictures.theme import Theme
 from ...scripts import module
 from .work import PHASES, OrbitAnalysis
+
+#: Most figures of a |μ| with its error.
+_FIGURES_OF_A_MULTIPLIER = 6
 
 
 @cache
@@ -158,9 +161,8 @@ def _orbit_rows(row: Any, picture: Settled, analysis: OrbitAnalysis) -> None:
     orbit = analysis.orbit
     size = abs(orbit.multipliers[0])
     seen = picture.regime.decay
-    decay = f"; decay {modulus_words(seen)} per orbit" if analysis.target.followed and seen else ""
-    error = "" if orbit.multiplier_errors is None else f" ± {short_error(orbit.multiplier_errors[0])}"
-    row("|μ| largest", modulus_words(size) + error + decay,
+    decay = f"; {modulus_words(seen)} per orbit seen while it settled" if analysis.target.followed and seen else ""
+    row("|μ| largest", _size_words(float(size), orbit) + decay,
         "The largest multiplier with its error (the change to a map of ten times the tolerance, by the multiplier's "
         "condition), and how fast the changes from period to period died out while settling.")
     residuals = analysis.target.residuals or orbit.newton_residuals
@@ -181,6 +183,15 @@ def _orbit_rows(row: Any, picture: Settled, analysis: OrbitAnalysis) -> None:
     row("multipliers by", f"linearised equations, {duration(analysis.wall_s)}",
         "The equations linearised along the orbit are integrated with it (the tangent flow, by dop853); computing time "
         "of orbit, multipliers and mode.")
+
+
+def _size_words(size: float, orbit: Orbit) -> str:
+    """The largest |μ| with the figures that its error leaves, and the error."""
+    if orbit.multiplier_errors is None:
+        return modulus_words(size)
+    error = float(orbit.multiplier_errors[0])
+    figures = figures_of(error / size, _FIGURES_OF_A_MULTIPLIER) if size > 0.0 else UNSURE_FIGURES
+    return f"{with_figures(size, figures)} ± {short_error(error)}"
 
 
 def mode_message(mode: Mode, orbit: Orbit) -> dict[str, Any]:

@@ -1,0 +1,42 @@
+"""A chain whose curve would take too long has none: that of the chain before goes, and the bar says why."""
+
+from __future__ import annotations
+
+from app.curve.bar import CurveBar
+from app.curve.controller import CurveController
+from app.curve.view import CurveFigure
+from app.session.budget import curve_affordable
+from app.session.session import Session
+from granchain_core import CurvePoint, Scene, scene
+from granchain_core.regime import Regime
+from granchain_core.result import ForceErrors
+from granchain_core.state import rest
+from tests.host import FakeHost
+
+
+class Host(FakeHost):
+    """With a visitor."""
+
+    session = Session()
+
+
+def complete(figure: CurveFigure, chain: Scene) -> None:
+    """Draw a whole curve of a chain, of three points."""
+    regime = Regime("periodic", 1, None, None, 9)
+    figure.add("rest", [CurvePoint(f, 1.0, 1.0, 1.0, regime, ForceErrors(), rest(chain)) for f in (40.0, 60.0, 80.0)], True)
+    figure.finished("rest")
+
+
+def test_a_curve_does_not_stay_beside_the_picture_of_a_chain_that_has_none() -> None:
+    before, after = scene("fig12-60"), scene("fig12-60").evolve(kappa=50.0)
+    assert curve_affordable(before) and not curve_affordable(after)
+    host, figure, bar, placed = Host(), CurveFigure(lambda _: None), CurveBar(lambda _: None), []
+    curves = CurveController(host, figure, bar, lambda: placed.append(figure.whole))  # type: ignore[arg-type]
+    curves.open(before, "auto")
+    complete(figure, before)
+    assert not bar.state["too_long"]
+    curves.moved(after)
+    host.callbacks.pop()()  # the knobs rest
+    assert figure.points("rest") == []
+    assert placed == [False]  # the status line no longer names a place on it
+    assert bar.state["too_long"] and bar.state["driven"]
