@@ -23,6 +23,7 @@ from ..laws import LAWS
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..state import State, rest
 from ..stop import Stop
 from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
@@ -142,7 +143,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     Raises
     ------
     BadInput
-        The signal has too many knots for the chain, or needs too many steps.
+        It is no signal, or has too many knots for the chain, or needs too many steps.
     NumbersFailed
         The motion is no longer finite.
     Cancelled
@@ -156,6 +157,9 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     >>> found.displacement.shape[1], found.displacement_error <= chain.accuracy
     (3, True)
     """
+    require_scene(scene)
+    if not isinstance(signal, Signal):
+        raise BadInput(f"A drive is a Signal, such as Signal.chirp(…), not a value of type {type(signal).__name__}.")
     if len(signal.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_RECORDED:.0e} values; give a "
                        "shorter signal or fewer beads.")
