@@ -9,6 +9,8 @@ import difflib
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from .errors import BadInput
 from .laws import LAWS
 from .text import number_in
@@ -68,19 +70,26 @@ class Quantity:
         if not self.low <= number <= self.high:
             nearest = min(max(number, self.low), self.high)
             raise BadInput(
-                f"{self.label} {self.name} = {number:g}{self._unit()} is outside "
+                f"{self._called} = {number:g}{self._unit()} is outside "
                 f"{self.low:g} to {self.high:g}{self._unit()}; the nearest valid value is {nearest:g}."
             )
         if self.whole:
             if number != int(number):
                 raise BadInput(
-                    f"{self.label} {self.name} must be a whole number, not {number:g}; "
+                    f"{self._called} must be a whole number, not {number:g}; "
                     f"the nearest is {round(number)}."
                 )
             return int(number)
         return number
 
+    @property
+    def _called(self) -> str:
+        """Its label and its name, once where they are the same word."""
+        return self.name if self.label == self.name else f"{self.label} {self.name}"
+
     def _number(self, value: object) -> float:
+        if isinstance(value, (bool, np.bool_)):
+            raise self._not_a_number(value)
         try:
             number = number_in(value) if isinstance(value, str) else float(value)  # type: ignore[arg-type]
         except (TypeError, ValueError, OverflowError):
@@ -93,7 +102,7 @@ class Quantity:
         if self.choices and isinstance(value, str):
             return self._unknown_choice(value)
         return BadInput(
-            f"{self.label} {self.name} must be a number from {self.low:g} to {self.high:g}{self._unit()}, "
+            f"{self._called} must be a number from {self.low:g} to {self.high:g}{self._unit()}, "
             f"not {str(value)[:40]!r}."
         )
 
@@ -101,7 +110,7 @@ class Quantity:
         near = difflib.get_close_matches(str(value), self.choices, n=1, cutoff=0.0)[0]
         number = f", or a number from {self.low:g} to {self.high:g}" if self.numeric else ""
         return BadInput(
-            f"{self.label} {self.name} = {str(value)[:40]!r} is not one of {', '.join(self.choices)}{number}; "
+            f"{self._called} = {str(value)[:40]!r} is not one of {', '.join(self.choices)}{number}; "
             f"the nearest is {near!r}."
         )
 

@@ -11,6 +11,8 @@ from .tables import Column, Labelled, axis
 
 #: Most recorded values of one motion: samples times beads.
 MOST_RECORDED = 50_000_000
+#: Most samples a drive period.
+MOST_SAMPLES = 1_000_000
 
 _TIME_UNIT = "s"
 _COLUMNS = {  # by name: (axes, unit, meaning)

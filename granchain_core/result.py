@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
+from .errors import BadInput
 from .integrate import Counts
 from .integrate.engine import Engine
 from .kernels.samples import Samples
@@ -271,6 +272,15 @@ def said_forces(found: HasForces) -> list[str]:
     forces = (found.max_output_force, found.max_output_force_elastic, found.max_input_force)
     return [f"largest {name} force {force:.6g} N" + (", no error stated" if e is None else f", relative error {e:.1e}")
             for name, force, e in zip(("output", "elastic output", "input"), forces, errors, strict=True)]
+
+
+def require_run(value: object) -> None:
+    """`BadInput` for anything but a recorded motion; its sentence says how to get one."""
+    if isinstance(value, Run):
+        return
+    near = "its attribute `run` is one" if isinstance(getattr(value, "run", None), Run) else \
+        "run(scene) and settle(scene).run are two"
+    raise BadInput(f"A recorded motion is given as a Run, not as a value of type {type(value).__name__}; {near}.")
 
 
 def residual(energy: np.ndarray | None) -> float | None:

@@ -14,8 +14,9 @@ import numpy as np
 
 from ..diagram.attractor import Attractor, Origin, attractor_methods, attractors_table
 from ..diagram.attractors import attractors_from
-from ..errors import BadInput
+from ..errors import BadInput, axis_in, numbers_in
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..state import State
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, provenance
@@ -116,7 +117,8 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
     >>> [(one.regime.period, len(one.origins)) for one in found.attractors]
     [(1, 2)]
     """
-    axes = [_axis(scene, *x), _axis(scene, *y)]
+    require_scene(scene)
+    axes = [_axis(scene, *axis_in("x", x)), _axis(scene, *axis_in("y", y))]
     (x_place, xs), (y_place, ys) = axes
     if x_place == y_place:
         raise BadInput(f"x and y are both {x[0]}; a plane has two different coordinates.")
@@ -140,7 +142,7 @@ def _axis(scene: Scene, name: str, values: Iterable[float]) -> tuple[tuple[int, 
     if found is None or int(found[2]) > scene.N:
         raise BadInput(f"Coordinate {name[:40]!r} does not exist; there are u1 to u{scene.N} [m] and v1 to v{scene.N} "
                        "[m/s].")
-    numbers = np.asarray(list(values), dtype=float)
+    numbers = np.asarray(numbers_in(f"The values of {name}", values))
     if not np.isfinite(numbers).all():
         raise BadInput(f"The values of {name} must be finite numbers.")
     return ("uv".index(found[1]), int(found[2]) - 1), numbers

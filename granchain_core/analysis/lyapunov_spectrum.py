@@ -17,9 +17,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import check_range
+from ..errors import check_range, whole_number
 from ..orbits.stroboscopic_map import FLOW_METHOD, StroboscopicMap
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..state import State
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
@@ -187,7 +188,8 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     >>> bool(found.exponents.sum() < 0.0)
     True
     """
-    check_range("periods =", periods, _BLOCKS, MOST_PERIODS)
+    require_scene(scene)
+    periods = whole_number("periods =", periods, _BLOCKS, MOST_PERIODS)
     check_range("N =", scene.N, 1, MOST_BEADS_WITH_MULTIPLIERS)
     stroboscopic_map = StroboscopicMap(scene, 1, stop)
     x = stroboscopic_map.inner(run_until_settled(scene, start, stop).engine.y)

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..result import Run
+from ..result import Run, require_run
 from ..scene import Scene
 from ..scene.description import hertz_stiffness
 from ..tables import Column, Labelled, Table, axis, bead_axis, provenance
@@ -140,6 +140,7 @@ def pulse(run: Run) -> Pulse:
     >>> found.contact.shape
     (29,)
     """
+    require_run(run)
     scene = run.scene
     if scene.N < 3:
         raise BadInput(f"A pulse is followed over at least three beads, and the chain has {scene.N}.")

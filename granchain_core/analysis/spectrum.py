@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, unknown_name
-from ..result import Run
+from ..result import Run, require_run
 from ..scene import Scene
 from ..tables import Column, Labelled, Table, axis
 from ..tables.provenance import Attribute
@@ -173,6 +173,7 @@ def spectrum(run: Run, force: str = "output") -> Spectrum:
     >>> bool(lines.amplitude[1] > lines.amplitude[2])
     True
     """
+    require_run(run)
     if force not in FORCES:
         raise unknown_name("force", force, FORCES)
     values, period = _record(run, np.asarray(getattr(run, FORCES[force]))[:-1])
@@ -207,6 +208,7 @@ def transfer(run: Run) -> Transfer:
     >>> through.gain.shape == through.phase.shape
     True
     """
+    require_run(run)
     if run.regime.period is None:
         raise BadInput(f"A transfer needs lines, and this motion has none: {run.regime.sentence}.")
     into, out = spectrum(run, "input"), spectrum(run, "output")

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed, check_range, unknown_name
+from ..errors import BadInput, NumbersFailed, numbers_in, unknown_name, whole_number
 from ..integrate.methods import FIXED_STEP
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..state import State
 from ..steady.batch.threads import on_all_cores
 from ..steady.curve.order import CURVE_STARTS, coarse_first
@@ -86,7 +87,7 @@ class StrobeDiagram(Labelled):
 
     def cloud(self, bead: int, velocity: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """All points of bead 1..N, (M,) each: the knob's values, and displacements [m] or velocities [m/s]."""
-        check_range("bead", bead, 1, self.scene.N)
+        bead = whole_number("bead", bead, 1, self.scene.N)
         kept = [point for point in self.points if not point.failure]
         values = np.concatenate([np.full(len(point.strobes), point.value) for point in kept] or [np.zeros(0)])
         states = np.concatenate([point.strobes[:, int(velocity), bead - 1] for point in kept] or [np.zeros(0)])
@@ -165,10 +166,12 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
         raise unknown_name("knob of a strobe diagram", knob, knobs)
     if start not in CURVE_STARTS:
         raise unknown_name("start", start, CURVE_STARTS)
-    if not 1 <= len(values) <= MOST_VALUES:
-        raise BadInput(f"A strobe diagram has 1 to {MOST_VALUES} values of its knob, not {len(values)}.")
-    check_range("keep =", keep, 1, MOST_STROBES)
-    chains = [(float(value), scene.evolve(**{knob: float(value)})) for value in sorted(values)]
+    require_scene(scene)
+    numbers = sorted(numbers_in(f"The values of {knob}", values))
+    if not 1 <= len(numbers) <= MOST_VALUES:
+        raise BadInput(f"A strobe diagram has 1 to {MOST_VALUES} values of its knob, not {len(numbers)}.")
+    keep = whole_number("keep =", keep, 1, MOST_STROBES)
+    chains = [(value, scene.evolve(**{knob: value})) for value in numbers]
     found = StrobeDiagram(scene, knob, start)
     for point in _points(chains, start, keep, stop):
         found.points.append(point)

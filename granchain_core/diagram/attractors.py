@@ -12,11 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import NumbersFailed, check_range
+from ..errors import NumbersFailed, whole_number
 from ..integrate import Engine
 from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..state import State, rest
 from ..steady.batch.job import Start
 from ..steady.exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
@@ -77,7 +78,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     Raises
     ------
     BadInput
-        `random_states` is out of range.
+        `random_states` or `seed` is no whole number or out of range.
     NumbersFailed
         No start stays finite.
 
@@ -87,7 +88,9 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     >>> [(one.regime.period, one.share) for one in attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=4)]
     [(1, 1.0)]
     """
-    check_range("random_states =", random_states, 0, MOST_STATES)
+    require_scene(scene)
+    random_states = whole_number("random_states =", random_states, 0, MOST_STATES)
+    seed = whole_number("seed =", seed, 0, 2**63 - 1)
     listed = attractors_from(scene, _origins(scene, random_states, seed, stop), stop, progress)
     random_count = sum(origin.name.startswith("random") for attractor in listed for origin in attractor.origins)
     for attractor in listed:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
+from ..errors import axis_in
 from ..scene import Amplitude, Scene
 from ..steady.batch.job import Start
 from ..steady.batch.starts import settle_starts
@@ -105,7 +106,7 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
     True
     """
     began = time.perf_counter()
-    grid = Grid(scene, Axis.of(*x), Axis.of(*y), amplitude)
+    grid = Grid(scene, Axis.of(*axis_in("x", x)), Axis.of(*axis_in("y", y)), amplitude)
     found = Diagram(grid, empty_cells(grid))
     for done, result in enumerate(iter_diagram(grid, None, stop, workers), start=1):
         found.cells[result.number] = cell_of(result)

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput, series_in, unknown_name
 from ..quantities import QUANTITIES
 from ..scaling import scale_chain
 from ..scene import Amplitude, Scene
@@ -45,7 +45,8 @@ class Axis:
         """An axis from any numbers; `BadInput` for words, repetitions, wrong order and what is out of range."""
         if knob not in KNOBS:
             raise unknown_name("knob for an axis", knob, KNOBS)
-        checked = [QUANTITIES[knob].check(value) for value in values]
+        listed = series_in(f"The values of the axis {knob}", values)
+        checked = [QUANTITIES[knob].check(value) for value in listed]
         if any(isinstance(value, str) for value in checked):
             raise BadInput(f"The axis {knob} takes numbers, not words.")
         return cls(knob, tuple(float(value) for value in checked))

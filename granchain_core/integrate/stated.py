@@ -68,8 +68,8 @@ class Computations:
     settings: list[Setting] = field(default_factory=list)
     stated: np.ndarray = field(default_factory=lambda: np.zeros(0))
     rounding: float = 0.0
+    growth: float = 0.0
     _before: np.ndarray | None = None
-    _growth: float = 0.0
 
     def begin(self, setting: Setting) -> None:
         """The first computation."""
@@ -79,7 +79,7 @@ class Computations:
         """Add a finer computation of `steps` steps: its relative differences from the last one, and least errors."""
         coarser = self.settings[-1]
         self._see_growth(coarser, float(differences[0]))
-        self.rounding = _ROUNDING_FACTOR * self._growth * np.finfo(float).eps * float(np.sqrt(steps))
+        self.rounding = _ROUNDING_FACTOR * self.growth * np.finfo(float).eps * float(np.sqrt(steps))
         seen = differences
         if self._before is not None:
             seen = np.maximum(seen, self._before / self._falls(coarser, setting))
@@ -102,7 +102,7 @@ class Computations:
     def _see_growth(self, coarser: Setting, difference: float) -> None:
         typical = typical_error(coarser)
         if typical > _LARGEST_SMOOTH_ERROR:
-            self._growth = max(self._growth, difference / typical)
+            self.growth = max(self.growth, difference / typical)
 
     def _falls(self, coarser: Setting, finer: Setting) -> float:
         """The expected ratio of the two errors: from the method's order, or with error control from the tolerances."""

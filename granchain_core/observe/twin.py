@@ -13,11 +13,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import BadInput, check_range
+from ..errors import BadInput, whole_number
 from ..integrate.methods import ADAPTIVE
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..state import State, checked_start
 from ..steady.settling.advance import run_until_settled
 from ..stop import Stop
@@ -146,7 +147,9 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     random (always the same) by that part of A0, root mean square; a `State` is where it starts, `rest(scene)` for one
     without any knowledge of the chain. Raises `BadInput`, `NumbersFailed`, `Cancelled`.
     """
-    _check(periods, samples)
+    require_scene(scene)
+    periods = whole_number("periods =", periods, 1, MOST_PERIODS)
+    samples = whole_number("samples =", samples, 1, 1000)
     began = time.perf_counter()
     settling = run_until_settled(scene, None, stop)
     orbit, start, n = None, settling.engine.state, settling.regime.period or 1
@@ -189,11 +192,6 @@ def _follow(pair: Pair, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarra
         return np.concatenate([getattr(parts[0], name), *(getattr(part, name)[1:] for part in parts[1:])])
 
     return joined("displacement"), joined("force"), np.concatenate(difference)
-
-
-def _check(periods: int, samples: int) -> None:
-    for name, value, low, high in (("periods", periods, 1, MOST_PERIODS), ("samples", samples, 1, 1000)):
-        check_range(f"{name} =", value, low, high)
 
 
 def observer_start(scene: Scene, chain: State, perturbation: float | State) -> State:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import check_range
+from ..errors import whole_number
 from ..integrate import Engine, adaptive_setting
 from ..steady.poincare import Section
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
@@ -50,7 +50,7 @@ def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = Non
 
     Raises `BadInput` for a rank that is not there, `NumbersFailed`, `Cancelled`.
     """
-    check_range("mode", rank, 0, len(orbit.multipliers) - 1)
+    rank = whole_number("mode", rank, 0, len(orbit.multipliers) - 1)
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     value, vector = eigenpair(stroboscopic_map, x, rank)

@@ -13,11 +13,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import NumbersFailed, check_range
+from ..errors import NumbersFailed, whole_number
 from ..integrate.start import at_phase_0
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..state import State
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..steady.returns import relative_change
@@ -225,10 +226,9 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     >>> bool(abs(found.multipliers[0]) < 1.0)
     True
     """
-    if period is not None:
-        check_range("period", period, 1, LONGEST_LOCKED_PERIOD)
+    require_scene(scene)
+    n = None if period is None else whole_number("period", period, 1, LONGEST_LOCKED_PERIOD)
     refuse_cut(scene)
-    n = period
     if start is None:
         settling = run_until_settled(scene, None, stop)
         n = n or settling.regime.period or 1

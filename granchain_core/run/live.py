@@ -7,11 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..errors import BadInput, whole_number
 from ..integrate import Engine, fixed_step_setting
 from ..kernels.forces.peaks import next_period
+from ..recorded_motion import MOST_RECORDED, MOST_SAMPLES
 from ..regime import Regime
 from ..result import Cost, Jumps, Run, run_from, start_words
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..state import State, checked_start, rest
 from ..stop import Stop
 
@@ -40,8 +43,8 @@ class LiveChain:
 
     Raises
     ------
-    ValueError
-        `samples` is odd.
+    BadInput
+        `samples` is no even whole number.
 
     Examples
     --------
@@ -56,8 +59,11 @@ class LiveChain:
     """
 
     def __init__(self, scene: Scene, samples: int = 96, start: State | None = None, stop: Stop | None = None) -> None:
+        require_scene(scene)
+        samples = whole_number("samples =", samples, 2, MOST_SAMPLES)
         if samples % 2:
-            raise ValueError("samples must be even, so that the driver's middle position is one of them")
+            raise BadInput(f"samples = {samples} must be even, so that the driver's middle position is one of them; "
+                           f"the nearest valid value is {samples + 1}.")
         self.stop = Stop() if stop is None else stop
         self.samples = samples
         self.scene = scene
@@ -81,6 +87,7 @@ class LiveChain:
 
     def change(self, scene: Scene) -> None:
         """Use other knobs as soon as the drive allows it; another number of beads starts from rest."""
+        require_scene(scene)
         if scene.N != self.scene.N:
             self.scene = scene
             self.reset()
@@ -100,8 +107,10 @@ class LiveChain:
     def advance(self, count: int) -> Run:
         """Advance by `count` samples: count + 1 rows, the present state first; `time` continues from call to call.
 
-        The largest forces are those of this stretch. Raises `NumbersFailed`, `Cancelled`.
+        The largest forces are those of this stretch. Raises `BadInput` for a `count` that is no whole number from 1,
+        `NumbersFailed`, `Cancelled`.
         """
+        count = whole_number("count =", count, 1, MOST_RECORDED // self.scene.N)
         began = time.perf_counter()
         pieces = []
         left = count

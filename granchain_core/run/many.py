@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed, OverBudget
+from ..errors import BadInput, Cancelled, NumbersFailed, OverBudget, series_in
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..result import Run
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..scheduler import results
 from ..steady.batch.threads import on_all_cores
 from ..steady.settling.outcome import Settled
@@ -150,7 +151,11 @@ def run_many(scenes: Iterable[Scene], work: Callable[..., Any] = run,
     >>> [one.regime.period for one in found]
     [1, 1, 1]
     """
-    chains = list(scenes)
+    if isinstance(scenes, Scene):
+        raise BadInput("A batch is a list of scenes, not one scene; [scene] is a list of one.")
+    chains = series_in("The scenes of a batch", scenes)
+    for chain in chains:
+        require_scene(chain)
     if not 1 <= len(chains) <= MOST_SCENES:
         raise BadInput(f"A batch has 1 to {MOST_SCENES} scenes, not {len(chains)}.")
     stop, ended = Stop() if stop is None else stop, Stop()

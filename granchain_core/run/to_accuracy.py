@@ -12,15 +12,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import BadInput, check_range
+from ..errors import BadInput, seconds_allowed, whole_number
 from ..integrate import Counts, Engine, Setting, fixed_step_setting, method_for
 from ..integrate.methods import setting_of
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
-from ..recorded_motion import MOST_RECORDED
+from ..recorded_motion import MOST_RECORDED, MOST_SAMPLES
 from ..regime import Regime
 from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
+from ..scene.given import require_scene
 from ..scene.validity import overlap_warnings
 from ..state import State, checked_start, rest
 from ..steady.regime_criteria import find_period
@@ -93,7 +94,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     Raises
     ------
     BadInput
-        A number of periods or samples is out of range, or there is no such method.
+        A number of periods or samples is no whole number or out of range, or there is no such method.
     OverBudget
         The run would take longer than `budget` from the beginning; it is a `BadInput`.
     NumbersFailed
@@ -113,7 +114,9 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     >>> result.displacement_error < 1e-5
     True
     """
-    _check_sizes(scene, periods, record, samples)
+    require_scene(scene)
+    periods, record, samples = _sizes(scene, periods, record, samples)
+    budget = seconds_allowed(budget)
     began, total = time.perf_counter(), Counts()
     stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else checked_start(scene, start)
@@ -164,15 +167,17 @@ def _refined(attempt: Callable[[Setting], _Attempt], scene: Scene, setting: Sett
         before = now
 
 
-def _check_sizes(scene: Scene, periods: int, record: int, samples: int) -> None:
-    for name, value, low, high in (("periods", periods, 0, MOST_PERIODS), ("record", record, 1, MOST_PERIODS),
-                                   ("samples", samples, 1, 1_000_000)):
-        check_range(f"{name} =", value, low, high)
+def _sizes(scene: Scene, periods: int, record: int, samples: int) -> tuple[int, int, int]:
+    """The three numbers as ints, checked."""
+    periods = whole_number("periods =", periods, 0, MOST_PERIODS)
+    record = whole_number("record =", record, 1, MOST_PERIODS)
+    samples = whole_number("samples =", samples, 1, MOST_SAMPLES)
     rows = record * samples * scene.N
     if rows > MOST_RECORDED:
         most = max(1, MOST_RECORDED // (samples * scene.N))
         raise BadInput(f"{record} periods of {samples} samples for {scene.N} beads are {rows:.1e} values; at most "
                        f"{MOST_RECORDED:.0e} are recorded: record {most} periods.")
+    return periods, record, samples
 
 
 def _attempt(reached: Reached, sizes: tuple[int, int], progress: Callable[[float], None] | None, total: Counts,

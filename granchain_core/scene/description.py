@@ -9,13 +9,23 @@ from typing import Any
 
 import numpy as np
 
+from ..errors import BadInput
 from ..laws import LAWS
 from ..quantities import QUANTITIES, WALL_FACTORS
 
 
+def is_number(value: object) -> bool:
+    """Whether it is a real number, one of NumPy too, and not a truth value."""
+    return isinstance(value, (float, int, np.floating, np.integer)) and not isinstance(value, bool)
+
+
+#: What a bead's values must be above, and may be at most. Poisson's ratio of a stable material is from −1 to 0.5.
+BEAD_LIMITS = {"mass": (0.0, math.inf), "radius": (0.0, math.inf), "young": (0.0, math.inf), "poisson": (-1.0, 0.5)}
+
+
 @dataclass(frozen=True)
 class Bead:
-    """One elastic sphere.
+    """One elastic sphere. Raises `BadInput` for values that no sphere has.
 
     Attributes
     ----------
@@ -39,6 +49,15 @@ class Bead:
     radius: float
     young: float
     poisson: float
+
+    def __post_init__(self) -> None:
+        for name, (above, most) in BEAD_LIMITS.items():
+            value = getattr(self, name)
+            if not is_number(value) or not above < value <= most or value == math.inf:
+                limits = f"above {above:g}" + (f", at most {most:g}" if most < math.inf else "")
+                raise BadInput(f"A bead's {name} must be a finite number {limits}, not {str(value)[:40]!r}.")
+            if type(value) is not float:
+                object.__setattr__(self, name, float(value))
 
 
 def reduced(left: Bead, right: Bead) -> tuple[float, float]:

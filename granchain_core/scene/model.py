@@ -10,7 +10,7 @@ from typing import Any
 
 from ..errors import BadInput, unknown_name
 from ..quantities import QUANTITIES
-from .checked import checked_fields
+from .checked import checked_fields, checked_values
 from .description import Description
 from .effects import effects_of, latex
 from .validity import warnings
@@ -19,6 +19,8 @@ from .validity import warnings
 @dataclass(frozen=True)
 class Scene(Description):
     """A driven chain, immutable and hashable; `evolve` gives one with other knobs.
+
+    A value that no chain has is refused with `BadInput`, however the scene is made.
 
     Attributes
     ----------
@@ -87,6 +89,10 @@ class Scene(Description):
     granchain_core.errors.BadInput: drive frequency f = -1 Hz is outside 0.1 to 1e+06 Hz; ...
     """
 
+    def __post_init__(self) -> None:
+        for name, value in checked_values(self).items():
+            object.__setattr__(self, name, value)
+
     @property
     def effects(self) -> list[str]:
         """Names of the effects that are in this scene, and therefore in its kernel."""
@@ -131,12 +137,12 @@ class Scene(Description):
             raise BadInput("k and kappa are the same quantity: give one of them, not both.")
         checked = {name: QUANTITIES[name].check(value) for name, value in changes.items()}
         kappa = checked.pop("kappa", None)
-        new = replace(self, **checked)  # type: ignore[arg-type]  # checked above against the table
-        special = (*new.impurities, *new.start_velocity)
-        if special and max(i for i, _ in special) > new.N:
+        special = (*self.impurities, *self.start_velocity)
+        if special and max(i for i, _ in special) > checked.get("N", self.N):  # type: ignore[operator]  # N is a number
             place = max(i for i, _ in special)
-            raise BadInput(f"number of beads N = {new.N} leaves no bead {place}, which is special in scene "
+            raise BadInput(f"number of beads N = {checked['N']} leaves no bead {place}, which is special in scene "
                            f"{self.name!r}; the nearest valid value is {place}.")
+        new = replace(self, **checked)  # type: ignore[arg-type]  # checked above against the table
         if kappa is not None:
             k = float(kappa) * new.K * math.sqrt(new.A0)
             new = replace(new, k=QUANTITIES["k"].check(k))  # type: ignore[arg-type]

@@ -27,6 +27,8 @@ from .writing import or_none
 STATUSES = ("done", "accuracy-not-reached", "over-budget")
 #: What older files of a steady state say for `GIVEN_STATE`.
 _PREVIOUS_STATE = "previous state"
+#: Functions of granchain_core.store that read other results, by a table of the file.
+_LOADED = {"curve": "load_curve", "branch": "load_branch"}
 
 
 def load(path: str | Path) -> Run:
@@ -57,7 +59,19 @@ def load(path: str | Path) -> Run:
     """
     with opened(path, "is not a run written by granchain") as file:
         file.schema()
+        _refuse_other_results(file)
         return _read(file)
+
+
+def _refuse_other_results(file: File) -> None:
+    """Say what kind of result it is where the file has other tables than a run's, and how it can be read."""
+    if file.has("run/time"):
+        return
+    found = sorted({name.partition("/")[0] for name in file.names() if "/" in name})
+    if found and "run" not in found:
+        own = next((_LOADED[name] for name in found if name in _LOADED), None)
+        how = f"granchain_core.store.{own} reads it" if own else 'xarray.open_dataset(path, group="…") reads its tables'
+        raise Refused(f"its tables are {', '.join(found)[:80]}; {how}")
 
 
 def _read(file: File) -> Run:

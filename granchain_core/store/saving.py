@@ -6,6 +6,7 @@ from pathlib import Path
 
 import h5py
 
+from ..errors import BadInput
 from ..experiment import Measured, Series
 from ..orbits import Branch
 from ..tables import Labelled
@@ -34,7 +35,7 @@ def save(result: Labelled, path: str | Path, measured: Measured | Series | None 
     Raises
     ------
     BadInput
-        It cannot be written.
+        It is no result, or the file cannot be written.
 
     Examples
     --------
@@ -46,6 +47,9 @@ def save(result: Labelled, path: str | Path, measured: Measured | Series | None 
     >>> bool((again.displacement == result.displacement).all())
     True
     """
+    if not isinstance(result, Labelled):
+        raise BadInput("What is saved is a result of granchain, such as `run` returns, not a value of type "
+                       f"{type(result).__name__}.")
 
     def write(file: h5py.File) -> None:
         if isinstance(result, Branch):

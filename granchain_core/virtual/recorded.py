@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..errors import BadInput, check_range
+from ..errors import BadInput, check_range, whole_number
 from ..experiment.measured import VIRTUAL
 from ..fit.trains import Train
 from ..integrate import Engine, fixed_step_setting
@@ -85,7 +85,7 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     (True, 150)
     """
     refuse_undriven(scene)
-    check_range("periods =", periods, 1, MOST_PERIODS)
+    periods = whole_number("periods =", periods, 1, MOST_PERIODS)
     count = round(periods * sensors.rate / scene.f)
     check_range("samples (periods · rate / f) =", count, 8, MOST_SAMPLES)
     random = np.random.default_rng(seed)
@@ -145,9 +145,9 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     ([3, 3], True)
     """
     refuse_undriven(scene)
-    check_range("repeats =", repeats, 1, 100)
+    repeats = whole_number("repeats =", repeats, 1, 100)
     check_range("scatter =", scatter, 0.0, 0.5)
-    check_range("periods =", periods, 1, MOST_PERIODS)
+    periods = whole_number("periods =", periods, 1, MOST_PERIODS)
     count = len(frequencies) * repeats
     check_range("records (frequencies · repeats) =", count, 1, MOST_RECORDS)
     random, rows = np.random.default_rng(seed), []

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...errors import BadInput, check_range
+from ...errors import BadInput, whole_number
 from ...scene import Amplitude, Scene
 from ...state import State
 from ...stop import Stop
@@ -250,7 +250,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     >>> bool(found.column("stable").all())
     True
     """
-    check_range("most_points =", most_points, 2, MOST_POINTS)
+    most_points = whole_number("most_points =", most_points, 2, MOST_POINTS)
     begun = begin_branch(scene, knob, start, end, period, start_state, both, stop, amplitude)
     return Continuation(begun, stop).run(most_points, on_point)
 

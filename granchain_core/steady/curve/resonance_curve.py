@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...cores import usable_cores
-from ...errors import BadInput, Cancelled
+from ...errors import BadInput, Cancelled, numbers_in
 from ...integrate.batch import can_share_batch
 from ...scene import Amplitude, Scene
 from ...scene.driven import refuse_undriven
@@ -32,12 +32,13 @@ POINTS_IN_TASK = 64
 def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray,
                         amplitude: Amplitude | None = None) -> list[Scene]:
     """The scenes of a curve; `BadInput` for no points, too many, or a frequency or amplitude out of range."""
-    if not 1 <= len(frequencies) <= MOST_POINTS:
-        raise BadInput(f"A curve has 1 to {MOST_POINTS} points, not {len(frequencies)}.")
     refuse_undriven(scene)
+    numbers = numbers_in("Frequencies", frequencies)
+    if not 1 <= len(numbers) <= MOST_POINTS:
+        raise BadInput(f"A curve has 1 to {MOST_POINTS} points, not {len(numbers)}.")
     if amplitude is None:
-        return [scene.evolve(f=float(f)) for f in frequencies]
-    return [scene.evolve(f=float(f), A0=amplitude.at(float(f))) for f in frequencies]
+        return [scene.evolve(f=f) for f in numbers]
+    return [scene.evolve(f=f, A0=amplitude.at(f)) for f in numbers]
 
 
 def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",

@@ -5,8 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
+from ...errors import whole_number
+from ...recorded_motion import MOST_SAMPLES
 from ...result import start_words
 from ...scene import Scene
+from ...scene.given import require_scene
 from ...state import State
 from ...stop import Stop
 from .advance import SettlingRun, run_until_settled
@@ -42,6 +45,8 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
 
     Raises
     ------
+    BadInput
+        `samples` is no whole number from 1.
     NumbersFailed
         The motion is no longer finite.
     Cancelled
@@ -53,7 +58,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     >>> [found.final for found in settling(scene("sec2").evolve(N=2, f=2000.0))][-1]
     True
     """
-    began = time.perf_counter()
+    began, samples = time.perf_counter(), _checked(scene, samples)
     if not scene.is_driven:
         yield undriven_motion(scene, start, samples, began, stop)
         return
@@ -95,6 +100,8 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
 
     Raises
     ------
+    BadInput
+        `samples` is no whole number from 1.
     NumbersFailed
         The motion is no longer finite.
     Cancelled
@@ -109,7 +116,7 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
     >>> f"{found.run.max_output_force_elastic:.3f} N"
     '2.260 N'
     """
-    began = time.perf_counter()
+    began, samples = time.perf_counter(), _checked(scene, samples)
     if not scene.is_driven:
         return undriven_motion(scene, start, samples, began, stop)
     motion = run_until_settled(scene, start, stop)
@@ -117,6 +124,12 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
     if motion.regime.name == "periodic":
         return recorded_orbit(motion, samples, began, origin)
     return motion_so_far(motion, samples, began, origin, final=True)
+
+
+def _checked(scene: Scene, samples: int) -> int:
+    """The number of samples as an int; `BadInput` where it or the scene cannot be one."""
+    require_scene(scene)
+    return whole_number("samples =", samples, 1, MOST_SAMPLES)
 
 
 #: The longer name of `settle`.
