@@ -145,9 +145,11 @@ def _show(found: Fit) -> None:
 
 
 def _rows(found: Fit) -> list[tuple[float, float, float, str]]:
-    """Frequency, model, residual and regime of every datum that has a frequency."""
+    """Frequency, model, residual and regime of every datum that has a frequency; samples of a force have none."""
     regimes = found.evaluation.regimes
     frequencies = [float(f) for f in found.target.frequencies]
+    if not frequencies:
+        return []
     named = regimes if len(regimes) == len(frequencies) else [""] * len(frequencies)
     return list(zip(frequencies, map(float, found.evaluation.model), map(float, found.evaluation.residuals), named,
                     strict=True))

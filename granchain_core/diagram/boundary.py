@@ -276,11 +276,15 @@ def _extrapolated(way: list[BoundaryPoint], y: float, x_knob: str, y_knob: str) 
     """Knob x and state at y: on the line through the last two points; from one alone by f ∝ A0^{1/4}, else unchanged.
 
     (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit unchanged where D and k go along, and nearly where they do not.
+    The line is one in logarithms, but on the way to or from a knob that is 0.
     """
     if len(way) == 1:
         power = {("f", "A0"): 0.25, ("A0", "f"): 4.0}.get((x_knob, y_knob), 0.0)
-        return way[0].x * (y / way[0].y) ** power, way[0].state
+        return way[0].x * (y / way[0].y) ** power if y > 0.0 else way[0].x, way[0].state
     a, b = way[-2:]
+    if min(y, a.y, b.y) <= 0.0:
+        part = (y - b.y) / (b.y - a.y)
+        return float(b.x + part * (b.x - a.x)), b.state + part * (b.state - a.state)
     part = np.log(y / b.y) / np.log(b.y / a.y)
     return float(b.x * (b.x / a.x) ** part), b.state + part * (b.state - a.state)
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import minimize_scalar
 
 from ..result import Run
@@ -31,16 +32,22 @@ class Train:
 
     @classmethod
     def of(cls, run: Run, name: str) -> Train:
-        """The input or output force of a recorded orbit; a jump is two nodes at one time."""
+        """The input or output force of a recorded orbit; a jump is two nodes at one time.
+
+        The force jumps up where the contact closes, and from a pull to zero where it opens.
+        """
         time, force = run.time - run.time[0], getattr(run, name)
         contact = 0 if name == "input_force" else run.scene.N
         mine = run.jumps.contact == contact
-        at, top = run.jumps.time[mine] - run.time[0], run.jumps.force[mine]
+        closed, opened = run.jumps.time[mine] - run.time[0], _releases(run, contact)
+        at = np.concatenate([closed, opened[0]])
+        before = np.concatenate([np.zeros(len(closed)), opened[1]])
+        after = np.concatenate([run.jumps.force[mine], np.zeros(len(opened[0]))])
         inside = (at > 0.0) & (at < time[-1])
-        at, top = at[inside], top[inside]
-        order = np.argsort(np.concatenate([time, at, at]), kind="stable")  # samples, then 0, then the top
+        at, before, after = at[inside], before[inside], after[inside]
+        order = np.argsort(np.concatenate([time, at, at]), kind="stable")  # samples, then before, then after
         nodes = np.concatenate([time, at, at])[order]
-        forces = np.concatenate([force, np.zeros(len(at)), top])[order]
+        forces = np.concatenate([force, before, after])[order]
         steps = 0.5 * (forces[1:] + forces[:-1]) * np.diff(nodes)
         return cls(nodes, forces, np.concatenate([[0.0], np.cumsum(steps)]), float(time[-1]))
 
@@ -56,6 +63,24 @@ class Train:
         part = np.divide(at - self.time[left], step, out=np.zeros_like(at), where=step > 0.0)
         risen = self.force[left] * part + 0.5 * (self.force[left + 1] - self.force[left]) * part**2
         return np.asarray(turns * self.integral[-1] + self.integral[left] + risen * step)
+
+
+def _releases(run: Run, contact: int) -> tuple[np.ndarray, np.ndarray]:
+    """Times from the run's start [s] at which an end contact opens, and the forces just before [N].
+
+    Roots of the cubic through its overlap and the rate of it at the samples. None for a law whose force has no jump.
+    """
+    scene = run.scene
+    if not scene.forces_jump or scene.cuts_tension:  # a cut ends the pull before the contact opens
+        return np.zeros(0), np.zeros(0)
+    omega = 2.0 * np.pi * scene.f
+    driver = scene.drive_amplitude * omega * np.cos(omega * run.time)
+    rate = driver - run.velocity[:, 0] if contact == 0 else run.velocity[:, -1]
+    overlap = CubicHermiteSpline(run.time - run.time[0], run.overlap[:, contact], rate)
+    roots = np.asarray(overlap.roots(extrapolate=False), dtype=float)
+    roots = np.unique(roots[np.isfinite(roots)])
+    opening = np.asarray(overlap.derivative()(roots))
+    return roots[opening < 0.0], scene.D * opening[opening < 0.0]
 
 
 def moved(time: np.ndarray, measured: dict[str, np.ndarray], trains: dict[str, Train], width: float,

@@ -42,6 +42,16 @@ def test_a_table_a_sentence_and_every_residual(data: str, tmp_path: Path, capsys
     assert parameter["low"] < 115.0 < parameter["high"]
 
 
+def test_a_fit_of_force_trains_has_a_table_and_a_sentence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Samples of a force have no frequency each, so there are no rows of residuals."""
+    chain, file = [*CHAIN, "--set", "f=2000"], str(tmp_path / "trains.csv")
+    assert main(["virtual", *chain, "--noise", "0.02", "--periods", "4", "--out", file]) == 0
+    capsys.readouterr()
+    assert main(["fit", *chain, "--data", file, "--free", "D=60:180", "--error", "0.02"]) == 0
+    said = capsys.readouterr().out.splitlines()
+    assert said[0].startswith("parameter") and said[1].startswith("D ") and len(said) == 3
+
+
 @pytest.mark.parametrize(("words", "sentence"), [
     (["--free", "D=50:200"], "either --data FILE or --features paper"),
     (["--features", "mine", "--free", "D=50:200"], "'mine' is not known"),

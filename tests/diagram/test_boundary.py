@@ -128,3 +128,14 @@ def test_a_diagram_shows_where_its_boundaries_are() -> None:
     assert 0.0 < first.points[1].x - first.points[0].x < 20.0  # f ∝ A0^{1/4} nearly: 13 Hz
     with pytest.raises(BadInput, match="rows are numbers from 0 to 1"):
         boundaries(found, rows=[2])
+
+
+def test_a_boundary_is_followed_to_where_its_second_knob_is_zero() -> None:
+    """Three beads at 1300 Hz: from k = 2e4 N/m to a chain without foundation, whose period doubling a branch over D
+    finds as well."""
+    chain = scene("sec2").evolve(N=3, f=1300.0)
+    found = boundaries(diagram(chain, ("D", np.linspace(70.0, 76.0, 5)), ("k", [0.0, 2e4])), rows=[1])
+    (curve,) = [one for one in found if one.kind == "period_doubling" and one.period == 1]
+    (at_zero,) = [point.x for point in curve.points if point.y == 0.0]
+    doublings = [one for one in continue_branch(chain, "D", 76.0, 70.0).special if one.kind == "period_doubling"]
+    assert any(min(one.interval) - 1e-5 <= at_zero <= max(one.interval) + 1e-5 for one in doublings)
