@@ -71,4 +71,5 @@ def _frequencies(mass: np.ndarray, spring: np.ndarray, ground: float, phase: flo
         matrix[j, i] -= factor * spring[i]
     root = 1.0 / np.sqrt(mass)
     squares = np.linalg.eigvalsh(root[:, None] * matrix * root)
-    return np.asarray(np.sqrt(np.maximum(squares, 0.0)) / (2.0 * np.pi))
+    rounding = 10.0 * count * np.finfo(float).eps * squares[-1]
+    return np.asarray(np.sqrt(np.where(squares > rounding, squares, 0.0)) / (2.0 * np.pi))
