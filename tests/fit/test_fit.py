@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from granchain_core import Amplitude, BadInput, Cancelled, Fit, Stop, fit, resonance_curve, scene
+from granchain_core import Amplitude, BadInput, Cancelled, Fit, Stop, fit, resonance_curve, scene, settle
 from granchain_core.experiment import Feature, Measured, Series, read_data
 from granchain_core.experiment.measured import VIRTUAL
 from granchain_core.fit import CurveTarget, FeatureTarget, Free, SeriesTarget, virtual_curve, virtual_series
@@ -136,7 +136,7 @@ def test_a_train_has_its_jumps_and_its_mean(name: str) -> None:
     """∫F dt over a period is the impulse, here against 256 times as many samples: a jump at a closing or a release that
     were smeared over one sample would be off by 3e-4 to 4e-3. A narrow mean is the force itself."""
     chain = scene("sec2").evolve(N=2, f=2000.0, D=400.0)
-    result, fine = (run(chain, periods=80, record=1, samples=samples) for samples in (256, 65_536))
+    result, fine = (settle(chain, samples=samples).run for samples in (256, 65_536))
     train, contact = Train.of(result, name), 0 if name == "input_force" else 2
     closings = int((result.jumps.contact == contact).sum())
     assert closings == 1 and len(train.time) == len(result.time) + 4  # it closes once and opens once
@@ -152,8 +152,8 @@ def test_a_train_pulls_until_its_contact_opens() -> None:
     """The least force is that just before the release, D δ̇, to the spacing of 65,536 samples; laws whose force is zero
     there, and a cut of tension, have no such jump."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
-    fine = run(chain, periods=80, record=1, samples=65_536)
-    train = Train.of(run(chain, periods=80, record=1, samples=256), "input_force")
+    fine = settle(chain, samples=65_536).run
+    train = Train.of(settle(chain, samples=256).run, "input_force")
     assert train.force.min() == pytest.approx(fine.input_force.min(), rel=2e-3)
     for other in ({"dissipation": "tsuji"}, {"tension": "cut"}):
         result = run(chain.evolve(**other), periods=20, record=1, samples=256)
