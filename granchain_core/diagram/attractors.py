@@ -144,28 +144,23 @@ def _beside(group: list[Found], stop: Stop | None) -> Iterator[Start]:
     u, v = orbit.state.displacement, orbit.state.velocity
     for one in group:
         shape = np.random.default_rng(one.result.number).standard_normal((2, len(u)))
-        engine = Engine(orbit.scene, SECTION_SETTING, 1, stop=stop)
-        engine.start(State(u + _DEPARTURE * np.abs(u).max() * shape[0], v + _DEPARTURE * np.abs(v).max() * shape[1]))
-        engine.periods(_DEPARTURE_PERIODS)
-        yield Start(orbit.scene, engine.state, one.result.number)
+        near = State(u + _DEPARTURE * np.abs(u).max() * shape[0], v + _DEPARTURE * np.abs(v).max() * shape[1])
+        yield Start(orbit.scene, _run_on(orbit.scene, near, _DEPARTURE_PERIODS, stop)[0], one.result.number)
 
 
 def _later(group: list[Found], stop: Stop | None) -> Iterator[Start]:
     """New starts for all results of a group, where each motion is after `_LATER_PERIODS`."""
     for one in group:
-        engine = Engine(one.result.scene, SECTION_SETTING, 1, stop=stop)
-        engine.start(one.result.state)
-        engine.periods(_LATER_PERIODS)
-        yield Start(one.result.scene, engine.state, one.result.number)
+        result = one.result
+        yield Start(result.scene, _run_on(result.scene, result.state, _LATER_PERIODS, stop)[0], result.number)
 
 
 def _locks(one: Found, stop: Stop | None) -> bool:
     """Whether a motion that does not repeat comes to an orbit after all, within `_LATER_PERIODS`."""
     if one.result.regime.period is not None:
         return False
-    engine = Engine(one.result.scene, SECTION_SETTING, 1, stop=stop)
-    engine.start(one.result.state)
-    return find_period(engine.periods(_LATER_PERIODS)[0][-REMEMBERED:]).period is not None
+    _, strobes, _ = _run_on(one.result.scene, one.result.state, _LATER_PERIODS, stop)
+    return find_period(strobes[-REMEMBERED:]).period is not None
 
 
 def share(count: int, of: int) -> tuple[float, float]:
@@ -178,7 +173,7 @@ def share(count: int, of: int) -> tuple[float, float]:
 
 def _origins(scene: Scene, random_states: int, seed: int, stop: Stop | None) -> list[Origin]:
     """Rest, the ends of both sweeps, and random states."""
-    _, strobes, velocity = _run_on(scene, rest(scene), stop)
+    _, strobes, velocity = _run_on(scene, rest(scene), _PASS_PERIODS, stop)
     dice = np.random.default_rng(seed)
     size = _BOX_SIZE * np.abs(strobes).max(axis=(0, 2)) * (scene.A0, velocity)
     size = np.maximum(size, (scene.A0, 2.0 * math.pi * scene.f * scene.A0))
@@ -197,15 +192,15 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
         if stop:
             break
         f = scene.f * (factor + (1.0 - factor) * step / _SWEEP_POINTS)
-        state, _, _ = _run_on(scene.evolve(f=f), state, stop)
+        state, _, _ = _run_on(scene.evolve(f=f), state, _PASS_PERIODS, stop)
     return state
 
 
-def _run_on(scene: Scene, state: State, stop: Stop | None) -> tuple[State, np.ndarray, float]:
-    """State after `_PASS_PERIODS` by the fixed-step method, scaled strobes on the way, the unit of velocity [m/s]."""
+def _run_on(scene: Scene, state: State, periods: int, stop: Stop | None) -> tuple[State, np.ndarray, float]:
+    """State after so many periods by the fixed-step method, scaled strobes on the way, the unit of velocity [m/s]."""
     engine = Engine(scene, SECTION_SETTING, 1, stop=stop)
     engine.start(state)
-    strobes, _ = engine.periods(_PASS_PERIODS)
+    strobes, _ = engine.periods(periods)
     return engine.state, strobes, engine.scaled.scales.velocity
 
 

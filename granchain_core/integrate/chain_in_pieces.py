@@ -66,9 +66,7 @@ class ChainInPieces:
 
     def run(self, start: State, halvings: int) -> Samples:
         """The motion from `start` with steps halved `halvings` times; one row per sample, in scaled units."""
-        scaled, n, row = self.scaled, self.scaled.beads, self.scaled.bodies
-        if len(start.displacement) != n:
-            raise BadInput(f"The start has {len(start.displacement)} beads; the chain has {n}.")
+        scaled, row = self.scaled, self.scaled.bodies
         if self.steps(halvings) > MOST_RECORD_STEPS:
             raise BadInput(f"The record needs {self.steps(halvings):.1e} steps; at most {MOST_RECORD_STEPS:.0e} are "
                            "allowed: give a shorter record or ask for less accuracy.")
