@@ -22,7 +22,11 @@ if TYPE_CHECKING:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `fit`."""
     add_scene(parser)
-    parser.add_argument("--data", metavar="FILE", help="a measured curve, or a series at the scene's drive frequency")
+    parser.add_argument("--data", action="append", default=[], metavar="FILE",
+                        help="a measured curve, or a series; several series at once, each with its --at")
+    parser.add_argument("--at", action="append", type=number, default=[], metavar="f",
+                        help="drive frequency of a series [Hz]; once for each --data, in their order; without it the "
+                             "scene's f")
     parser.add_argument("--features", metavar="paper", help="the peaks and valleys that the paper states, in place of "
                                                             "--data")
     parser.add_argument("--free", action="append", default=[], metavar="NAME=low:high",
@@ -86,10 +90,10 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
     """What is compared."""
     import numpy as np
 
-    from granchain_core.experiment import Measured, Series, read_experiment, stated_features
-    from granchain_core.fit import CurveTarget, FeatureTarget, SeriesTarget
+    from granchain_core.experiment import stated_features
+    from granchain_core.fit import FeatureTarget
 
-    if (arguments.data is None) == (arguments.features is None):
+    if bool(arguments.data) == (arguments.features is not None):
         raise BadInput("Give either --data FILE or --features paper.")
     if arguments.error is not None and not arguments.error > 0.0:
         raise BadInput(f"--error {arguments.error:g} must be above 0.")
@@ -103,14 +107,32 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
         low, high = next(((low, high) for name, low, high in chosen.ranges if name == "f"), (20.0, 160.0))
         grid = np.linspace(low, high, arguments.points)
         return FeatureTarget(stated_features(), grid, arguments.error or 3.0, arguments.start)
-    found = with_answers(arguments, lambda answers: read_experiment(arguments.data, answers, ("curve", "series")))
-    say(f"{found.understood}.")
-    if isinstance(found, Measured):
-        return CurveTarget(found, arguments.error, arguments.elastic, arguments.start)
-    assert isinstance(found, Series)
-    if arguments.per_frequency or arguments.elastic:
-        raise BadInput("A series has one frequency and total forces; --per-frequency and --elastic are for curves.")
-    return SeriesTarget(found, arguments.error)
+    return _measured_target(arguments)
+
+
+def _measured_target(arguments: argparse.Namespace) -> Any:
+    """What was measured: a curve, a series, or series at several frequencies."""
+    from granchain_core.experiment import Measured, Series, read_experiment
+    from granchain_core.fit import CurveTarget, RecordsTarget, SeriesTarget
+
+    files, at = arguments.data, arguments.at
+    if len(at) not in ((0, 1) if len(files) == 1 else (len(files),)):
+        raise BadInput(f"{len(files)} {'files are' if len(files) > 1 else 'file is'} given with --data and "
+                       f"{len(at)} drive frequencies with --at; give one for each.")
+    kinds = ("curve", "series") if len(files) == 1 else ("series",)
+    found = with_answers(arguments, lambda answers: [read_experiment(file, answers, kinds) for file in files])
+    for one in found:
+        say(f"{one.understood}.")
+    if isinstance(found[0], Measured):
+        if at:
+            raise BadInput("A curve has its own frequencies; --at is for series.")
+        return CurveTarget(found[0], arguments.error, arguments.elastic, arguments.start)
+    if arguments.elastic or (arguments.per_frequency and len(files) == 1):
+        raise BadInput("A series has one frequency and total forces; --per-frequency is for curves and several series, "
+                       "--elastic for curves.")
+    records = [SeriesTarget(one, arguments.error, f) for one, f in zip(found, at or [None], strict=True)
+               if isinstance(one, Series)]
+    return RecordsTarget(tuple(records)) if len(records) > 1 else records[0]
 
 
 def _free(arguments: argparse.Namespace) -> list[Free]:
@@ -138,18 +160,33 @@ def _show(found: Fit) -> None:
             interval = (f"{'below ' if there.open_low else ''}{there.low:.5g} to "
                         f"{'above ' if there.open_high else ''}{there.high:.5g}")
         print(f"{one.name:12s} {found.best[i]:12.6g} {one.unit:9s} {interval:>26s}   {one.low:g} to {one.high:g}")
+    for name, other, value in _correlations(found):
+        print(f"correlation of {name} and {other}: {value:+.2f}")
     print(found.sentence)
-    for f, model, residual, regime in _rows(found):
-        print(f"{f:10.6g} Hz  model {model:10.5g}  {residual:+6.2f} standard deviations  {regime}")
+    for row in _rows(found):
+        print(row)
     say(f"{len(found.landscape[1])} sets of parameters in {found.wall_s:.1f} s")
 
 
-def _rows(found: Fit) -> list[tuple[float, float, float, str]]:
-    """Frequency, model, residual and regime of every datum that has a frequency; samples of a force have none."""
-    regimes = found.evaluation.regimes
-    frequencies = [float(f) for f in found.target.frequencies]
-    if not frequencies:
+def _correlations(found: Fit) -> list[tuple[str, str, float]]:
+    """Each pair of parameters with the correlation of their estimates, where there is one."""
+    if found.correlation is None:
         return []
-    named = regimes if len(regimes) == len(frequencies) else [""] * len(frequencies)
-    return list(zip(frequencies, map(float, found.evaluation.model), map(float, found.evaluation.residuals), named,
-                    strict=True))
+    names = [one.name for one in found.free]
+    return [(names[i], names[j], float(found.correlation[i, j])) for i in range(len(names)) for j in range(i)
+            if found.correlation[i, j] == found.correlation[i, j]]
+
+
+def _rows(found: Fit) -> list[str]:
+    """A line for every datum that has a frequency, and for every record of several; samples of a force have none."""
+    from granchain_core.fit import RecordsTarget
+
+    target, evaluation = found.target, found.evaluation
+    if isinstance(target, RecordsTarget):
+        return [f"{one.frequency:10.6g} Hz  χ² {float((evaluation.residuals[place] ** 2).sum()):10.5g} of "
+                f"{place.stop - place.start} samples  {regime}" for one, place, regime in target.parts(evaluation)]
+    frequencies = [float(f) for f in target.frequencies]
+    named = evaluation.regimes if len(evaluation.regimes) == len(frequencies) else [""] * len(frequencies)
+    return [f"{f:10.6g} Hz  model {model:10.5g}  {residual:+6.2f} standard deviations  {regime}"
+            for f, model, residual, regime in zip(frequencies, evaluation.model, evaluation.residuals, named,
+                                                  strict=bool(frequencies))]

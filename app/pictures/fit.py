@@ -11,7 +11,7 @@ from bokeh.models import ColumnDataSource, HoverTool, LayoutDOM, Span
 from bokeh.plotting import figure
 
 from granchain_core import Curve, Fit
-from granchain_core.fit import CurveTarget, FeatureTarget, Free, SeriesTarget
+from granchain_core.fit import CurveTarget, FeatureTarget, Free, RecordsTarget, SeriesTarget
 
 from ..format import prefixed
 from .axes import Scale, force_scale
@@ -36,8 +36,10 @@ def fit(found: Fit, theme: Theme) -> LayoutDOM:
         left = _curve(found, target, theme)
     elif isinstance(target, FeatureTarget):
         left = _features(found, target, theme)
+    elif isinstance(target, RecordsTarget):
+        left = _records(found, target, theme)
     else:
-        left = _series(found, target, theme)
+        left = _series(target, found.evaluation.model, found.scene.period, _verdict(found), theme)
     right = column([_landscape(found, i, theme) for i in range(min(len(found.free), _MOST_LANDSCAPES))],
                    sizing_mode="stretch_both")
     return row([left, right], sizing_mode="stretch_both")
@@ -89,21 +91,32 @@ def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
     return _stacked(apply_theme(plot, theme), apply_theme(below, theme))
 
 
-def _series(found: Fit, target: SeriesTarget, theme: Theme) -> LayoutDOM:
-    channels, time = target.channels, target.series.time
-    count = min(len(next(iter(channels.values()))), int(np.searchsorted(time, _MOST_PERIODS * found.scene.period)) + 1)
+def _records(found: Fit, target: RecordsTarget, theme: Theme) -> LayoutDOM:
+    """Each record over the model, below the one before."""
+    pictures: list[LayoutDOM] = []
+    for one, place, _ in target.parts(found.evaluation):
+        assert one.frequency is not None
+        title = f"{one.frequency:g} Hz" if pictures else f"{one.frequency:g} Hz – {_verdict(found)}"
+        pictures.append(_series(one, found.evaluation.model[place], 1.0 / one.frequency, title, theme))
+    return column(pictures, sizing_mode="stretch_both")
+
+
+def _series(target: SeriesTarget, models: np.ndarray, period: float, title: str, theme: Theme) -> figure:
+    """The first periods [s] of the measured forces over the model's, those of all channels in a row."""
+    channels, time = target.channels, target.time
+    count = min(len(time), int(np.searchsorted(time, _MOST_PERIODS * period)) + 1)
     scale = force_scale("force", max(float(np.abs(values).max()) for values in channels.values()))
     plot, place = frame(name="data", min_border=4), 0
     for name, role in (("input_force", "input"), ("output_force", "output")):
         if name not in channels:
             continue
-        model = found.evaluation.model[place : place + len(channels[name])]
+        model = models[place : place + len(channels[name])]
         place += len(channels[name])
         themed(plot.line(1e3 * time[:count], model[:count] / scale.factor), line_color=role, line_width=1.8)
         themed(plot.scatter(1e3 * time[:count], channels[name][:count] / scale.factor, size=5, fill_color=None,
                             line_width=1, legend_label=name.replace("_", " ")), line_color=role)
     plot.xaxis.axis_label, plot.yaxis.axis_label = "time (ms)", scale.label
-    plot.title.text = _verdict(found)
+    plot.title.text = title
     return apply_theme(plot, theme)
 
 

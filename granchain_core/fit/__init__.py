@@ -2,8 +2,9 @@
 
 from .fit import Fit, fit
 from .parameters import Free
+from .records import RecordsTarget
 from .targets import CurveTarget, FeatureTarget, SeriesTarget
 from .virtual import virtual_curve, virtual_series
 
-__all__ = ["CurveTarget", "FeatureTarget", "Fit", "Free", "SeriesTarget", "fit", "virtual_curve",
+__all__ = ["CurveTarget", "FeatureTarget", "Fit", "Free", "RecordsTarget", "SeriesTarget", "fit", "virtual_curve",
            "virtual_series"]

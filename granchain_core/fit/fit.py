@@ -19,7 +19,7 @@ from ..tables import Labelled, Table, or_nan, provenance
 from ..tables.provenance import Attribute
 from .intervals import LEVEL, BetterMinimum, Profile, limit, profile
 from .parameters import Free, with_values
-from .search import Problem, Target, descended, searched
+from .search import STEP, Problem, Target, descended, searched
 from .tables import data_table, landscape_table, parameter_table, profile_table
 from .targets import CurveTarget, Evaluation, FeatureTarget
 
@@ -63,12 +63,16 @@ class Fit(Labelled):
         Residuals and model values at the best values.
     landscape : tuple of numpy.ndarray
         Values (n, p) and misfits (n,) of everything that was evaluated.
-    target : CurveTarget, SeriesTarget or FeatureTarget
+    target : CurveTarget, SeriesTarget, RecordsTarget or FeatureTarget
         What was compared.
     scale : float
         Unit of the misfit: 1, or χ² per degree of freedom where the data's errors are not known.
     wall_s : float
         Wall-clock time [s].
+    correlation : numpy.ndarray, shape (p, p), or None
+        Correlation of the estimates, from the residuals' slopes at the best values: near ±1 the data determine a
+        combination of two parameters better than either. NaN where a parameter changes nothing; None for features,
+        whose residuals are not smooth, and where the best values stand at a bound.
 
     Examples
     --------
@@ -98,6 +102,7 @@ class Fit(Labelled):
     target: Target
     scale: float = 1.0
     wall_s: float = 0.0
+    correlation: np.ndarray | None = None
 
     def tables(self) -> tuple[Table, ...]:
         """`parameters` with their intervals, `data` with the model, `profiles`, and the `landscape` of the misfit."""
@@ -107,12 +112,14 @@ class Fit(Labelled):
 
     def attributes(self) -> dict[str, Attribute]:
         """Misfit and verdict, and where they come from."""
-        drive: dict[str, Attribute] = {} if self.amplitude is None else {
+        extra: dict[str, Attribute] = {} if self.amplitude is None else {
             "amplitude": json.dumps(self.amplitude.to_json())}
+        if self.correlation is not None:
+            extra["correlation"] = json.dumps(self._correlation_rows())
         return {**provenance(self.scene, "least squares, profile likelihood", None), "misfit": self.misfit,
                 "data": self.data, "freedom": self.freedom, "probability": or_nan(self.probability),
                 "verdict": self.verdict, "sentence": self.sentence, "scale": self.scale, "level": LEVEL,
-                "wall_s": self.wall_s, **drive}
+                "wall_s": self.wall_s, **extra}
 
     @property
     def chi_squared(self) -> float:
@@ -152,7 +159,13 @@ class Fit(Labelled):
                 "residuals": [float(r) for r in self.evaluation.residuals],
                 "model": [float(m) if np.isfinite(m) else None for m in self.evaluation.model],
                 "frequency": [float(f) for f in self.target.frequencies],
-                "regimes": list(self.evaluation.regimes), "wall_s": self.wall_s}
+                "regimes": list(self.evaluation.regimes), "wall_s": self.wall_s,
+                "correlation": self._correlation_rows()}
+
+    def _correlation_rows(self) -> list[list[float | None]] | None:
+        """The correlation as plain data; None in place of NaN."""
+        return None if self.correlation is None else [
+            [float(value) if np.isfinite(value) else None for value in row] for row in self.correlation]
 
 
 def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, intervals: bool = True,
@@ -163,7 +176,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
     ----------
     scene : Scene
         The chain; parameters that are not free stay as they are.
-    target : CurveTarget, SeriesTarget or FeatureTarget
+    target : CurveTarget, SeriesTarget, RecordsTarget or FeatureTarget
         What is compared.
     free : sequence of Free
         Parameters with bounds and, if there are any, priors.
@@ -261,8 +274,13 @@ def _result(problem: Problem, best: np.ndarray, profiles: tuple[Profile, ...], d
     landscape = (np.array([problem.values(place) for place in problem.places]), np.array(problem.misfits))
     return Fit(fitted, amplitude, tuple(problem.free), values, profiles, misfit, data, freedom, probability, verdict,
                _sentence(problem, evaluation, best, _counted(problem, data, freedom), probability, verdict),
-               evaluation, landscape,
-               problem.target, scale, wall_s)
+               evaluation, landscape, problem.target, scale, wall_s, _correlation(problem, best))
+
+
+def _correlation(problem: Problem, best: np.ndarray) -> np.ndarray | None:
+    """The correlation of the estimates where slopes describe the misfit: inside the bounds, for smooth residuals."""
+    inside = best.min() > STEP and best.max() < 1.0 - STEP
+    return problem.correlation(best) if problem.target.smooth and inside else None
 
 
 def _sentence(problem: Problem, evaluation: Evaluation, best: np.ndarray, counted: int,
@@ -277,11 +295,9 @@ def _sentence(problem: Problem, evaluation: Evaluation, best: np.ndarray, counte
     if verdict == "can":
         return f"The model can describe the data ({numbers}{bounds})."
     worst = int(np.argmax(np.abs(evaluation.residuals)))
-    at = problem.target.frequencies
-    where = f" at {at[worst]:g} Hz" if len(at) > worst else ""
     return (f"The model cannot describe the data within these bounds: the best of {len(problem.misfits)} sets of "
             f"parameters has {numbers}{bounds}; it is {abs(evaluation.residuals[worst]):.1f} standard deviations "
-            f"away{where}.")
+            f"away {problem.target.where(worst)}.")
 
 
 def curve_of(found: Fit, frequencies: np.ndarray, stop: Stop | None = None) -> Any:

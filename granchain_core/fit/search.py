@@ -21,9 +21,10 @@ from ..scene import Amplitude, Scene
 from ..scheduler import results
 from ..stop import Stop
 from .parameters import Free, with_values
+from .records import RecordsTarget
 from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
 
-Target = CurveTarget | SeriesTarget | FeatureTarget
+Target = CurveTarget | SeriesTarget | RecordsTarget | FeatureTarget
 #: Step of derivatives, in parts of the bounds: above the noise of a curve's points (1e-5), below a peak's width.
 STEP = 2e-3
 #: Places from which the search goes down.
@@ -117,6 +118,19 @@ class Problem:
         base = self.residuals(place)
         return np.stack([(self.residuals(other) - base) / (STEP if place[j] + STEP <= 1.0 else -STEP)
                          for j, other in zip(moving, beside, strict=True)], axis=1)
+
+    def correlation(self, place: np.ndarray) -> np.ndarray:
+        """Correlation (P, P) of the estimates at a minimum, from the inverse of JᵀJ; NaN where it has none.
+
+        It is that of the likelihood's parabola, which ends where a regime does.
+        """
+        slopes = self.jacobian(place, range(len(place)))
+        curvature = slopes.T @ slopes
+        if np.linalg.matrix_rank(curvature) < len(place):  # a parameter that changes nothing, or two that do the same
+            return np.full(curvature.shape, np.nan)
+        covariance = np.linalg.inv(curvature)
+        deviation = np.sqrt(np.diag(covariance))
+        return np.asarray(covariance / np.outer(deviation, deviation))
 
     def jumps_beside(self, place: np.ndarray) -> bool:
         """Whether a regime changes within a step of derivatives."""

@@ -9,6 +9,8 @@ import numpy as np
 from ..tables import Column, Table, axis
 from .intervals import Profile
 from .parameters import Free
+from .records import RecordsTarget
+from .search import Target
 from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget
 
 
@@ -31,17 +33,15 @@ def parameter_table(free: Sequence[Free], best: np.ndarray, profiles: Sequence[P
                                     "name of the parameter"), columns)
 
 
-def data_table(target: CurveTarget | SeriesTarget | FeatureTarget, evaluation: Evaluation) -> Table:
+def data_table(target: Target, evaluation: Evaluation) -> Table:
     """A row for each datum: the measured value, the model's, and the residual."""
     along, count = ("datum",), len(evaluation.residuals)
     unit = "Hz" if isinstance(target, FeatureTarget) else "N"
     columns = {"residual": Column(evaluation.residuals, along, "1", "model less measured, in standard deviations"),
                "model": Column(evaluation.model, along, unit, "the model's value")}
-    if isinstance(target, SeriesTarget):
-        names = np.repeat(np.array(list(target.channels), dtype=object), len(target.time))
-        columns |= {"measured": Column(np.concatenate(list(target.channels.values())), along, "N", "measured force"),
-                    "channel": Column(names, along, "", "which force"),
-                    "time": Column(np.tile(target.time, len(target.channels)), along, "s", "time in the series")}
+    if isinstance(target, (SeriesTarget, RecordsTarget)):
+        records = target.records if isinstance(target, RecordsTarget) else (target,)
+        columns |= _samples(records)
     else:
         columns["frequency"] = Column(target.frequencies, along, "Hz", "measured or stated frequency")
     if isinstance(target, CurveTarget):
@@ -49,6 +49,21 @@ def data_table(target: CurveTarget | SeriesTarget | FeatureTarget, evaluation: E
                     "sigma": Column(target.sigma, along, "N", "standard deviation of the measured force"),
                     "regime": Column(np.array(evaluation.regimes, dtype=object), along, "", "the model's motion")}
     return Table("data", axis("datum", np.arange(count), "1", "number of the datum"), columns)
+
+
+def _samples(records: Sequence[SeriesTarget]) -> dict[str, Column]:
+    """What was measured, sample by sample, of one record after another; with drive frequencies that are their own."""
+    along = ("datum",)
+    forces = [values for one in records for values in one.channels.values()]
+    names = [name for one in records for name, values in one.channels.items() for _ in values]
+    times = [one.time for one in records for _ in one.channels]
+    columns = {"measured": Column(np.concatenate(forces), along, "N", "measured force"),
+               "channel": Column(np.array(names, dtype=object), along, "", "which force"),
+               "time": Column(np.concatenate(times), along, "s", "time in the series")}
+    own = [one.frequency for one in records for values in one.channels.values() for _ in values]
+    if all(f is not None for f in own):
+        columns["frequency"] = Column(np.array(own, dtype=float), along, "Hz", "measured or stated frequency")
+    return columns
 
 
 def profile_table(free: Sequence[Free], profiles: Sequence[Profile]) -> Table:

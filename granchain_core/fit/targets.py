@@ -15,6 +15,7 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..experiment import Feature, Measured, Series
+from ..quantities import QUANTITIES
 from ..scene import Amplitude, Scene
 from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.resonance import peaks_and_valleys
@@ -110,6 +111,10 @@ class CurveTarget:
         """Whether residuals are smooth between regimes."""
         return True
 
+    def where(self, datum: int) -> str:
+        """Where a datum was measured, in words."""
+        return f"at {self.frequencies[datum]:g} Hz"
+
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
         """Residuals (F,) at the measured frequencies, in standard deviations; the model's forces (F,) [N] from a curve.
 
@@ -133,18 +138,22 @@ class CurveTarget:
 
 @dataclass(frozen=True, eq=False)
 class SeriesTarget:
-    """A measured series at the scene's own drive frequency: the forces over time, each the mean over its interval.
+    """A measured series: the forces over time, each the mean over its interval.
 
-    `error` is the standard deviation of the forces [N]. The start of the recording is not known: for each set of
-    parameters the model's trains are moved to where the sum of squares is least.
+    `error` is the standard deviation of the forces [N], `frequency` that of the drive [Hz], by default the scene's. The
+    start of the recording is not known: for each set of parameters the model's trains are moved to where the sum of
+    squares is least.
     """
 
     series: Series
     error: float | None = None
+    frequency: float | None = None
 
     def __post_init__(self) -> None:
         if not self.channels:
             raise BadInput("The series has neither an input force nor an output force; there is nothing to fit.")
+        if self.frequency is not None:
+            QUANTITIES["f"].check(self.frequency)
 
     @property
     def channels(self) -> dict[str, np.ndarray]:
@@ -168,8 +177,18 @@ class SeriesTarget:
 
     @property
     def frequencies(self) -> np.ndarray:
-        """Empty (0,): a series is compared at the scene's own drive frequency."""
+        """Empty (0,): all samples of a series have one drive frequency."""
         return np.zeros(0)
+
+    def where(self, datum: int) -> str:
+        """Which force a datum is, and when it was measured, in words."""
+        channel, sample = divmod(datum, len(self.time))
+        return f"in the {list(self.channels)[channel].replace('_', ' ')} at {self.time[sample]:.6g} s"
+
+    def driven(self, scene: Scene, amplitude: Amplitude | None) -> Scene:
+        """The scene at the series' drive frequency, with that frequency's amplitude where each has its own."""
+        scene = scene if self.frequency is None else scene.evolve(f=self.frequency)
+        return scene if amplitude is None else scene.evolve(A0=amplitude.at(scene.f))
 
     @property
     def smooth(self) -> bool:
@@ -185,7 +204,7 @@ class SeriesTarget:
         largest = max(float(np.abs(values).max()) for values in measured.values())
         sigma = self.error or ASSUMED * largest
         try:
-            found = settle(scene, samples=_TRAIN, stop=stop)
+            found = settle(self.driven(scene, amplitude), samples=_TRAIN, stop=stop)
         except NumbersFailed:
             count = sum(map(len, measured.values()))
             return Evaluation(np.full(count, FAILED), 0.0, ("failed",), np.full(count, np.nan))
@@ -234,6 +253,10 @@ class FeatureTarget:
     def smooth(self) -> bool:
         """Extrema come and go."""
         return False
+
+    def where(self, datum: int) -> str:
+        """Which extremum a datum is, in words."""
+        return f"at {self.frequencies[datum]:g} Hz"
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
         """Residuals (F,): distances to the nearest extremum of each feature's kind, in standard deviations.

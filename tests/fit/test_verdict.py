@@ -33,6 +33,9 @@ class Line:
     def frequencies(self) -> np.ndarray:
         return AT
 
+    def where(self, datum: int) -> str:
+        return f"at {AT[datum]:g}"
+
     def evaluate(self, chain: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
         model = AT * chain.knobs["D"] / 100.0
         assumed = 0.1 if self.sigma_known else 0.5

@@ -1,0 +1,77 @@
+"""Target of a fit: series at several drive frequencies with common parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import BadInput
+from ..scene import Amplitude, Scene
+from ..stop import Stop
+from .targets import Evaluation, SeriesTarget
+
+
+@dataclass(frozen=True, eq=False)
+class RecordsTarget:
+    """Measured series at several drive frequencies; all parameters are common to them but an A0@f.
+
+    `records` are series that have a `frequency` each. Either all of them have an error or none.
+    """
+
+    records: tuple[SeriesTarget, ...]
+
+    def __post_init__(self) -> None:
+        if not self.records:
+            raise BadInput("There is no record to fit.")
+        for number, one in enumerate(self.records, start=1):
+            if one.frequency is None:
+                raise BadInput(f"Record {number} of {len(self.records)} has no drive frequency; give each its own.")
+        if len({one.sigma_known for one in self.records}) > 1:
+            raise BadInput("Some of the records have an error and some have none; give all of them one, or none.")
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """The drive frequencies [Hz], ascending, each once."""
+        return np.unique([one.frequency for one in self.records if one.frequency is not None])
+
+    @property
+    def sigma_known(self) -> bool:
+        """Whether the standard deviations were given."""
+        return self.records[0].sigma_known
+
+    @property
+    def smooth(self) -> bool:
+        """Whether residuals are smooth between regimes."""
+        return True
+
+    @property
+    def sizes(self) -> list[int]:
+        """Number of data of each record."""
+        return [len(one.channels) * len(one.time) for one in self.records]
+
+    def where(self, datum: int) -> str:
+        """Which record, force and time a datum is, in words."""
+        for one, size in zip(self.records, self.sizes, strict=True):
+            if datum < size:
+                return f"{one.where(datum)} of the record at {one.frequency:g} Hz"
+            datum -= size
+        raise IndexError(datum)
+
+    def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
+        """Residuals of all records, one after another, in standard deviations; the model's forces [N].
+
+        Raises `Cancelled`.
+        """
+        found = [one.evaluate(scene, amplitude, stop) for one in self.records]
+        return Evaluation(np.concatenate([one.residuals for one in found]), sum(one.log_variance for one in found),
+                          tuple(regime for one in found for regime in one.regimes),
+                          np.concatenate([one.model for one in found]))
+
+    def parts(self, evaluation: Evaluation) -> Iterator[tuple[SeriesTarget, slice, str]]:
+        """Each record with the place of its data in the evaluation, and the model's regime there."""
+        begin = 0
+        for one, size, regime in zip(self.records, self.sizes, evaluation.regimes, strict=True):
+            yield one, slice(begin, begin + size), regime
+            begin += size
