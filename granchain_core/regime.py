@@ -9,11 +9,11 @@ from dataclasses import dataclass
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Those of steady states that never repeat; their errors are not stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
-#: A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.contraction`).
+#: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.contraction`).
 LEAST_BELOW_1 = 1e-6
-#: Without |μ| it is taken to shrink by the observed decay, at most this.
+#: [all] Without |μ| it is taken to shrink by the observed decay, at most this.
 SLOWEST_DECAY = 0.999
-#: Where no decay was observed, it is taken to shrink by this.
+#: [all] Where no decay was observed, it is taken to shrink by this.
 DECAY_NOT_SEEN = 0.5
 
 
