@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import BadInput, seconds_allowed, whole_number
+from ..errors import BadInput
+from ..input_checks import seconds_allowed, whole_number
 from ..integrate import Counts, Engine, Setting, fixed_step_setting, method_for
 from ..integrate.methods import setting_of
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
