@@ -99,11 +99,14 @@ class Regime:
 
     @property
     def evidence(self) -> str:
-        """|μ| where it was computed, else the decay that was seen; empty where neither is known."""
+        """|μ| where it was computed, else the decay that was seen; empty where neither is known.
+
+        A batch that followed a motion to its orbit without multipliers assumed a decay: it says nothing of the motion.
+        """
         shown = self.period or self.approaches or 1
         if self.multiplier is not None:
             return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
-        if self.decay is None:
+        if self.decay is None or self.followed:
             return ""
         return f"decay {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
 
