@@ -9,11 +9,11 @@ from dataclasses import dataclass
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Those of steady states that never repeat; their errors are not stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
-#: A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.contraction`).
+#: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.contraction`).
 LEAST_BELOW_1 = 1e-6
-#: Without |μ| it is taken to shrink by the observed decay, at most this.
+#: [all] Without |μ| it is taken to shrink by the observed decay, at most this.
 SLOWEST_DECAY = 0.999
-#: Where no decay was observed, it is taken to shrink by this.
+#: [all] Where no decay was observed, it is taken to shrink by this.
 DECAY_NOT_SEEN = 0.5
 
 
@@ -99,11 +99,14 @@ class Regime:
 
     @property
     def evidence(self) -> str:
-        """|μ| where it was computed, else the decay that was seen; empty where neither is known."""
+        """|μ| where it was computed, else the decay that was seen; empty where neither is known.
+
+        A batch that followed a motion to its orbit without multipliers assumed a decay: it says nothing of the motion.
+        """
         shown = self.period or self.approaches or 1
         if self.multiplier is not None:
             return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
-        if self.decay is None:
+        if self.decay is None or self.followed:
             return ""
         return f"decay {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
 

@@ -31,7 +31,7 @@ def do(arguments: argparse.Namespace) -> None:
     """Find the steady states of a setting."""
     from granchain_core import attractors, save
     from granchain_core.diagram.attractors import MOST_STATES
-    from granchain_core.errors import check_range
+    from granchain_core.input_checks import check_range
 
     chosen = chosen_scene(arguments)
     check_files(arguments)

@@ -13,7 +13,8 @@ from importlib import import_module
 from typing import NoReturn
 
 from granchain_core import BadInput, Cancelled, NumbersFailed
-from granchain_core.errors import OverBudget, outcome_of, unknown_name
+from granchain_core.errors import OverBudget, outcome_of
+from granchain_core.input_checks import unknown_name
 
 from . import ending
 from .common import say, show_json

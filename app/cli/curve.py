@@ -7,7 +7,7 @@ import math
 import sys
 from typing import TYPE_CHECKING, Any
 
-from granchain_core import Amplitude, BadInput, Scene
+from granchain_core import BadInput
 from granchain_core.pieces import CHECK_KERNELS, FIXED_STEP_KERNELS
 
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
@@ -20,6 +20,7 @@ from .picture import check_files, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Curve, CurvePoint
+    from granchain_core.steady.curve.request import CurveRequest
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -39,6 +40,7 @@ def do(arguments: argparse.Namespace) -> None:
     """Compute the resonance curve of a scene."""
     import numpy as np
 
+    from granchain_core.steady.curve.request import CurveRequest
     from granchain_core.steady.curve.resonance_curve import MOST_POINTS
 
     chosen = chosen_scene(arguments)
@@ -49,7 +51,8 @@ def do(arguments: argparse.Namespace) -> None:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
     amplitude = chosen_amplitude(arguments, chosen)
     with compiling_beside(chosen, CHECK_KERNELS, FIXED_STEP_KERNELS):
-        swept = _swept(arguments, chosen, np.linspace(low, high, arguments.points), amplitude)
+        swept = _swept(arguments, CurveRequest(chosen, tuple(np.linspace(low, high, arguments.points).tolist()),
+                                               arguments.start, amplitude))
     write_picture(arguments.picture, f"Resonance curve of {chosen.name}", swept)
     if arguments.json:
         show_json(_curve_json(swept))
@@ -57,18 +60,17 @@ def do(arguments: argparse.Namespace) -> None:
         _show_curve(swept)
 
 
-def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, amplitude: Amplitude | None) -> Curve:
+def _swept(arguments: argparse.Namespace, asked: CurveRequest) -> Curve:
     """The curve, of which only points that are not there yet are computed, and its file."""
-    from granchain_core.steady.curve.point_checkpoints import curve_digest, point_checkpoints, points_in
-    from granchain_core.steady.curve.resonance_curve import resonance_curve
+    from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
+    from granchain_core.steady.curve.request import CurveRequest
     from granchain_core.store import save_curve
     from granchain_core.store.curves import load_curve
 
-    digest = curve_digest(chosen, frequencies, arguments.start, amplitude)
     there = finished(arguments, "curve", load_curve,
-                     lambda found: curve_digest(found.scene, found.column("frequency"), found.start,
-                                                found.amplitude) == digest)
-    kept = point_checkpoints(chosen, frequencies, arguments.start, arguments.out, amplitude) if arguments.out else None
+                     lambda found: CurveRequest.answered_by(found).digest == asked.digest)
+    kept = point_checkpoints(asked, arguments.out) if arguments.out else None
+    points = len(asked.frequencies)
     known: list[CurvePoint] = []
     if kept is not None:
         if there is not None:
@@ -77,7 +79,7 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
         kept.open(arguments.resume)
         known = points_in(kept)
     if known:
-        say(f"{len(known)} of {len(frequencies)} points are there already.")
+        say(f"{len(known)} of {points} points are there already.")
     done = [len(known)]
 
     def count(point: CurvePoint) -> None:
@@ -87,13 +89,12 @@ def _swept(arguments: argparse.Namespace, chosen: Scene, frequencies: Any, ampli
         if point.failure:
             say(f"{point.frequency:g} Hz: {point.failure}")
         if sys.stderr.isatty():
-            show_percent(done[0] / len(frequencies))
+            show_percent(done[0] / points)
 
     with (scheduler_of(arguments) as client,
-          keeping(kept, lambda: f"{done[0]} of {len(frequencies)} points")):
-        swept = in_background(lambda stop: resonance_curve(chosen, frequencies, arguments.start, stop=stop,
-                                                           on_point=count, known=known, amplitude=amplitude,
-                                                           scheduler=client), reports=True)
+          keeping(kept, lambda: f"{done[0]} of {points} points")):
+        swept = in_background(lambda stop: asked.compute(stop=stop, on_point=count, known=known, scheduler=client),
+                              reports=True)
     if kept is not None:
         with unbroken(arguments.out):
             save_curve(swept, arguments.out)

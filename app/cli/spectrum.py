@@ -32,7 +32,7 @@ def do(arguments: argparse.Namespace) -> None:
     """Compute the spectrum of a force."""
     from granchain_core import spectrum, transfer
     from granchain_core.analysis.spectrum import FORCES
-    from granchain_core.errors import unknown_name
+    from granchain_core.input_checks import unknown_name
 
     chosen = chosen_scene(arguments)
     check_picture(arguments.picture)

@@ -29,7 +29,7 @@ from granchain_core import (
     Transfer,
     WorkPrecision,
 )
-from granchain_core.errors import unknown_name
+from granchain_core.input_checks import unknown_name
 from granchain_core.paper import (
     EnergyMaps,
     Observers,

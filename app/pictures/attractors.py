@@ -11,7 +11,7 @@ from granchain_core import Attractor
 
 from ..format import figures_of, in_words
 from .axes import force_scale
-from .regimes import REGIME_MARKS, batch_sentence, regime_key
+from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme, apply_theme, frame, themed
 
 
@@ -26,7 +26,7 @@ def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
         share, error = 100.0 * one.share, 100.0 * one.share_error
         source = ColumnDataSource({
             "share": [share], "low": [share - error], "high": [share + error],
-            "force": [one.max_output_force / scale.factor], "motion": [batch_sentence(one.regime)],
+            "force": [one.max_output_force / scale.factor], "motion": [one.regime.sentence],
             "value": [in_words(one.max_output_force, "N", figures_of(one.force_errors.output))],
             "starts": [", ".join(origin.name for origin in one.origins[:4])]}, name=key)
         themed(plot.segment("low", "force", "high", "force", source=source), line_color="soft", line_width=1.2)

@@ -11,7 +11,6 @@ from granchain_core import Basins
 
 from ..format import in_words, prefixed
 from .axes import Scale
-from .regimes import batch_sentence
 from .theme import GREY, Theme, apply_theme, frame
 
 #: Patterns beside the colours, so that the colours need not be told apart.
@@ -24,7 +23,7 @@ def basins(found: Basins, theme: Theme) -> figure:
     x, y, colours = _axis(*found.x), _axis(*found.y), Colorblind[8]
     columns, rows = np.meshgrid(found.x[1] / x.factor, found.y[1] / y.factor)
     number = found.number.ravel()
-    words = [f"{batch_sentence(one.regime)}; largest output force {in_words(one.max_output_force, 'N')}; "
+    words = [f"{one.regime.sentence}; largest output force {in_words(one.max_output_force, 'N')}; "
              f"{100.0 * share:.0f} % of the plane" for one, share in zip(found.attractors, found.shares, strict=True)]
     plot = frame(name="basins", min_border=4)
     plot.grid.visible = False

@@ -15,7 +15,7 @@ from granchain_core.regime import Regime
 
 from ..format import figures_of, in_words, short_error
 from .axes import force_scale, knob_scale
-from .regimes import REGIME_MARKS, batch_sentence, regime_key
+from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme, apply_theme, frame, themed
 
 #: Dashes of the line by the start of a sweep.
@@ -94,4 +94,4 @@ def _force(newtons: float, relative: float | None) -> str:
 
 @functools.lru_cache(maxsize=1024)
 def _sentence(regime: Regime) -> str:
-    return batch_sentence(regime)
+    return regime.sentence

@@ -7,10 +7,6 @@ because the pictures in docs/paper and docs/dashboard.png show them.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from granchain_core.regime import Regime
-
 from .theme import BLUE, GREY, THEMES
 
 #: Marker, colour and size of every regime: told apart with and without colour.
@@ -24,16 +20,6 @@ REGIME_MARKS = {
 #: The markers as characters, for a legend in words.
 SYMBOLS = {"circle": "●", "diamond": "◆", "triangle": "▲", "square": "■", "star": "★", "circle_dot": "◉", "x": "✕",
            "dash": "–"}
-
-
-def batch_sentence(regime: Regime) -> str:
-    """The sentence of a motion that was computed in a batch.
-
-    Where it was followed to its orbit without multipliers, its decay is the one that was assumed meanwhile, and says
-    nothing of the motion.
-    """
-    assumed = regime.followed and regime.multiplier is None
-    return (replace(regime, decay=None) if assumed else regime).sentence
 
 
 def regime_key(name: str, period: int | None) -> str:

@@ -45,7 +45,7 @@ class Page:
         """The page is shown in another theme; a view's own figures follow by themselves."""
 
     def visibility_changed(self, visible: bool) -> None:
-        """Somebody began to look at the page or its tab, or ceased to; at first nobody does."""
+        """Called when the page or its tab becomes visible or hidden; it is hidden at first."""
 
 
 def all_actions(owners: Mapping[str, Actions]) -> Actions:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from granchain_core import BadInput, Run, Scene, State, pulse, run, scene, settle
-from granchain_core.errors import unknown_name
+from granchain_core.input_checks import unknown_name
 from granchain_core.regime import NEVER_REPEATING
 from granchain_core.scene import ASSETS
 from granchain_core.stop import Stop

@@ -1,8 +1,9 @@
 """Work-precision measurements on this machine: error against time for every method, and the cost of each effect."""
 
 from .compared_methods import MeasuredMethod, compared_methods
+from .measurements import Row, WorkPrecision, cheapest
 from .naive import Lesson, Naive
-from .work_precision import Row, WorkPrecision, cheapest, work_precision
+from .work_precision import work_precision
 
 __all__ = ["Lesson", "MeasuredMethod", "Naive", "Row", "WorkPrecision", "cheapest", "compared_methods",
            "work_precision"]

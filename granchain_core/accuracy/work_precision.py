@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -19,11 +18,10 @@ from ..integrate import METHODS, Engine, Setting, adaptive_setting
 from ..integrate.stated import relative_difference
 from ..scene import Scene
 from ..stop import Stop
-from ..tables import Column, Labelled, Table, axis, provenance
-from ..tables.provenance import Attribute
 from .compared_methods import SCIPY, MeasuredSetting, measured_settings
 from .limit import Limited
-from .naive import Lesson, lesson
+from .measurements import Row, WorkPrecision
+from .naive import lesson
 from .scipy_methods import solve
 
 #: Drive periods run from rest; without a drive it is one time 1/f.
@@ -58,93 +56,6 @@ class Computed(NamedTuple):
 
 
 Measure = Callable[[Stop], Computed]
-
-
-@dataclass(frozen=True)
-class Row:
-    """One method at one setting: largest displacement error over the largest displacement, seconds, evaluations.
-
-    `value` is the setting as a number. With a `failure` there is neither error nor time. `wall_s` is the processor time
-    of the computing thread, which other work of the machine hardly lengthens.
-    """
-
-    method: str
-    setting: str
-    error: float
-    wall_s: float
-    rhs: int
-    value: float = 0.0
-    failure: str = ""
-
-
-@dataclass(eq=False)
-class WorkPrecision(Labelled):
-    """Error against time for every method on one scene.
-
-    Attributes
-    ----------
-    scene : Scene
-        The chain.
-    reference, second : str
-        The method whose motion counts as true, and the independent one with which it is compared.
-    agreement : float
-        Largest difference of the two over the largest displacement; NaN while it is not known.
-    rows : list of Row
-        One for each method and setting: `method`, `setting`, `error`, `wall_s` [s], `rhs`, and `failure`, a sentence.
-    lesson : Lesson or None
-        The force as naive methods compute it.
-    disagreement : str
-        A sentence where the second method failed.
-
-    Examples
-    --------
-    >>> from granchain_core import WorkPrecision, scene
-    >>> WorkPrecision(scene("sec2"), "dop853", "SciPy's DOP853").cheapest(1e-6) is None
-    True
-    """
-
-    scene: Scene
-    reference: str
-    second: str
-    agreement: float = float("nan")
-    rows: list[Row] = field(default_factory=list)
-    lesson: Lesson | None = None
-    disagreement: str = ""
-
-    def cheapest(self, error: float) -> Row | None:
-        """The fastest of granchain's and SciPy's settings that is at least this accurate."""
-        return cheapest(self.rows, error)
-
-    def tables(self) -> tuple[Table, ...]:
-        """One table, `accuracy`: error and time of each method at each setting."""
-        def column(name: str, unit: str, meaning: str, kind: type = float) -> dict[str, Column]:
-            values: np.ndarray = np.array([getattr(row, name) for row in self.rows], dtype=kind)
-            return {name: Column(values, ("row",), unit, meaning)}
-
-        return (Table("accuracy", axis("row", np.arange(len(self.rows)), "1", "number of the measurement"), {
-            **column("method", "", "name of the method", object), **column("setting", "", "its setting", object),
-            **column("value", "1", "its setting as a number"),
-            **column("error", "1", "largest error of a displacement over the largest displacement"),
-            **column("wall_s", "s", "time of ten drive periods"),
-            **column("rhs", "1", "evaluations of the equations of motion", np.int64),
-            **column("failure", "", "why there is neither error nor time; empty where there are", object)}),)
-
-    def attributes(self) -> dict[str, Attribute]:
-        """Both references and how well they agree, and where it comes from."""
-        return {**provenance(self.scene, self.reference, None), "reference": self.reference,
-                "second": self.second, "agreement": self.agreement, "disagreement": self.disagreement}
-
-    def summary(self) -> list[str]:
-        """The references, and the cheapest ways to three accuracies."""
-        ways = [f"cheapest to {error:g}: {best.method}, {best.setting}, {1e3 * best.wall_s:.3g} ms"
-                for error in (1e-3, 1e-6, 1e-9) if (best := self.cheapest(error)) is not None]
-        return [f"{len(self.rows)} settings; {self.reference} and {self.second} agree to {self.agreement:.1e}", *ways]
-
-
-def cheapest(rows: list[Row], error: float) -> Row | None:
-    """The fastest row that is at least this accurate; failed ones never are."""
-    good = [row for row in rows if not row.failure and row.error <= error]
-    return min(good, key=lambda row: row.wall_s) if good else None
 
 
 def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[float], None] | None = None,

@@ -14,7 +14,8 @@ import numpy as np
 
 from ..diagram.attractor import Attractor, Origin, attractor_methods, attractors_table
 from ..diagram.attractors import attractors_from
-from ..errors import BadInput, axis_in, numbers_in
+from ..errors import BadInput
+from ..input_checks import axis_in, numbers_in
 from ..scene import Scene
 from ..scene.given import require_scene
 from ..state import State

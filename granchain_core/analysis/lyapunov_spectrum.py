@@ -17,7 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import check_range, whole_number
+from ..input_checks import check_range, whole_number
 from ..orbits.stroboscopic_map import FLOW_METHOD, StroboscopicMap
 from ..scene import Scene
 from ..scene.given import require_scene

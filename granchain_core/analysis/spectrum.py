@@ -16,7 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput
+from ..input_checks import unknown_name
 from ..result import Run, require_run
 from ..scene import Scene
 from ..tables import Column, Labelled, Table, axis

@@ -13,7 +13,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed, numbers_in, unknown_name, whole_number
+from ..errors import BadInput, NumbersFailed
+from ..input_checks import numbers_in, unknown_name, whole_number
 from ..integrate.methods import FIXED_STEP
 from ..quantities import QUANTITIES
 from ..regime import Regime

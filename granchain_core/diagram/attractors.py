@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import NumbersFailed, whole_number
+from ..errors import NumbersFailed
+from ..input_checks import whole_number
 from ..integrate import Engine
 from ..regime import Regime
 from ..result import ForceErrors

@@ -21,7 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed, unknown_name
+from ..errors import BadInput, Cancelled, NumbersFailed
+from ..input_checks import unknown_name
 from ..orbits.branch.special import BIFURCATIONS
 from ..orbits.stroboscopic_map import StroboscopicMap
 from ..quantities import QUANTITIES

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
-from ..errors import axis_in
+from ..input_checks import axis_in
 from ..scene import Amplitude, Scene
 from ..steady.batch.job import Start
 from ..steady.batch.starts import settle_starts

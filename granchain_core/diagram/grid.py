@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, series_in, unknown_name
+from ..errors import BadInput
+from ..input_checks import series_in, unknown_name
 from ..quantities import QUANTITIES
 from ..scaling import scale_chain
 from ..scene import Amplitude, Scene

@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput
+from ..input_checks import unknown_name
 from ..text import number_in
 
 #: Knots in a period of the highest frequency of a formula.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput
+from ..input_checks import unknown_name
 from ..scene import Amplitude
 from ..scene.amplitude import FORMULAS
 from ..text import number_in

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput
+from ..input_checks import unknown_name
 from ..text import whole_in
 from .units import QUANTITIES, SHORT, UNITS, VOLTS, factor_of
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.stats import chi2, f
 
 from ..errors import BadInput
 from ..scene import Amplitude, Scene
@@ -129,7 +129,7 @@ class Fit(Labelled):
     @property
     def limit(self) -> float:
         """How far the misfit has risen at the ends of the 95 % intervals."""
-        return limit(self.scale, None if self.target.sigma_known else self.freedom)
+        return limit(self.scale, _scale_freedom(self.target, self.freedom))
 
     def summary(self) -> list[str]:
         """Each parameter with its interval, and the verdict."""
@@ -238,7 +238,7 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
         scale = 1.0 if known else problem.chi_squared(best) / max(freedom, 1)
         try:
             if intervals and target.smooth and freedom > 0:
-                profiles = tuple(profile(problem, best, j, scale, None if known else freedom, again == _AGAIN - 1)
+                profiles = tuple(profile(problem, best, j, scale, _scale_freedom(target, freedom), again == _AGAIN - 1)
                                  for j in range(len(free)))
             break
         except BetterMinimum as better:
@@ -251,13 +251,23 @@ def _counted(problem: Problem, data: int, freedom: int) -> int:
     return data if isinstance(problem.target, FeatureTarget) else freedom
 
 
+def _scale_freedom(target: Target, freedom: int) -> int | None:
+    """Degrees of freedom with which the size of the data's errors is known; None where it is known exactly."""
+    return target.error_freedom if target.sigma_known else freedom
+
+
 def _probability(problem: Problem, place: np.ndarray, data: int, freedom: int) -> float | None:
     """Probability of a χ² as large as this if the model were true.
 
     None where no errors are known, or nothing is left free.
     """
     counted = _counted(problem, data, freedom)
-    return float(chi2.sf(problem.chi_squared(place), counted)) if problem.target.sigma_known and counted > 0 else None
+    if not problem.target.sigma_known or counted == 0:
+        return None
+    chi_squared, repeats = problem.chi_squared(place), problem.target.error_freedom
+    if repeats is None:
+        return float(chi2.sf(chi_squared, counted))
+    return float(f.sf(chi_squared / counted, counted, repeats))
 
 
 def _verdict(probability: float | None) -> str:

@@ -48,8 +48,8 @@ class Profile:
 def limit(scale: float = 1.0, freedom: int | None = None) -> float:
     """Rise of the misfit at the ends of an interval for one parameter.
 
-    Where the errors are known it is that of χ² with one degree of freedom. Where they are not, their variance `scale`
-    is estimated from the fit with `freedom` degrees of freedom, and the rise in this unit has the distribution F.
+    Where the errors are known it is that of χ² with one degree of freedom. Where their variance is estimated with
+    `freedom` degrees of freedom, from repeats or as `scale` from the fit, the rise in its unit has the distribution F.
     """
     return float(chi2.ppf(LEVEL, 1) if freedom is None else f.ppf(LEVEL, 1, freedom)) * scale
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput
+from ..input_checks import unknown_name
 from ..quantities import QUANTITIES
 from ..scene import Amplitude, Bead, Scene
 from ..text import number_in

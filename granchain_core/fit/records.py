@@ -42,6 +42,11 @@ class RecordsTarget:
         return self.records[0].sigma_known
 
     @property
+    def error_freedom(self) -> None:
+        """None: the standard deviation is given, if it is known."""
+        return None
+
+    @property
     def smooth(self) -> bool:
         """Whether residuals are smooth between regimes."""
         return True

@@ -88,6 +88,17 @@ class CurveTarget:
         return self._known_sigma is not None
 
     @property
+    def error_freedom(self) -> int | None:
+        """Degrees of freedom with which repeats tell the standard deviation; None where it is given."""
+        given = self.error is not None or self.measured.error is not None
+        return None if given or not self.sigma_known else self._spare
+
+    @property
+    def _spare(self) -> int:
+        """Number of repeats beyond the first of each frequency."""
+        return 0 if self.measured.repeats is None else int((self.measured.repeats - 1).sum())
+
+    @property
     def _known_sigma(self) -> np.ndarray | None:
         force, repeats, scatter = self.measured.force, self.measured.repeats, self.measured.scatter
         if self.measured.error is not None and (self.measured.error > 0.0).all():
@@ -97,8 +108,7 @@ class CurveTarget:
             return np.asarray(self.error * size)
         if repeats is None or scatter is None or (repeats > 1).sum() < 2:
             return None
-        spare = repeats - 1
-        relative = math.sqrt(float((spare * (scatter / size) ** 2).sum() / spare.sum()))
+        relative = math.sqrt(float(((repeats - 1) * (scatter / size) ** 2).sum() / self._spare))
         return np.asarray(max(relative, _LEAST_SCATTER) * size / np.sqrt(repeats))
 
     @property
@@ -174,6 +184,11 @@ class SeriesTarget:
     def sigma_known(self) -> bool:
         """Whether the standard deviation was given."""
         return self.error is not None
+
+    @property
+    def error_freedom(self) -> None:
+        """None: the standard deviation is given, if it is known."""
+        return None
 
     @property
     def frequencies(self) -> np.ndarray:
@@ -253,6 +268,11 @@ class FeatureTarget:
     def smooth(self) -> bool:
         """Extrema come and go."""
         return False
+
+    @property
+    def error_freedom(self) -> None:
+        """None: the standard deviation is given."""
+        return None
 
     def where(self, datum: int) -> str:
         """Which extremum a datum is, in words."""

@@ -26,11 +26,13 @@ from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop
 
-#: A period that no member reaches.
+#: [no threshold] A period that no member reaches.
 NEVER = int(np.iinfo(np.int64).max)
-#: Drive periods until the next extrapolation after a failed one, at the start.
+#: [period n] A batch: drive periods without extrapolation after the first one that did not help; doubled at each
+#: further one. The record of strobes and the count of periods then go on from the state before the attempt
+#: (`undo_extrapolation` in kernels/batch/record.py).
 _FIRST_PAUSE = 16
-#: Fewest orbits in one round of a finer run.
+#: [period n] A batch: fewest orbits between two checks of the finer run.
 _FEWEST_ORBITS = 2
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import unknown_name
+from ..input_checks import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
 from ..scaling import ScaledChain

@@ -9,12 +9,13 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput
 from ..experiment import Answers, Convention, Series, read_data
 from ..experiment.measured import MOST_BYTES, MOST_ROWS
 from ..experiment.units import UNITS, unit_named
 from ..hdf5 import SIGNATURE, File, opened
 from ..hdf5.plain import Refused
+from ..input_checks import unknown_name
 from ..recorded_motion import motion_units
 from ..state import State
 from .record import ForceRecord, checked

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import whole_number
+from ..input_checks import whole_number
 from ..integrate import Engine, adaptive_setting
 from ..steady.poincare import Section
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS

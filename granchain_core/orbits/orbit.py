@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import NumbersFailed, whole_number
+from ..errors import NumbersFailed
+from ..input_checks import whole_number
 from ..integrate.start import at_phase_0
 from ..regime import modulus_words
 from ..scaling import scales_of

@@ -20,11 +20,12 @@ from ..result import GIVEN_STATE, Cost, Run, run_from
 from ..steady.curve.resonance import END_PART, STOP_BAND_PART, pushes
 from .orbit import Orbit
 
-#: The reflected pulse is in step if bead 1 comes back with this fraction of the drive's largest speed.
+#: [response] The reflected pulse is in step if bead 1, just before the strongest push, approaches the driver with this
+#: part of the drive's largest speed 2πf A0.
 RETURNS_IN_STEP = 1.0 / 3.0
-#: Samples a period: events are placed to about a degree of the drive.
+#: [no threshold] Samples a period: events are placed to about a degree of the drive.
 _SAMPLES = 480
-#: Tolerance of a step.
+#: [no threshold] Tolerance of a step.
 _TOLERANCE = 1e-9
 
 

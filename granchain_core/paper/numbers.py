@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..diagram import attractors
-from ..errors import unknown_name
+from ..input_checks import unknown_name
 from ..orbits import periodic_orbit
 from ..regime import Regime
 from ..scene import scene

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import BadInput, whole_number
+from ..errors import BadInput
+from ..input_checks import whole_number
 from ..integrate import Engine, fixed_step_setting
 from ..kernels.forces.peaks import next_period
 from ..recorded_motion import MOST_RECORDED, MOST_SAMPLES

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed, OverBudget, series_in
+from ..errors import BadInput, Cancelled, NumbersFailed, OverBudget
+from ..input_checks import series_in
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..result import Run

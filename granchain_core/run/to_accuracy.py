@@ -12,7 +12,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..errors import BadInput, seconds_allowed, whole_number
+from ..errors import BadInput
+from ..input_checks import seconds_allowed, whole_number
 from ..integrate import Counts, Engine, Setting, fixed_step_setting, method_for
 from ..integrate.methods import setting_of
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
@@ -30,15 +31,17 @@ from ..stop import Stop
 from .budget import BUDGET, Stopwatch, check_budget
 from .run_checkpoints import Reached, RunCheckpoints
 
-#: Most drive periods of one run.
+#: [no threshold] Most drive periods of one run.
 MOST_PERIODS = 10_000_000
-#: Stated error above which a motion may be chaotic: finer computations do not help then.
+#: [no threshold] Stated error above which a motion may be chaotic: finer computations do not help then.
 _CHAOS_SUSPECTED_ABOVE = 0.3
-#: Such a motion is refined until its energy residual is below this factor times the accuracy: energies are quadratic.
+#: [no threshold] Such a motion is refined until its energy residual is below this factor times the accuracy: energies
+#: are quadratic.
 _RESIDUAL_PER_ACCURACY = 10.0
-#: Time of the next finer computation over that of the last.
+#: [no threshold] Time of the next finer computation over that of the last.
 _REFINED_COST_RATIO = 2.0
-#: Fewest periods after which multipliers or a Lyapunov exponent are computed; a shorter run is judged by its strobes.
+#: [all] `run`: fewest drive periods after which multipliers or a Lyapunov exponent are computed. A shorter run is
+#: judged by its strobes alone.
 _FEWEST_PERIODS_CLASSIFIED = 40
 
 

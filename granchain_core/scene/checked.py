@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import MISSING, fields
 from typing import Any
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput
+from ..input_checks import unknown_name
 from ..quantities import QUANTITIES, WALL_FACTORS
 from .description import BEAD_LIMITS, Bead, Description, is_number
 

@@ -8,7 +8,8 @@ import math
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from ..errors import BadInput, unknown_name
+from ..errors import BadInput
+from ..input_checks import unknown_name
 from ..quantities import QUANTITIES
 from .checked import checked_fields, checked_values
 from .description import Description

@@ -14,10 +14,12 @@ import numpy as np
 from ..regime import Regime
 from .regime_criteria import agree, clearly_chaotic, needs_more_periods, regime_from_exponents
 
-#: Blocks of a measurement, from which the standard error of its mean exponent is computed.
+#: [chaotic, quasi-periodic] Blocks in a measurement of the exponent. The standard error of the mean is computed from
+#: them.
 EXPONENT_BLOCKS = 10
-#: Drive periods in a block. A measurement that is continued has the same number of longer blocks: on a closed curve
-#: the means of successive blocks swing up and down, and the swing falls as 1/periods.
+#: [chaotic, quasi-periodic] Drive periods in a block, and more in a measurement that is continued. It has the same
+#: number of longer blocks: on a closed curve the means of successive blocks swing up and down, and the swing falls as
+#: 1/periods.
 PERIODS_IN_BLOCK = 20
 
 

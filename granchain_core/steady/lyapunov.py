@@ -16,7 +16,8 @@ from ..kernels.batch.record import STROBES_KEPT
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
 from ..scaling import ScaledChain
 
-#: Distance of the neighbouring trajectory in drive amplitudes: far above rounding, far below the kinks of the contacts.
+#: [chaotic, quasi-periodic] Distance of the neighbouring trajectory, in drive amplitudes. It is far above rounding and
+#: far below the kinks of the contacts.
 _DISTANCE = 1e-8
 
 

@@ -15,32 +15,34 @@ from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 from ..regime import Regime
 
-#: Standard errors within which a mean exponent counts as not known.
+#: [chaotic, quasi-periodic] Standard errors within which a mean exponent counts as not known.
 STANDARD_ERRORS = 3.0
-#: Longest period that is looked for, in drive periods: orbits locked to the drive among quasi-periodic motions may be
-#: that long. A batch looks for periods up to `LONGEST_PERIOD`, and leaves a longer one to a chain settled alone.
+#: [period n] Longest period that is tested for a chain alone, in drive periods. Orbits locked to the drive among
+#: quasi-periodic motions may be that long.
 LONGEST_LOCKED_PERIOD = 60
-#: Logarithm of the factor by which a distance may grow or shrink on a closed curve, once and not again: up to 4 was
-#: seen. A mean exponent over P periods says nothing below this over P.
+#: [chaotic, quasi-periodic] Logarithm of the factor by which a distance may grow or shrink once, and not again, on a
+#: closed curve; a mean exponent over P periods is judged to this over P. Up to 4 was seen.
 _BOUNDED_GROWTH = 6.0
-#: Largest mean exponent per period of a quasi-periodic motion, and largest three standard errors of it. All but weak
-#: chaos, below this exponent, is excluded.
+#: [quasi-periodic] Largest mean exponent per period, and largest three standard errors of it. All but weak chaos, below
+#: this exponent, is excluded.
 _LARGEST_NEUTRAL_EXPONENT = 0.01
-#: Periods in one of the three windows in which a slow approach must show.
+#: [quasi-periodic] Drive periods in one of the three windows in which a slow approach must show.
 _SLOW_WINDOW = 100
-#: Changes shrink where the next window has less than this part of them: a closed curve sampled a hundred times shows
-#: its extent to about a per cent.
+#: [quasi-periodic] Changes shrink if a window has less than this part of those of the window before. A closed curve
+#: sampled a hundred times shows its extent to about a per cent.
 _SHRINK_FACTOR = 0.98
-#: Largest changes of a departure that is still small, relative to the largest displacement and velocity.
+#: [quasi-periodic] Changes of a departure are small below this, relative to the largest displacement and velocity.
 _LARGEST_DEPARTURE = 0.1
-#: Lyapunov exponent per period that no departure from an orbit sustains over the periods in which a motion may settle.
+#: [chaotic] One measurement suffices if both halves are above this exponent per period, and above three standard
+#: errors. No departure from an orbit sustains it over the periods in which a motion may settle.
 CLEAR_GROWTH = 0.05
-#: Difference of two mean exponents per period below which they agree, however small their standard errors.
+#: [chaotic, quasi-periodic] Two mean exponents per period agree if they differ by less than this, or by three combined
+#: standard errors.
 _EXPONENT_DIFFERENCE = 1e-3
-#: Largest median distance between neighbours of a section that returns near itself, in units of their distance on a
-#: curve that is filled evenly.
+#: [quasi-periodic] The section returns near itself if the median distance between neighbours is at most this many times
+#: that on a curve which is filled evenly.
 _RETURN_FACTOR = 5.0
-#: Strobes needed for the three windows.
+#: [quasi-periodic] Strobes needed for the three windows.
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
 

@@ -11,7 +11,7 @@ from ..result import ForceErrors
 from ..scene import Scene
 from ..state import State
 
-#: Drive periods over which the largest forces of an irregular motion are taken.
+#: [chaotic, quasi-periodic, unsettled] Drive periods over which the largest forces of a point of a curve are taken.
 IRREGULAR_PERIODS = 100
 
 

@@ -12,9 +12,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ..errors import BadInput, check_range, whole_number
+from ..errors import BadInput
 from ..experiment.measured import VIRTUAL
 from ..fit.trains import Train
+from ..input_checks import check_range, whole_number
 from ..integrate import Engine, fixed_step_setting
 from ..integrate.methods import typical_error
 from ..result import GIVEN_STATE, Cost, Run, run_from

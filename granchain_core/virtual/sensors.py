@@ -16,7 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.signal import butter, sosfilt
 
-from ..errors import BadInput, check_range
+from ..errors import BadInput
+from ..input_checks import check_range
 
 #: Order of the low-pass.
 _ORDER = 2

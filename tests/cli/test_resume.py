@@ -9,24 +9,29 @@ import shutil
 import signal
 import sys
 import time
+from dataclasses import dataclass, fields
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app.cli import main
-from granchain_core import BadInput, resonance_curve, scene
+from granchain_core import Amplitude, BadInput, resonance_curve, scene
 from granchain_core.checkpoints import Kept, folder_of
 from granchain_core.run import to_accuracy
 from granchain_core.steady.curve import resonance_curve as curves
 from granchain_core.steady.curve.point_checkpoints import point_checkpoints, points_in
+from granchain_core.steady.curve.request import CurveRequest
 from tools.kills.finished import differing, finished_in
 from tools.kills.processes import Command
 from tools.kills.trial import COMMANDS as LONG
 
 #: A run that is long enough for two signals after a finished block each; the others are no longer than that.
 COMMANDS = {**LONG, "run": ("run", "sec2", "--periods", "1500", "--record", "5", "--samples", "16")}
+#: Frequencies of the curves that are computed here [Hz].
+FREQUENCIES = tuple(np.linspace(900.0, 1100.0, 7).tolist())
 linux = pytest.mark.skipif(sys.platform != "linux", reason="descendants are found in /proc")
 
 
@@ -142,27 +147,50 @@ def test_resume_needs_a_file(name: str, capsys: pytest.CaptureFixture[str]) -> N
     assert "--resume needs" in err and len(err.splitlines()) == 1
 
 
+@pytest.mark.parametrize(("start", "amplitude", "digest"), [
+    ("rest", None, "4d9634abc0b6451d"), ("down", None, "5da1a17261774351"),
+    ("up", Amplitude("constant-velocity", (3e-3,)), "ea0ac7c017c10a79"),
+    ("rest", Amplitude.table([50.0, 2000.0], [8e-7, 6e-7]), "708a4cc8a10e19ef"),
+])
+def test_blocks_of_earlier_versions_are_found(start: str, amplitude: Amplitude | None, digest: str) -> None:
+    """The digests of the version before CurveRequest."""
+    assert CurveRequest(scene("sec2").evolve(N=3), FREQUENCIES, start, amplitude).digest == digest
+
+
+def test_what_changes_a_curve_is_in_its_digest() -> None:
+    """An argument of `resonance_curve` is a field of the request, or named here because no point depends on it."""
+    how = {"stop", "on_point", "workers", "known", "scheduler"}
+    assert {field.name for field in fields(CurveRequest)} == set(signature(resonance_curve).parameters) - how
+
+    @dataclass(frozen=True)
+    class Longer(CurveRequest):
+        skipped: int = 0
+
+    asked = CurveRequest(scene("sec2"), FREQUENCIES)
+    assert Longer(scene("sec2"), FREQUENCIES).digest == asked.digest != Longer(scene("sec2"), FREQUENCIES, skipped=1).digest
+
+
 @pytest.mark.parametrize("start", ["rest", "up", "down"])
 def test_known_points_are_not_computed_again_and_the_others_are_the_same(start: str, tmp_path: Path,
                                                                          monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the state is carried along they go on from the last known point; a gap ends what is known."""
-    chosen, frequencies = scene("sec2").evolve(N=3), np.linspace(900.0, 1100.0, 7)
-    whole = resonance_curve(chosen, frequencies, start, workers=1)
-    kept = point_checkpoints(chosen, frequencies, start, tmp_path / "c.h5")
+    asked = CurveRequest(scene("sec2").evolve(N=3), FREQUENCIES, start)
+    whole = asked.compute(workers=1)
+    kept = point_checkpoints(asked, tmp_path / "c.h5")
     order = sorted(whole.points, key=lambda p: p.frequency, reverse=start == "down")
     for point in (*order[:3], order[4]):
         kept.add(point)
     kept.write()
-    again = point_checkpoints(chosen, frequencies, start, tmp_path / "c.h5")
+    again = point_checkpoints(asked, tmp_path / "c.h5")
     again.open(resume=True)
     known, new = points_in(again), []
     assert [p.frequency for p in known] == [p.frequency for p in (*order[:3], order[4])]
     for mine, its in zip(known, (*order[:3], order[4]), strict=True):
         assert (mine.regime, mine.force_errors, mine.max_output_force) == (its.regime, its.force_errors, its.max_output_force)
         assert mine.state.displacement.tobytes() == its.state.displacement.tobytes()
-    found = resonance_curve(chosen, frequencies, start, on_point=new.append, known=known, workers=1)
+    found = asked.compute(on_point=new.append, known=known, workers=1)
     assert len(new) == (3 if start == "rest" else 4)
-    assert [p.frequency for p in found.points] == sorted(frequencies)
+    assert [p.frequency for p in found.points] == sorted(FREQUENCIES)
     for mine, its in zip(found.points, whole.points, strict=True):
         if start != "rest":
             assert mine.max_output_force == its.max_output_force

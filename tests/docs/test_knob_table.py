@@ -1,11 +1,13 @@
-"""The table of knobs in docs/model.md is `QUANTITIES`."""
+"""The table of knobs in docs/model.md is `QUANTITIES`, and the docstring of `Scene` has every knob with its unit."""
 
 from __future__ import annotations
 
 import re
 
+import pytest
 from documents import ROOT
 
+from granchain_core import Scene
 from granchain_core.quantities import QUANTITIES, Quantity
 
 TEXT = (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
@@ -36,3 +38,10 @@ def test_the_table_of_knobs_is_the_codes() -> None:
     found = re.search(r"\| knob \|.*\n\|[-|]+\|\n((?:\|.*\n)+)", TEXT)
     assert found is not None
     assert found[1].rstrip() == expected, expected
+
+
+@pytest.mark.parametrize("knob", [one for one in QUANTITIES.values() if one.name != "kappa"], ids=lambda knob: knob.name)
+def test_the_docstring_of_a_scene_has_the_knob_and_its_unit(knob: Quantity) -> None:
+    entry = re.search(rf"^    (?:\w+, )*{knob.name}(?:, \w+)* : .*\n((?: {{8}}.*\n)+)", str(Scene.__doc__), re.MULTILINE)
+    assert entry is not None
+    assert knob.unit in ("", "1") or f"[{knob.unit}]" in entry[1]

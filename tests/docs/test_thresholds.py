@@ -1,5 +1,5 @@
-"""Numbers that pages give beside the name of a constant are the code's, no page names a constant that is not there, and
-the multipliers of two pages are computed.
+"""The tables of thresholds are those of the code, no page names a constant that is not there, and the multipliers of a
+page are computed.
 """
 
 from __future__ import annotations
@@ -7,7 +7,6 @@ from __future__ import annotations
 import ast
 import importlib
 import re
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -18,37 +17,31 @@ from granchain_core import orbit, scene
 from granchain_core.kernels.batch import record
 from granchain_core.observe.drift import TRANSLATION
 from granchain_core.regime import Regime
-from granchain_core.steady.curve import resonance
 from granchain_core.steady.settling import regime_decisions
+from tools.thresholds import marked_constants, pages, printed
 
-MODEL, OBSERVERS, REGIMES, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
-                                       for name in ("model", "observers", "regimes", "glossary"))
-#: Rows of the table of thresholds: the number, the constant's name and its file.
-ROWS = re.findall(r"\| ([\d.e-]+) \| `(\w+)` in `([\w/]+)\.py` \|", REGIMES)
-#: Numbers in the same files that decide no regime: the size of a record, a period that is never reached, how a
-#: difference is computed, when a run is refined.
-NO_THRESHOLDS = {"STROBES_KEPT", "NEVER", "_REFINEMENT", "_TOLERANCE", "_DIFFERENCE", "_ONE_SIDED_DIFFERENCE", "_RENEWAL_PART",
-                 "_CHAOS_SUSPECTED_ABOVE", "_RESIDUAL_PER_ACCURACY", "_REFINED_COST_RATIO"}
+OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
+                       for name in ("observers", "glossary"))
 
 
-@pytest.mark.parametrize(("printed", "name", "file"), ROWS)
-def test_a_threshold_of_the_page_is_that_of_the_code(printed: str, name: str, file: str) -> None:
-    module = importlib.import_module("granchain_core." + file.replace("/", "."))
-    assert float(printed) == getattr(module, name)
+@pytest.mark.parametrize("page", pages(), ids=lambda page: page.stem)
+def test_a_table_of_thresholds_is_that_of_the_code(page: Path) -> None:
+    assert page.read_text(encoding="utf-8") == pages()[page]  # else run: python -m tools.thresholds
 
 
-def test_every_row_of_thresholds_is_read() -> None:
-    assert len(ROWS) == REGIMES.count(".py` |") > 0
+def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:
+    """Names given together, `A, B = range(2)`, are columns."""
+    marked = {(one.file, one.name) for one in marked_constants()}
+    for file in {file for file, _ in marked}:
+        module = importlib.import_module("granchain_core." + file[:-3].replace("/", "."))
+        numbers = {name for name in constants(Path(str(module.__file__)), ast.Name)
+                   if isinstance(getattr(module, name), int | float)}
+        assert not {name for name in numbers if (file, name) not in marked}, file
 
 
-def test_every_number_with_a_name_in_these_files_is_on_the_page() -> None:
-    """A new threshold is one that the page does not have yet. Names given together, `A, B = range(2)`, are columns."""
-    for file in {file for _, _, file in ROWS}:
-        module = importlib.import_module("granchain_core." + file.replace("/", "."))
-        named = constants(Path(str(module.__file__)), ast.Name)
-        numbers = {name for name in named if isinstance(getattr(module, name), int | float)}
-        missing = {name for name in numbers - NO_THRESHOLDS if f"`{name}`" not in REGIMES}
-        assert not missing, f"{file}.py: {missing}"
+@pytest.mark.parametrize(("value", "as_printed"), [(3.0, "3"), (0.97, "0.97"), (1e-5, "1e-5"), (10**8, "1e8"), (1 / 3, "1/3")])
+def test_how_a_threshold_is_printed(value: float, as_printed: str) -> None:
+    assert printed(value) == as_printed
 
 
 @pytest.mark.parametrize(("accuracy", "noise"), [(1e-8, 1e-7), (1e-5, 1e-6)])
@@ -62,18 +55,6 @@ def test_what_run_takes_for_no_change(accuracy: float, noise: float, monkeypatch
     monkeypatch.setattr(module, "find_period", find_period)
     module.run(scene("sec2").evolve(N=2, accuracy=accuracy), periods=1, record=1, samples=8)
     assert seen == [pytest.approx(noise)]
-
-
-def test_the_thresholds_of_a_response_are_those_of_the_code() -> None:
-    """docs/orbits.md tells the rule of resonances; every number with a name in its two files is there."""
-    text = (ROOT / "docs" / "orbits.md").read_text(encoding="utf-8")
-    rows = re.findall(r"\| ([\d./]+) \| `(\w+)` in `([\w/]+)\.py` \|", text)
-    assert len(rows) == text.count(".py` |\n") > 0
-    for printed, name, file in rows:
-        module = importlib.import_module("granchain_core." + file.replace("/", "."))
-        assert float(Fraction(printed)) == pytest.approx(getattr(module, name), rel=1e-15)
-    assert {name for _, name, file in rows if file == "steady/curve/resonance"} == {
-        name for name, value in vars(resonance).items() if name.isupper() and isinstance(value, float)}
 
 
 def constants(file: Path, targets: type[ast.expr] = ast.expr) -> set[str]:

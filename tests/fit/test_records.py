@@ -122,6 +122,7 @@ class Plane:
     slopes: np.ndarray
     smooth: bool = True
     sigma_known: bool = True
+    error_freedom: int | None = None
 
     def where(self, datum: int) -> str:
         return str(datum)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
@@ -28,6 +28,7 @@ class Line:
     sigma_known: bool
     log_variance: float = 0.0
     smooth: bool = True
+    error_freedom: int | None = None
 
     @property
     def frequencies(self) -> np.ndarray:
@@ -67,3 +68,22 @@ def test_intervals_hold_the_truth_in_95_of_100(known: bool) -> None:
 def test_the_limit_is_that_of_f_where_the_variance_is_estimated() -> None:
     assert limit(2.0, 5) == pytest.approx(2.0 * f.ppf(0.95, 1, 5)) == pytest.approx(2.0 * 6.608, rel=1e-3)
     assert limit(1.0) == pytest.approx(3.841, rel=1e-3) and limit(1.0, 10**7) == pytest.approx(limit(), rel=1e-5)
+
+
+def test_errors_that_repeats_tell_are_themselves_uncertain() -> None:
+    """A standard deviation from repeats with r = 3 degrees of freedom: 1 of 100 true models is called “cannot”.
+
+    More than 5 of 100 have a probability of 5e-4 (binomial); as if the errors were exact there would be some 20.
+    """
+    rng, wrong = np.random.default_rng(2), 0
+    for _ in range(100):
+        told = np.sqrt(rng.chisquare(3) / 3)  # over the true one, by which the data scatter
+        line = Line(AT + 0.1 / told * rng.standard_normal(len(AT)), True, error_freedom=3)
+        wrong += fit(CHAIN, cast(Target, line), FREE, design=2, intervals=False).verdict == "cannot"
+    assert wrong <= 5
+
+
+def test_repeats_widen_the_interval() -> None:
+    line = Line(AT.copy(), True, error_freedom=3)
+    wide, narrow = fitted(line).profiles[0], fitted(replace(line, error_freedom=None)).profiles[0]
+    assert (wide.high - wide.low) / (narrow.high - narrow.low) == pytest.approx(np.sqrt(limit(1.0, 3) / limit()), rel=0.05)

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 
 from granchain_core.paper import FIGURES, Statement
+from tools.generated import with_part
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "paper.md"
 FOLDER = PAGE.parent / "paper"
@@ -28,9 +28,5 @@ def gallery() -> str:
 def with_parts(text: str, rows: Sequence[Statement]) -> str:
     """The page with its table and its gallery as they are now."""
     for name, part in (("table", table(rows)), ("gallery", gallery())):
-        begin, end = f"<!-- {name}: python -m tools.paper -->", f"<!-- end of {name} -->"
-        text, count = re.subn(re.escape(begin) + r".*?" + re.escape(end), lambda _: f"{begin}\n\n{part}\n\n{end}",  # noqa: B023
-                              text, flags=re.DOTALL)
-        if count != 1:
-            raise ValueError(f"docs/paper.md has the mark {begin} {count} times")
+        text = with_part(text, name, "python -m tools.paper", part)
     return text

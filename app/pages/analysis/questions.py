@@ -13,7 +13,7 @@ from bokeh.models import LayoutDOM
 
 from granchain_core import BadInput, Scene, Stop, basins, lyapunov_spectrum, run, settle, spectrum, strobe_diagram
 from granchain_core.analysis.spectrum import FORCES
-from granchain_core.errors import check_range, unknown_name
+from granchain_core.input_checks import check_range, unknown_name
 from granchain_core.pieces import CURVE_KERNELS, MOTION_KERNELS, ORBIT_KERNELS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS

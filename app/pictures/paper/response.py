@@ -12,7 +12,7 @@ from granchain_core import Curve
 from granchain_core.paper import RigCurves, RigResponse, Trains
 
 from ..curve import FORCES, forces_in_words
-from ..regimes import REGIME_MARKS, batch_sentence, regime_key
+from ..regimes import REGIME_MARKS, regime_key
 from ..theme import Theme, apply_theme, frame, themed
 from .panels import inside_legend, measured_curve
 from .trains import trains
@@ -62,7 +62,7 @@ def _curve(plot: figure, one: Curve, dash: str | list[int], role: str, marked: b
         "x": [p.frequency for p in points], "y": [p.max_output_force_elastic for p in points],
         "marker": [REGIME_MARKS[key][0] for key in keys],
         "colour": [REGIME_MARKS[key][1] for key in keys], "regime": keys,
-        "sentence": [batch_sentence(p.regime) for p in points],
+        "sentence": [p.regime.sentence for p in points],
         "size": [REGIME_MARKS[key][2] + 1 if marked or not p.regime.period else 0
                  for key, p in zip(keys, points, strict=True)], **forces_in_words(points)})
     words = f"A0 = {1e6 * one.scene.A0:g} µm"

@@ -28,6 +28,7 @@ def transmission(shown: Transmission, theme: Theme) -> figure:
                          text_baseline="top" if below else "bottom", y_offset=10 if below else -8)
         themed(text, text_color="soft" if below else "ink")
     measured_curve(plot, shown.measured, scale)
+    plot.legend.ncols = 3  # four columns are wider than a phone
     highest = largest if shown.measured is None else max(largest, float(shown.measured.force.max()))
     plot.y_range.update(end=1.12 * highest / scale)
     return apply_theme(plot, theme)

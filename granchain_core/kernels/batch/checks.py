@@ -31,30 +31,33 @@ from ..strobes.periodicity import (
 )
 from .record import STROBES_KEPT, move_member, undo_extrapolation
 
-#: Most strobes on which a member's regime is decided.
+#: [period n] A batch: most strobes on which a period is looked for.
 CHECKED = 4 * LONGEST_PERIOD + 1
-#: Fewest orbits still to run that justify an extrapolation.
+#: [period n] A batch: an approach is extrapolated if more than this many orbits are left to run.
 _FEWEST_ORBITS_LEFT = 4.0
-#: Fewest drive periods from an extrapolation that was out of reach to the next one.
+#: [period n] A batch: fewest drive periods from an extrapolation that was out of reach to the next one.
 _PERIODS_AFTER_FAILURE = 8
-#: How far an extrapolation may go, in units of change/(1 − decay), the distance that the decay predicts.
+#: [period n] A batch: an extrapolation reaches at most this many times as far as the decay predicts, which is change/(1
+#: − decay).
 FARTHEST_EXTRAPOLATION = 3.0
-#: Largest part of the coarse orbit's error that may remain in the fine run.
+#: [period n] A batch: largest part of the coarse orbit's error that may be left in the finer run.
 COARSE_ERROR_LEFT = 0.02
-#: Most extrapolations of a fine member.
+#: [period n] A batch: most extrapolations of the finer run.
 _MOST_EXTRAPOLATIONS = 6
-#: Disturbance that tests an extrapolated orbit, relative to the motion.
+#: [period n] A batch: an orbit found by extrapolation is disturbed by this part of the motion.
 _DISTURBANCE = 1e-4
-#: Orbits that the test takes.
+#: [period n] A batch: orbits in the test of that disturbance.
 _TEST_ORBITS = 16
-#: Largest part of the disturbance that may be left at the end of the test, relative to its first quarter.
+#: [period n] A batch: largest part of the disturbance that may be left at the end of the test, relative to its first
+#: quarter.
 _PART_LEFT = 0.97
-#: Drive periods without extrapolation after a disturbance that did not decay.
+#: [period n] A batch: drive periods without extrapolation after a disturbance that did not decay.
 _PAUSE_AFTER_FAILED_TEST = 400
-#: Slowest decay reported for a disturbance that shrank: multipliers are then computed.
+#: [period n] A batch: slowest decay per orbit that is reported for a disturbance that shrank. Multipliers are then
+#: computed.
 _SLOWEST_DECAY = 0.9999
-#: Largest decay per drive period that is assumed to remain after an extrapolation: slower ones are not measured well
-#: enough.
+#: [period n] A batch: slowest decay per drive period that is assumed after an extrapolation. Slower ones are not
+#: measured well enough.
 _SLOWEST_ASSUMED_DECAY = 0.98
 #: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
 CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)

@@ -15,31 +15,34 @@ import numpy as np
 
 from ..compiling.jit import internal, kernel
 
-#: Longest period that is tested, in drive periods.
+#: [period n, followed, quasi-periodic] Longest period that a batch tests, in drive periods, and longest period of an
+#: orbit that is looked for beside a motion, in a batch or alone. A longer one is settled alone.
 LONGEST_PERIOD = 16
-#: Fewest changes from which a decay is measured.
+#: [period n] Fewest changes from which a decay is read.
 LEAST_WINDOW = 8
-#: A state is on its orbit when its distance bound, relative to the largest displacement and velocity, is below this.
+#: [period n] A state is on its orbit if the bound on its distance, relative to the largest displacement and velocity,
+#: is at most this.
 SETTLED_DISTANCE = 1e-6
-#: Changes of a fixed-step map below this are rounding.
+#: [period n] Changes of a fixed-step map at most this large count as rounding.
 ROUNDING = 1e-12
-#: A state with a larger change is not settled, because nothing decays a thousandfold in one period.
+#: [period n] A state whose last change over n periods is larger is not settled. Nothing decays a thousandfold in one
+#: period.
 _LARGEST_SETTLED_CHANGE = 1e-3
-#: A change below this part of the required distance is accepted even if its rate is not steady: a slow mode hidden in
+#: [period n] A bound on the distance below this part of the required one needs no steady decay. A slow mode hidden in
 #: it would have to decay a hundred times more slowly than what is observed.
 _UNEVEN_PART = 1e-2
-#: A decay is steady if both halves of its window agree to this part of the slower one.
+#: [period n] A decay is steady if both halves of its window agree to this part of the slower one.
 _STEADY_PART = 0.2
-#: Where the last changes are rounding, the decay is read from the last window of changes above rounding times this.
+#: [period n] Where the last changes are rounding, the decay is read from changes above rounding times this.
 _ABOVE_ROUNDING = 1e3
-#: A divisor q of a period n is the period if changes over q are at most this many bounds on the distance …
+#: [period n] A divisor q of n is the period if changes over q are at most this many bounds on the distance …
 _DISTANCES_OVER_DIVISOR = 10.0
-#: … or at most the distance at which a state is on its orbit, times this.
+#: [period n] … or at most the required bound times this.
 _SETTLED_OVER_DIVISOR = 3.0
-#: Changes over q periods that decay faster than this, per q periods, go to zero; else they may be those of a longer
-#: orbit.
+#: [period n] Changes over q periods that decay more slowly than this, per q periods, may be those of a longer orbit.
+#: Faster ones go to zero.
 _SLOWEST_APPROACH = 0.97
-#: Changes below this may be extrapolated (kernels/strobes/extrapolation.py).
+#: [period n] A batch: an approach is extrapolated once its change is below this (kernels/strobes/extrapolation.py).
 _LARGEST_EXTRAPOLATED_CHANGE = 1e-2
 
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ...errors import BadInput, unknown_name
+from ...errors import BadInput
+from ...input_checks import unknown_name
 from ...quantities import QUANTITIES
 from ...scene import Amplitude, Scene
 

@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...errors import BadInput, whole_number
+from ...errors import BadInput
+from ...input_checks import whole_number
 from ...scene import Amplitude, Scene
 from ...state import State
 from ...stop import Stop

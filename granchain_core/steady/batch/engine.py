@@ -37,11 +37,12 @@ from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_
 from ..steady_state import SteadyState
 from .job import FINER, BatchJob, Start, draft_result, failed, outcome_of_coarse_run
 
-#: Periods after which a draft gives up.
+#: [unsettled] Most drive periods of a draft of a curve.
 _DRAFT_PERIODS = 300
-#: Decay per orbit above which an orbit found by extrapolation needs its multipliers.
+#: [period n] A batch: an orbit found by extrapolation needs multipliers if its decay per orbit is above this.
 _SLOW_DECAY = 0.998
-#: Such an orbit is accepted if its largest |μ|, by one-sided differences, is below this.
+#: [period n] A batch: such an orbit is accepted if its largest |μ|, by one-sided differences, is below this, else
+#: settled alone.
 _LARGEST_SURE_MULTIPLIER = 0.995
 
 

@@ -9,29 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from ...checkpoints import Kept, digest_of
+from ...checkpoints import Kept
 from ...result import ForceErrors
-from ...scene import Amplitude, Scene
 from ...state import State
 from ..regime_criteria import Regime
 from .curve import CurvePoint
+from .request import CurveRequest
 
 _NUMBERS = ("frequency", "max_output_force", "max_output_force_elastic", "max_input_force")
 
 
-def curve_digest(scene: Scene, frequencies: np.ndarray, start: str, amplitude: Amplitude | None = None) -> str:
-    """Hash of everything that changes a curve; the scene's own frequency does not."""
-    same = float(frequencies[0])
-    driven = {} if amplitude is None else {"amplitudes": [amplitude.at(float(f)) for f in frequencies]}
-    return digest_of({"scene": scene.evolve(f=same).digest, "frequencies": [float(f) for f in frequencies],
-                      "start": start, **driven})
-
-
-def point_checkpoints(scene: Scene, frequencies: np.ndarray, start: str, out: str | Path,
-                amplitude: Amplitude | None = None) -> Kept[CurvePoint]:
+def point_checkpoints(asked: CurveRequest, out: str | Path) -> Kept[CurvePoint]:
     """The folder for the points of the curve that is to be written to `out`."""
-    words = f"{scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, {start})"
-    return Kept(out, "curve", curve_digest(scene, frequencies, start, amplitude), words, _packed)
+    frequencies = asked.frequencies
+    words = f"{asked.scene.name} from {frequencies[0]:g} to {frequencies[-1]:g} Hz ({len(frequencies)}, {asked.start})"
+    return Kept(out, "curve", asked.digest, words, _packed)
 
 
 def points_in(kept: Kept[CurvePoint]) -> list[CurvePoint]:

@@ -16,21 +16,22 @@ import numpy as np
 
 from ...result import Run
 
-#: A push is strong if its largest force is above this part of the largest push.
+#: [response] A push is strong if its largest force is above this part of the largest push.
 STRONG_PART = 0.7
-#: A push ends where the force falls below this part of the largest push.
+#: [response] A push ends where the force falls below this part of the largest push.
 END_PART = 0.05
-#: A peak or valley counts if it differs from both neighbouring extrema by this part of the larger: a valley is at least
-#: 20 % below both neighbouring peaks.
+#: [response] A peak or valley counts if it differs from both neighbouring extrema by this part of the larger. So a
+#: valley is at least 20 % below both neighbouring peaks.
 PROMINENCE = 0.2
-#: A state is on a peak if its force is below the peak by at most this fraction of the height above the next valley.
+#: [response] A state is on a peak if its force is below the peak by at most this part of the height above the next
+#: valley.
 _PEAK_PART = 0.2
-#: A state is in a valley if its force is above the valley by less than this fraction of that height; states in between
-#: are on a flank.
+#: [response] A state is in a valley if its force is above the valley by less than this part of that height. States in
+#: between are on a flank.
 _VALLEY_PART = 0.1
-#: A state whose force differs by this part from the curve's at its frequency is not on the curve.
+#: [response] A state is not on the curve if its force differs from the curve's at its frequency by this part.
 _CURVE_DIFFERENCE = 0.1
-#: Less than this part of the input force at the wall: nothing travels through the chain.
+#: [response] A stop band: less than this part of the input force arrives at the wall.
 STOP_BAND_PART = 0.15
 
 

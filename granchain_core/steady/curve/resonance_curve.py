@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...cores import usable_cores
-from ...errors import BadInput, Cancelled, numbers_in
+from ...errors import BadInput, Cancelled
+from ...input_checks import numbers_in
 from ...integrate.batch import can_share_batch
 from ...scene import Amplitude, Scene
 from ...scene.driven import refuse_undriven

@@ -22,11 +22,12 @@ from ...stop import Stop
 from ..regime_criteria import find_period
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
-#: Most steps of the fixed-step method while settling: 6 s for eleven beads, at 60 ns a step.
+#: [unsettled] Most steps of the fixed-step method, of a chain alone or of a coarse run. They take 6 s for eleven beads,
+#: at 60 ns a step.
 MOST_SETTLING_STEPS = 100_000_000
-#: Drive periods until the motion is first checked for a period.
+#: [period n] A chain alone: drive periods before the first check for a period.
 _FIRST_CHECK = 2
-#: Fewest drive periods between two checks; later an eighth of those that were run.
+#: [period n] A chain alone: fewest drive periods between two checks; later an eighth of those that were run.
 _BETWEEN_CHECKS = 8
 
 

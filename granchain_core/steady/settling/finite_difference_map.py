@@ -17,22 +17,23 @@ from ...scene import Scene
 from ...stop import Stop
 from ..returns import sizes
 
-#: Steps in place of one default step: multipliers then differ from those of a tangent flow by about 1e-6.
+#: [no threshold] Steps in place of one default step: multipliers then differ from those of a tangent flow by about
+#: 1e-6.
 _REFINEMENT = 4.0
-#: Tolerance of the adaptive method, which scenes that cut tension need.
+#: [no threshold] Tolerance of the adaptive method, which scenes that cut tension need.
 _TOLERANCE = 1e-11
-#: Half the distance of the two states of a central difference, relative to the largest displacement or w. The error is
-#: its square times the map's third derivative, plus the method's noise, about 1e-10, divided by it.
+#: [no threshold] Half the distance of the two states of a central difference, relative to the largest displacement or
+#: w. The error is its square times the map's third derivative, plus the method's noise, about 1e-10, divided by it.
 _DIFFERENCE = 1e-5
-#: The same for a one-sided difference, whose error is the difference times the map's second derivative.
+#: [no threshold] The same for a one-sided difference, whose error is the difference times the map's second derivative.
 _ONE_SIDED_DIFFERENCE = 1e-6
-#: Relative residual at which a fixed point is found.
+#: [period n, followed] Newton's method ends at this relative residual, and fails above a hundred times as much.
 _FIXED_POINT_RESIDUAL = 1e-9
-#: Newton's iterations at most.
+#: [period n, followed] Most iterations of Newton's method.
 _MOST_ITERATIONS = 10
-#: The derivative is renewed if an iteration leaves more than this part of the residual.
+#: [no threshold] The derivative is renewed if an iteration leaves more than this part of the residual.
 _RENEWAL_PART = 0.1
-#: Most halvings of a step of Newton's method.
+#: [period n, followed] Most sizes of a Newton step that are tried, each half of the one before.
 _HALVINGS = 5
 
 

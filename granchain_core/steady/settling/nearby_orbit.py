@@ -22,38 +22,43 @@ from ..regime_criteria import changes
 from ..returns import shorter_periods, sizes
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
-#: Beads up to which the derivative of the map is computed.
+#: [period n] A chain alone: an unconfirmed claim needs multipliers up to this many beads. Up to there the derivative of
+#: the map is computed.
 MOST_BEADS_WITH_MULTIPLIERS = 100
-#: |μ| is not known better than this.
+#: [period n] An orbit counts as stable if |μ| is below 1 by more than this. No |μ| is known better.
 UNSURE = 1e-5
-#: Largest relative change over n periods with which a motion may be near an orbit of period n, and its largest distance
+#: [followed] Largest relative change over n periods with which an orbit of period n is looked for, and largest distance
 #: from the orbit that is then found.
 NEAR_AN_ORBIT = 0.1
-#: Largest relative change over n periods of a motion that is almost periodic. On closed curves of section 2 and of the
-#: rig the least change over 1 to 16 periods was 1.8e-3 or more, on slow approaches 2.2e-4 or less.
+#: [quasi-periodic] A batch: a motion whose least change over 1 to 16 periods is below this is settled alone, where the
+#: orbit near it is examined. On closed curves of section 2 and of the rig the least change was 1.8e-3 or more, on slow
+#: approaches 2.2e-4 or less.
 _ALMOST_PERIODIC = 1e-3
-#: The period tried is the shortest over which the motion changes by at most this factor times the least change.
+#: [followed] The period tried is the shortest over which the motion changes by at most this many times the least
+#: change.
 _CHANGE_FACTOR = 3.0
-#: Factor between the tested distances. Near an orbit that has just become stable there may be a closed curve on which
-#: the motion stays, and distances vary by some per cent: hence several distances, and large parts of each.
+#: [followed] Factor from one tested distance to the next. Near an orbit that has just become stable there may be a
+#: closed curve on which the motion stays, and distances vary by some per cent: hence several distances, and large parts
+#: of each.
 _DISTANCE_FACTOR = 0.4
-#: Smallest distance tested, relative to the orbit.
+#: [followed] Smallest distance from that orbit that is tested, relative to the orbit.
 _SMALLEST_DISTANCE = 1e-5
-#: Fraction of a distance that must decay according to the multipliers: it sets the number of orbits.
+#: [followed] Part of a distance that must decay by |μ| in the orbits of the test. It sets their number.
 _PREDICTED_PART = 0.2
-#: Most orbits for that.
+#: [followed] Most orbits of the test.
 _MOST_ORBITS = 3000
-#: Fraction of the predicted decay that must be observed.
+#: [followed] Part of the predicted decay that must be observed.
 _OBSERVED_PART = 0.3
-#: Orbits over which the largest distance counts, at the beginning and at the end: a distance may turn as it shrinks.
+#: [followed] Orbits at the beginning and at the end of the test, of which the largest distance counts. A distance may
+#: turn as it shrinks.
 _COMPARED_ORBITS = 16
-#: Directions whose |μ| is below this, or below this part of the largest, have decayed within
-#: `_COMPARED_ORBITS` orbits.
+#: [followed] Directions with |μ| below this, or below this part of the largest |μ|, are left out of the distance. They
+#: have decayed within `_COMPARED_ORBITS` orbits.
 _SLOW_DIRECTION = 0.3
-#: Length to which a departure is enlarged along the growing directions, relative to the motion.
+#: [followed] A departure is enlarged along the growing directions to this part of the motion.
 _ENLARGED_LENGTH = 3e-3
-#: An orbit that is back within this, relatively, after a part of its period has that shorter period. The fixed-step map
-#: is known less well than the one of `granchain_core/orbits/stroboscopic_map.py`.
+#: [period n] An orbit that is back within this, relatively, after a part of its period has that shorter period. The
+#: fixed-step map is known less well than the one of `granchain_core/orbits/stroboscopic_map.py`.
 _RETURN_DISTANCE = 1e-6
 
 

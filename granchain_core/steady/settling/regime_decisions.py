@@ -19,25 +19,30 @@ from ..lyapunov import exponents
 from ..regime_criteria import changes, converging, departing
 from .nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, NEAR_AN_ORBIT, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
-#: Drive periods after which an unsettled motion is examined by its nearby orbit.
+#: [followed] Drive periods after which the orbit near an unsettled motion is examined.
 EXAMINED_AFTER = 400
-#: Most drive periods in all.
+#: [unsettled] Most drive periods.
 MOST_PERIODS = 4000
-#: Strobes on which a decision is based. A batch keeps a few more (`STROBES_KEPT` in kernels/batch/record.py).
+#: [quasi-periodic] Strobes on which the decision is based. A batch keeps a few more (`STROBES_KEPT` in
+#: kernels/batch/record.py).
 REMEMBERED = 420
-#: Most measurements of the Lyapunov exponent for a member of a batch, or for a motion that is not followed any further.
+#: [chaotic, quasi-periodic] A batch, or a motion that is not followed further (`run`): most measurements of the
+#: exponent.
 MOST_MEASUREMENTS = 3
-#: Most parts of one measurement of a chain alone, each of `EXPONENT_BLOCKS`.
+#: [chaotic, quasi-periodic] A chain alone: most parts of one measurement, each of `EXPONENT_BLOCKS` blocks.
 _MOST_PARTS = 8
-#: Beads up to which multipliers confirm every claim of `settled`; for longer chains only unconfirmed claims.
+#: [period n] A chain alone: up to this many beads multipliers confirm every claim of `settled`, in longer chains only
+#: unconfirmed ones.
 _CONFIRMED_BEADS = 30
-#: A claim is unconfirmed if the decay per drive period is above this: a slowly unstable orbit may look like it.
+#: [period n] A chain alone: a claim is unconfirmed if the decay per drive period is above this, or if the motion began
+#: from another state. A slowly unstable orbit may look like it.
 CLEAR_DECAY = 0.9
-#: Factor on the largest number of periods for a motion near an unstable orbit, since departures are slow too.
+#: [unsettled] Factor on this number for a motion that leaves an unstable orbit. Departures are slow too.
 _DEPARTURE_FACTOR = 4
-#: Largest |μ| of a settled motion, by differences at its own state, below which Newton's method is not needed.
+#: [period n] A chain alone: with a larger |μ| at the motion's own state, by differences, Newton's method finds the
+#: orbit.
 _CLEAR_MULTIPLIER = 0.97
-#: How often the departure of a motion from an orbit is enlarged.
+#: [followed] Most departures of one motion from an orbit that are enlarged.
 _MOST_DEPARTURES = 6
 
 

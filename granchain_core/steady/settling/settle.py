@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from ...errors import whole_number
+from ...input_checks import whole_number
 from ...recorded_motion import MOST_SAMPLES
 from ...result import start_words
 from ...scene import Scene

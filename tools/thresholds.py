@@ -1,0 +1,89 @@
+"""The tables of thresholds in docs/regimes.md and docs/orbits.md, written by `python -m tools.thresholds`.
+
+A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
+it decides, and `[response]` puts it into the table of docs/orbits.md. The comment's first sentence is its row; what
+follows, the reason, stays in the code. A number beside thresholds that is none itself is marked `[no threshold]`.
+"""
+
+from __future__ import annotations
+
+import importlib
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+
+from tools.generated import with_part
+
+_ROOT = Path(__file__).resolve().parents[1]
+_CORE = _ROOT / "granchain_core"
+#: A comment with a mark, and the name of the constant below it.
+_MARKED = re.compile(r"^#: \[([a-z, -]+)\] ((?:.*\n)(?:#: .*\n)*)(\w+)\b.*=", re.MULTILINE)
+_REGIMES = ("period n", "followed", "chaotic", "quasi-periodic", "unsettled", "all")
+_COMMAND = "python -m tools.thresholds"
+
+
+@dataclass(frozen=True)
+class Marked:
+    """A constant with a mark: the regimes it decides, what it is, its file below `granchain_core`, its name."""
+
+    mark: str
+    what: str
+    file: str
+    name: str
+
+    @property
+    def value(self) -> float:
+        """Its value in the code."""
+        return getattr(importlib.import_module("granchain_core." + self.file[:-3].replace("/", ".")), self.name)
+
+    @property
+    def cells(self) -> str:
+        """Its row without the column of regimes."""
+        return f"{self.what} | {printed(self.value)} | `{self.name}` in `{self.file}` |"
+
+
+def marked_constants() -> list[Marked]:
+    """All constants with a mark, file by file."""
+    found = []
+    for path in sorted(_CORE.rglob("*.py")):
+        for mark, comment, name in _MARKED.findall(path.read_text(encoding="utf-8")):
+            first, *_ = re.split(r"(?<=\.) (?=[A-Z])", comment.replace("\n#:", "").strip())
+            what = first.rstrip(".").replace("|μ|", r"\|μ\|")
+            found.append(Marked(mark, what, path.relative_to(_CORE).as_posix(), name))
+    return found
+
+
+def printed(value: float) -> str:
+    """A number to six digits, as a fraction where these are not all."""
+    short = re.sub(r"e([+-])0*", lambda power: "e" + power[1].strip("+"), f"{value:g}")
+    return short if float(short) == value else str(Fraction(value).limit_denominator(100))
+
+
+def table_of_regimes() -> str:
+    """The table of docs/regimes.md, in the order of the regimes."""
+    rows = [one for one in marked_constants() if one.mark.split(", ")[0] in _REGIMES]
+    rows.sort(key=lambda one: [_REGIMES.index(regime) for regime in one.mark.split(", ")])
+    return "\n".join(["| regime | what | threshold | constant and file |", "|---|---|---|---|",
+                      *(f"| {one.mark} | {one.cells}" for one in rows)])
+
+
+def table_of_responses() -> str:
+    """The table of docs/orbits.md: the rules on a curve, then those of an orbit alone."""
+    rows = [one for one in marked_constants() if one.mark == "response"]
+    rows.sort(key=lambda one: one.file, reverse=True)
+    return "\n".join(["| what | threshold | constant and file |", "|---|---|---|",
+                      *(f"| {one.cells}" for one in rows)])
+
+
+def pages() -> dict[Path, str]:
+    """The pages with a table of thresholds, and their text as it should be now."""
+    tables = {"regimes": table_of_regimes(), "orbits": table_of_responses()}
+    paths = {name: _ROOT / "docs" / f"{name}.md" for name in tables}
+    return {path: with_part(path.read_text(encoding="utf-8"), "thresholds", _COMMAND, tables[name])
+            for name, path in paths.items()}
+
+
+if __name__ == "__main__":
+    for page, text in pages().items():
+        page.write_text(text, encoding="utf-8")
