@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import threading
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,7 @@ from granchain_core.orbits.branch.orbit_checkpoints import OrbitCheckpoints
 from granchain_core.orbits.branch.special import SpecialPoint
 
 from . import ending
-from .common import check_points, chosen_scene, in_background, say, say_if, show_json, unbroken
+from .common import check_points, chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
 from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
 from .options import add_result, whole
@@ -67,6 +68,7 @@ def branch_json(found: Branch) -> dict[str, Any]:
         "stable": [p.stable for p in found.points],
         "special": [{"kind": s.kind, "knob": s.knob, "interval": list(s.interval)} for s in found.special],
         "evidence": [_evidence(one) for one in found.special],
+        "normal_form": [_normal_form(one) for one in found.special],
         "period": found.period, "max_output_force": [p.max_output_force for p in found.points],
         "max_input_force": [p.max_input_force for p in found.points],
         **({} if found.axis.amplitude is None else
@@ -80,6 +82,14 @@ def _evidence(found: SpecialPoint) -> dict[str, Any]:
     passing = found.multiplier
     return {"multiplier": None if passing is None else [passing.real, passing.imag], "contact": found.contact,
             "event": found.event}
+
+
+def _normal_form(found: SpecialPoint) -> dict[str, Any] | None:
+    """Criticality of a special point and its coefficient; None for a grazing."""
+    form = found.normal_form
+    return None if form is None else {
+        "criticality": form.criticality, "coefficient": finite_or_null(form.coefficient),
+        "error": finite_or_null(form.error), "reason": form.reason, "angle": found.angle}
 
 
 def _followed(arguments: argparse.Namespace) -> Branch:
@@ -221,6 +231,16 @@ def _show(found: Branch) -> None:
     for p in found.points:
         print(f"{p.knob:14.8g}  {p.max_output_force_elastic:26.8g}  {'stable' if p.stable else 'unstable'}")
     for s in found.special:
-        more = f", contact {s.contact}: {s.event}" if s.contact is not None else ""
+        more = f", contact {s.contact}: {s.event}" if s.contact is not None else _normal_form_words(s)
         low, high = s.interval
         print(f"{s.kind} at {found.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
+
+
+def _normal_form_words(found: SpecialPoint) -> str:
+    """Criticality, coefficient with its error, and the angle of a Neimark–Sacker point."""
+    form = found.normal_form
+    if form is None:
+        return ""
+    value = "" if math.isnan(form.coefficient) else f", coefficient {form.coefficient:.5g} ± {form.error:.2g}"
+    angle = "" if found.angle is None else f", angle {math.degrees(found.angle):.4g}°"
+    return f", {found.criticality_words()}{value}{angle}"

@@ -11,6 +11,7 @@ from bokeh.plotting import figure
 
 from granchain_core import CurvePoint
 from granchain_core.orbits import Branch, BranchPoint, SpecialPoint
+from granchain_core.orbits.branch.normal_forms import SUPERCRITICAL
 from granchain_core.regime import modulus_words
 
 from ..format import in_words, short_error
@@ -25,6 +26,8 @@ _STYLES: dict[str, dict[str, Any]] = {
     "neimark_sacker": {"marker": "circle", "size": 12, "colour": TEAL, "filled": False},
     "grazing": {"marker": "cross", "size": 9, "colour": GREY, "filled": True},
 }
+#: What begins at a bifurcation that is sub- or supercritical.
+_BORN = {"period_doubling": "an orbit of twice the period", "neimark_sacker": "a closed curve of the map"}
 #: Width and dash.
 _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 _ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
@@ -256,7 +259,20 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
     elif special.kind == "neimark_sacker" and special.multiplier is not None:
         words += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
                   "circle")
-    return words
+    return words + _criticality_words(special)
+
+
+def _criticality_words(special: SpecialPoint) -> str:
+    """Whether a period doubling or Neimark–Sacker point is supercritical, and what follows where one side is stable."""
+    new, form = _BORN.get(special.kind), special.normal_form
+    if new is None or form is None:
+        return ""
+    words = f"; {special.criticality_words()}"
+    if form.reason or special.before.stable == special.after.stable:
+        return words
+    if form.criticality == SUPERCRITICAL:
+        return f"{words}, beside it {new} attracts on the unstable side"
+    return f"{words}, beside it {new} repels on the stable side"
 
 
 def _orbit_words(point: BranchPoint, branch: Branch) -> tuple[Any, ...]:

@@ -3,7 +3,8 @@
 /branch          point, component, bead, contact; knob (the knob's unit), arclength, max_input_force, max_output_force,
                  max_output_force_elastic [N], stable, unstable, residual, arm (point); state, multiplier_real,
                  multiplier_imag (point, component); tangent (point, coordinate); closings (point, contact)
-/special         kind, knob, knob_low, knob_high, multiplier_real, multiplier_imag, contact, event, arm (special)
+/special         kind, knob, knob_low, knob_high, multiplier_real, multiplier_imag, contact, event, arm (special); and
+                 criticality, coefficient, coefficient_error, undecided (special), which older files lack
 /special_before, /special_after   the two orbits around each special point, as in /branch
 /turns           turning points of the overlaps on each arm's last orbit, with which the next step is compared
 The root's attribute `amplitude` describes A0 over f where it is not the scene's.
@@ -22,6 +23,7 @@ from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
+from ..orbits.branch.normal_forms import CRITICALITIES, NOT_DECIDED, REASONS, NormalForm
 from ..orbits.branch.special import SPECIAL_KINDS
 from ..orbits.branch.tables import NO_CONTACT, branch_tables
 from ..scene import Amplitude
@@ -130,10 +132,24 @@ def _read_special(file: File, n: int) -> list[SpecialPoint]:
     read = {name: file.numbers(f"special/{name}", (count,)) for name in (
         "knob", "knob_low", "knob_high", "multiplier_real", "multiplier_imag")}
     contacts = within("/special/contact", file.numbers("special/contact", (count,), "i"), NO_CONTACT, n)
+    forms = _read_normal_forms(file, count)
     kinds, events = file.words("special/kind", count, SPECIAL_KINDS), file.words("special/event", count, _EVENTS)
     return [SpecialPoint(
         kind=kinds[i], knob=float(read["knob"][i]), interval=(float(read["knob_low"][i]), float(read["knob_high"][i])),
         before=before[i], after=after[i],
         multiplier=(None if np.isnan(read["multiplier_real"][i])
                     else complex(read["multiplier_real"][i], read["multiplier_imag"][i])),
-        contact=None if contacts[i] == NO_CONTACT else int(contacts[i]), event=events[i] or None) for i in range(count)]
+        contact=None if contacts[i] == NO_CONTACT else int(contacts[i]), event=events[i] or None,
+        normal_form=forms[i]) for i in range(count)]
+
+
+def _read_normal_forms(file: File, count: int) -> list[NormalForm | None]:
+    if not file.has("special/criticality"):
+        return [None] * count
+    found = file.words("special/criticality", count, ("", *CRITICALITIES))
+    reasons = file.words("special/undecided", count, ("", *REASONS))
+    numbers, errors = (file.numbers(f"special/{name}", (count,)) for name in ("coefficient", "coefficient_error"))
+    if any((word == NOT_DECIDED) != bool(reason) for word, reason in zip(found, reasons, strict=True)):
+        raise Refused("/special/undecided does not fit /special/criticality")
+    return [NormalForm(found[i], float(numbers[i]), float(errors[i]), reasons[i]) if found[i] else None
+            for i in range(count)]

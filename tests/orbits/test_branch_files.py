@@ -39,7 +39,7 @@ def assert_same(one: Branch, other: Branch) -> None:
         for name in ("knob", "arclength", "residuals", "liouville", "max_input_force", "max_output_force",
                      "max_output_force_elastic"):
             assert getattr(mine, name) == getattr(its, name)
-    told = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.event) for s in b.special] for b in (one, other)]
+    told = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.event, str(s.normal_form)) for s in b.special] for b in (one, other)]
     assert told[0] == told[1]
 
 

@@ -119,6 +119,7 @@ def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Br
     last = found.special[-1]
     widths = [s.interval[1] - s.interval[0] for s in (last, meeting)]
     assert last.kind == "period_doubling" and last.knob == pytest.approx(meeting.knob, abs=sum(widths))
+    assert last.normal_form is None and parting.criticality == "subcritical" and meeting.criticality == "supercritical"
     with pytest.raises(BadInput, match="merges with that of half its period"):
         switch_to_doubled(found, last)
     middle = min(found.points, key=lambda p: abs(p.knob - 247.0))

@@ -8,6 +8,7 @@ from .mutant import Mutant
 _TIME, _STEP, _EVENTS = "kernels/flow/event_time.py", "kernels/flow/attempt.py", "kernels/flow/events.py"
 _FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", "kernels/flow/saltation.py"
 _MAP, _ORBIT = "orbits/stroboscopic_map.py", "orbits/orbit.py"
+_NORMAL_FORMS, _CRITICALITY = "orbits/branch/normal_forms.py", "orbits/branch/criticality.py"
 
 #: Tangents in w that jump where those in v would have had to: exactly what a forgotten saltation does to them.
 _WITHOUT_SALTATION = """from ..effects.dissipation import damping
@@ -104,4 +105,18 @@ ORBITS = (
            "the map is ten thousand times less exact than is said", k.MONODROMY),
 )
 
-TANGENT_FLOW = FLOW + TANGENTS + ORBITS
+NORMAL_FORMS = (
+    Mutant("doubling-without-centre-manifold", _NORMAL_FORMS, "third @ q + 3.0 * second @ shift", "third @ q",
+           "the centre manifold is taken for its tangent: the coefficient of a period doubling lacks its quadratic terms",
+           k.NORMAL_FORMS),
+    Mutant("curve-turned-the-other-way", _NORMAL_FORMS, "(0.5 * np.vdot(critical.p, cubic) / turn).real",
+           "(0.5 * np.vdot(critical.p, cubic) * turn).real", "d is multiplied by the wrong rotation", k.NORMAL_FORMS),
+    Mutant("subcritical-called-super", _NORMAL_FORMS, '(mean > 0.0) == (kind == "period_doubling")', "mean > 0.0",
+           "Neimark–Sacker points have the sign of period doublings", k.NORMAL_FORMS),
+    Mutant("any-two-values-agree", _NORMAL_FORMS, "_LARGEST_ERROR = 0.25", "_LARGEST_ERROR = 1e9",
+           "a sign is told that only one of two values has", k.NORMAL_FORMS),
+    Mutant("differences-across-a-grazing", _CRITICALITY, "if not np.array_equal(flow.changes[:, 0], between.contacts(point)):",
+           "if flow.derivative is None:", "states are used along which a contact closes once more", k.CRITICALITY),
+)
+
+TANGENT_FLOW = FLOW + TANGENTS + ORBITS + NORMAL_FORMS

@@ -7,6 +7,7 @@ from bisect import insort
 import numpy as np
 
 from ..orbit import sorted_multipliers
+from ..stroboscopic_map import TOLERANCE
 from .equations import BranchEquations, Solved
 from .newton import ROUGH_TOLERANCE, Near, Newton
 from .point import BranchPoint, branch_point, rough_point
@@ -22,6 +23,8 @@ class Between:
         self.equations, self.a, self.b = equations, a, b
         self._known = [(a.arclength, near[0]), (b.arclength, near[1])]
         self._exact: dict[BranchPoint, BranchPoint] = {a: a, b: b}
+        self._derivatives = {a: near[0].derivative, b: near[1].derivative}
+        self._contacts: dict[BranchPoint, np.ndarray] = {}
         self._way = float(np.linalg.norm(equations.point(a.x, a.knob) - equations.point(b.x, b.knob)))
 
     def careful(self, a: BranchPoint, b: BranchPoint, fraction: float) -> BranchPoint:
@@ -61,6 +64,18 @@ class Between:
             self._exact[point] = self._solved(z, point.tangent, point.tangent, point.arclength, self._way)
         return self._exact[point]
 
+    def derivative(self, point: BranchPoint) -> np.ndarray:
+        """The exact P_x of an exact orbit."""
+        return self._derivatives[point]
+
+    def contacts(self, point: BranchPoint) -> np.ndarray:
+        """The contacts that close and open along an exact orbit, in order: contact + 1, negative where it opens."""
+        if point not in self._contacts:
+            exact = self.equations.reused_map(point.knob, TOLERANCE)
+            exact.end(point.x)
+            self._contacts[point] = exact.changes[:, 0]
+        return self._contacts[point]
+
     def _solved(self, guess: np.ndarray, normal: np.ndarray, towards: np.ndarray, arclength: float,
                 farthest: float) -> BranchPoint:
         solved = self.equations.solve_near(guess, normal, self._near(arclength), farthest)
@@ -69,7 +84,8 @@ class Between:
     def _finished(self, solved: Solved, towards: np.ndarray, arclength: float) -> BranchPoint:
         self._remember(arclength, solved.near)
         found = branch_point(self.equations, solved, self.equations.tangent(solved, towards), arclength)
-        self._exact[found] = found
+        self._exact[found], self._derivatives[found] = found, solved.flow.derivative
+        self._contacts[found] = solved.flow.changes[:, 0]
         return found
 
     def _arclength(self, a: BranchPoint, b: BranchPoint, fraction: float) -> float:

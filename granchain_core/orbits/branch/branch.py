@@ -104,8 +104,9 @@ class Branch(Labelled):
     def summary(self) -> list[str]:
         """How many orbits, where it ended, and the special points."""
         ends = [f"{arm.ended}: {arm.reason}" if arm.reason else arm.ended for arm in self.arms if arm.ended]
-        kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.text(one.knob)}" for one in self.special
-                 if one.kind != "grazing"]
+        kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.text(one.knob)}"
+                 + (f", {one.criticality_words()}" if one.normal_form and one.kind != "fold" else "")
+                 for one in self.special if one.kind != "grazing"]
         grazings = sum(one.kind == "grazing" for one in self.special)
         undamped = [] if self.axis.scene.has_dissipation else [
             "without damping stable orbits have their multipliers on the unit circle, where rounding decides"]

@@ -7,7 +7,7 @@ with which it goes on or the reason why it ended.
 from __future__ import annotations
 
 import json
-from dataclasses import fields
+from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ import numpy as np
 from ...checkpoints import Kept, digest_of
 from .axis import KnobAxis
 from .branch import Branch
+from .normal_forms import NormalForm
 from .point import BranchPoint
 from .special import SpecialPoint
 from .walk import Arm
@@ -107,10 +108,13 @@ def _point(record: dict[str, Any]) -> BranchPoint:
 def _special_as_json(one: SpecialPoint) -> dict[str, Any]:
     multiplier = None if one.multiplier is None else [complex(one.multiplier).real, complex(one.multiplier).imag]
     return {"kind": one.kind, "knob": one.knob, "interval": list(one.interval), "before": _as_json(one.before),
-            "after": _as_json(one.after), "multiplier": multiplier, "contact": one.contact, "event": one.event}
+            "after": _as_json(one.after), "multiplier": multiplier, "contact": one.contact, "event": one.event,
+            "normal_form": None if one.normal_form is None else asdict(one.normal_form)}
 
 
 def _special(record: dict[str, Any]) -> SpecialPoint:
     multiplier = None if record["multiplier"] is None else complex(*record["multiplier"])
+    form = record.get("normal_form")  # earlier versions had none
     return SpecialPoint(**{**record, "interval": tuple(record["interval"]), "before": _point(record["before"]),
-                           "after": _point(record["after"]), "multiplier": multiplier})
+                           "after": _point(record["after"]), "multiplier": multiplier,
+                           "normal_form": NormalForm(**form) if form else None})

@@ -20,6 +20,7 @@ import numpy as np
 from ...errors import NumbersFailed
 from .axis import KnobAxis
 from .between import Between
+from .normal_forms import NOT_DECIDED, NormalForm
 from .point import CONTACT, OVERLAP, SENSE, TIME, BranchPoint
 
 #: Where stability changes, and all kinds of special points; results, files and JSON spell them so.
@@ -49,7 +50,8 @@ class SpecialPoint:
 
     `kind` is one of `SPECIAL_KINDS`, `knob` the middle of the interval.
     `contact` and `event` ("touch" or "separation") belong to a grazing; `multiplier` is the one that passes the unit
-    circle.
+    circle. `normal_form` has the criticality and its coefficient; it is None for a grazing, at the end of a doubled
+    branch, and in older files.
     """
 
     kind: str
@@ -60,6 +62,26 @@ class SpecialPoint:
     multiplier: complex | None = None
     contact: int | None = None
     event: str | None = None
+    normal_form: NormalForm | None = None
+
+    @property
+    def criticality(self) -> str | None:
+        """One of `CRITICALITIES` (normal_forms.py); None where there is no normal form."""
+        return None if self.normal_form is None else self.normal_form.criticality
+
+    def criticality_words(self) -> str:
+        """The criticality, with the reason where it is not decided; "" where there is no normal form."""
+        form = self.normal_form
+        if form is None or form.criticality != NOT_DECIDED:
+            return self.criticality or ""
+        return f"{'not known to be generic' if self.kind == 'fold' else 'criticality not decided'}: {form.reason}"
+
+    @property
+    def angle(self) -> float | None:
+        """Angle in radians by which the map turns about the orbit, the argument of a Neimark–Sacker multiplier."""
+        if self.kind != "neimark_sacker" or self.multiplier is None:
+            return None
+        return float(np.angle(self.multiplier))
 
 
 def special_between(between: Between) -> list[SpecialPoint]:

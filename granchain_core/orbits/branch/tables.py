@@ -10,10 +10,13 @@ from ...quantities import QUANTITIES
 from ...tables import MAXIMA, Column, Table, axis, contact_axis, force_columns
 from ...tables.words import multiplier_columns
 from .axis import KnobAxis
+from .normal_forms import NormalForm
 from .point import BranchPoint
 from .special import BIFURCATIONS, SpecialPoint
 from .walk import Arm
 
+#: What is told of a special point without a normal form.
+_NO_NORMAL_FORM = NormalForm("")
 #: The contact of a special point that is no grazing.
 NO_CONTACT = -1
 
@@ -70,6 +73,7 @@ def _orbits(name: str, over: KnobAxis, points: Sequence[BranchPoint], arms: Sequ
 def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int]) -> Table:
     along, unit = ("special",), QUANTITIES[over.knob].unit
     multipliers = np.array([np.nan if s.multiplier is None else s.multiplier for s in special], dtype=complex)
+    forms = [_NO_NORMAL_FORM if s.normal_form is None else s.normal_form for s in special]
     contacts = np.array([NO_CONTACT if s.contact is None else s.contact for s in special], dtype=np.int64)
 
     def words(values: list[str]) -> np.ndarray:
@@ -91,4 +95,11 @@ def _special(over: KnobAxis, special: Sequence[SpecialPoint], arms: Sequence[int
         "multiplier_imag": Column(multipliers.imag, along, "1", "its imaginary part"),
         "contact": Column(contacts, along, "1", "contact that grazes, -1 if none"),
         "event": Column(words([s.event or "" for s in special]), along, "", "touch or separation"),
+        "criticality": Column(words([form.criticality for form in forms]), along, "",
+                              "supercritical, subcritical, generic (a fold) or not decided"),
+        "coefficient": Column(number([form.coefficient for form in forms]), along, "1",
+                              "coefficient of the normal form that decides it, NaN where not computed"),
+        "coefficient_error": Column(number([form.error for form in forms]), along, "1",
+                                    "error of the coefficient"),
+        "undecided": Column(words([form.reason for form in forms]), along, "", "why it is not decided"),
         "arm": Column(np.array(arms, dtype=np.int64), along, "1", "which way from the seed")})

@@ -19,6 +19,7 @@ import numpy as np
 from ...cores import usable_cores
 from ...errors import Cancelled, NumbersFailed
 from .between import Between
+from .criticality import with_normal_forms
 from .ends import Ending, Ends
 from .equations import BranchEquations, Solved
 from .newton import Near, formatted
@@ -136,7 +137,8 @@ class Walk(Iterator[BranchPoint]):
         last = before.result()[0] if isinstance(before, Future) else before
         if changes is not None:
             point = recorded(self.equations, point, changes)
-        return point, special_between(Between(self.equations, last, point, near))
+        between = Between(self.equations, last, point, near)
+        return point, with_normal_forms(special_between(between), between)
 
     @property
     def _near_last(self) -> Near:
@@ -184,7 +186,7 @@ class Walk(Iterator[BranchPoint]):
         merging = self._ends.merging(special)
         if merging is not None:
             special, point = special[: merging + 1], special[merging].before
-            special[merging] = replace(special[merging], kind="period_doubling")
+            special[merging] = replace(special[merging], kind="period_doubling", normal_form=None)
             ended = "merged"
             reason = (f"merged with the branch of period {self.equations.period // 2}, whose period doubles at "
                       f"{self.equations.axis.text(special[merging].knob)}: beyond it are the same orbits, half a "

@@ -1,0 +1,219 @@
+"""Normal forms of a map at a fold, a period doubling or a Neimark–Sacker point, and what they say about criticality.
+
+Equation   with ξ (z) the coordinate along the critical eigenvector q on the centre manifold, at the critical knob
+           fold               ξ → ξ + a ξ² + …       a = ½⟨p, B(q, q)⟩
+           period doubling    ξ → −ξ + c ξ³ + …      c = ⅙⟨p, C(q, q, q) + 3 B(q, (1 − A)⁻¹ B(q, q))⟩
+           Neimark–Sacker     z → z e^{iθ} (1 + d |z|²) + …
+                              d = ½ e^{−iθ}⟨p, C(q, q, q̄) + 2 B(q, (1 − A)⁻¹ B(q, q̄)) + B(q̄, (e^{2iθ} − A)⁻¹ B(q, q))⟩
+           A, B, C are the first three derivatives of the map, Aq = μq, Aᵀp = μ̄p, ⟨p, q⟩ = 1; q has a mean square of 1.
+Source     Kuznetsov 2004, Elements of Applied Bifurcation Theory, 3rd edition: chapter 4, and the projection method of
+           section 5.4; Kuznetsov & Meijer 2005, SIAM J. Sci. Comput. 26
+Note       B and C are central differences of the exact derivative A, so that no difference is of higher order than the
+           second. They hold only where the map is smooth: `MapNear.product` raises `NotSmooth` elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+SUPERCRITICAL, SUBCRITICAL, GENERIC, NOT_DECIDED = CRITICALITIES = (
+    "supercritical", "subcritical", "generic", "not decided")
+
+#: Why a criticality is not decided; results, files and JSON spell these so.
+GRAZING_IN_INTERVAL = "a contact grazes in the same interval of the knob"
+GRAZING_NEAR = "a contact grazes within the smallest amplitude"
+DISAGREE = "its two values disagree"
+ANOTHER_MULTIPLIER = "another multiplier is at the unit circle"
+NO_MULTIPLIER = "no multiplier of this kind is found on both sides"
+RESONANCE = "strong resonance"
+NO_MAP = "the map cannot be computed beside the orbit"
+REASONS = (GRAZING_IN_INTERVAL, GRAZING_NEAR, DISAGREE, ANOTHER_MULTIPLIER, NO_MULTIPLIER, RESONANCE, NO_MAP)
+
+#: Amplitudes ξ of the differences, tried in this order; the value on the second side has half of it. With 1e-4 rounding
+#: changes the cubic coefficients of sec2, some hundreds to 20,000, by up to 0.3. A fold needs no second differences.
+_AMPLITUDES = {"fold": (2e-5,), "period_doubling": (1e-4, 2e-5), "neimark_sacker": (1e-4, 2e-5)}
+#: Largest difference of the two values, relative to their mean, at which the sign is believed: it would take an error
+#: of four times the difference to change it.
+_LARGEST_ERROR = 0.25
+#: A multiplier whose modulus is this near to 1 is at the unit circle; the passing one mostly is within 5e-4 of it.
+_AT_CIRCLE = 1e-3
+#: |μᵏ − 1|, k = 1 to 4, below which a resonance is strong: near μ³ = 1 the coefficient grows as 1/|μ³ − 1|, and the
+#: amplitude up to which it describes the motion falls with it.
+_STRONG_RESONANCE = 0.02
+
+
+class NotSmooth(Exception):
+    """Between the fixed point and a displaced state the map is not smooth, or not known; the argument says why."""
+
+
+@dataclass(frozen=True)
+class NormalForm:
+    """Criticality of a bifurcation point, with the coefficient that it rests on.
+
+    Attributes
+    ----------
+    criticality : str
+        "supercritical" or "subcritical"; "generic" for a fold whose quadratic coefficient is not zero; "not decided".
+    coefficient : float
+        |a| of a fold, c of a period doubling (supercritical: c > 0), Re d of a Neimark–Sacker point (supercritical:
+        Re d < 0), for ξ in units of the scaled state's root mean square. NaN where it was not computed.
+    error : float
+        Difference of two values, one on each side of the point and of different amplitudes. NaN where not computed.
+    reason : str
+        Why it is not decided, one of `REASONS`; "" where it is.
+    """
+
+    criticality: str
+    coefficient: float = np.nan
+    error: float = np.nan
+    reason: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class MapNear:
+    """A map near one of its fixed points.
+
+    `x` (n,) is the point and `derivative` (n, n) the map's derivative there. `product` gives the derivative at another
+    state times the columns (n, m) of a matrix; it raises `NotSmooth` where the map between x and that state is not
+    smooth.
+    """
+
+    x: np.ndarray
+    derivative: np.ndarray
+    product: Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+@dataclass(frozen=True, eq=False)
+class _Critical:
+    """The multiplier that passes the unit circle, with its right and left eigenvectors q and p."""
+
+    multiplier: complex
+    q: np.ndarray
+    p: np.ndarray
+
+
+def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear]) -> NormalForm:
+    """The normal form of a bifurcation point, from the fixed points on both sides of it.
+
+    Parameters
+    ----------
+    kind : str
+        "fold", "period_doubling" or "neimark_sacker".
+    multiplier : complex
+        About the multiplier that passes the unit circle; of a pair the one above the real axis.
+    sides : tuple of MapNear
+        The map near a fixed point before and near one after the bifurcation, so near that their coefficients agree.
+    """
+    found = NormalForm(NOT_DECIDED)
+    try:
+        critical = [_critical(kind, multiplier, side.derivative) for side in sides]
+        if kind == "neimark_sacker" and _resonant(critical[0].multiplier):
+            raise NotSmooth(RESONANCE)
+    except NotSmooth as obstacle:
+        return NormalForm(NOT_DECIDED, reason=str(obstacle))
+    if kind == "fold":  # the sign of a depends on that of q
+        critical[1] = _alike(critical[1], critical[0])
+    for amplitude in _AMPLITUDES[kind]:
+        try:
+            found = _judged(kind, *(_COEFFICIENTS[kind](side, one, size) for side, one, size in
+                                    zip(sides, critical, (amplitude, 0.5 * amplitude), strict=True)))
+        except NotSmooth as obstacle:
+            found = NormalForm(NOT_DECIDED, reason=str(obstacle))
+        if not found.reason:
+            break
+    return found
+
+
+def _judged(kind: str, one: float, other: float) -> NormalForm:
+    mean, error = 0.5 * (one + other), abs(one - other)
+    if kind == "fold":
+        mean = abs(mean)
+    if not error < _LARGEST_ERROR * abs(mean):
+        return NormalForm(NOT_DECIDED, mean, error, DISAGREE)
+    if kind == "fold":
+        return NormalForm(GENERIC, mean, error)
+    return NormalForm(SUPERCRITICAL if (mean > 0.0) == (kind == "period_doubling") else SUBCRITICAL, mean, error)
+
+
+# --- eigenvectors -------------------------------------------------------------------------------------------
+
+
+def _critical(kind: str, multiplier: complex, derivative: np.ndarray) -> _Critical:
+    """The eigenvalue of this kind that is nearest to `multiplier`, and its eigenvectors.
+
+    Raises `NotSmooth` where there is none, and where another one is at the unit circle.
+    """
+    right, q = _nearest(kind, multiplier, derivative)
+    _, p = _nearest(kind, multiplier.conjugate(), derivative.T)
+    others = np.linalg.eigvals(derivative)
+    mine = [int(np.argmin(np.abs(others - right)))]
+    if kind == "neimark_sacker":
+        mine.append(int(np.argmin(np.abs(others - right.conjugate()))))
+    if (np.abs(np.abs(np.delete(others, mine)) - 1.0) < _AT_CIRCLE).any():
+        raise NotSmooth(ANOTHER_MULTIPLIER)
+    q = q * np.sqrt(len(q)) / np.linalg.norm(q)
+    return _Critical(right, q, p / np.vdot(q, p))
+
+
+def _nearest(kind: str, multiplier: complex, matrix: np.ndarray) -> tuple[complex, np.ndarray]:
+    """The eigenvalue nearest to `multiplier`, real or complex as the kind has it, with its eigenvector."""
+    values, vectors = np.linalg.eig(matrix)
+    distances = np.where((values.imag != 0.0) == (kind == "neimark_sacker"), np.abs(values - multiplier), np.inf)
+    place = int(np.argmin(distances))
+    if not np.isfinite(distances[place]):
+        raise NotSmooth(NO_MULTIPLIER)
+    vector = vectors[:, place]
+    return complex(values[place]), vector if kind == "neimark_sacker" else vector.real
+
+
+def _alike(one: _Critical, other: _Critical) -> _Critical:
+    """With q on the side of that of `other`."""
+    return one if one.q @ other.q > 0.0 else _Critical(one.multiplier, -one.q, -one.p)
+
+
+def _resonant(multiplier: complex) -> bool:
+    """Whether μᵏ is 1 for a k up to 4, for which no invariant closed curve is proved."""
+    on_circle = multiplier / abs(multiplier)
+    return any(abs(on_circle**k - 1.0) < _STRONG_RESONANCE for k in (1, 2, 3, 4))
+
+
+# --- coefficients -------------------------------------------------------------------------------------------
+
+
+def _differences(near: MapNear, direction: np.ndarray, size: float,
+                 columns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """B(v, ·) and C(v, v, ·) times the columns, for the direction v, by central differences."""
+    above, below = (near.product(near.x + step * direction, columns) for step in (size, -size))
+    return (above - below) / (2.0 * size), (above - 2.0 * near.derivative @ columns + below) / size**2
+
+
+def _fold(near: MapNear, critical: _Critical, size: float) -> float:
+    """The coefficient a of ξ²."""
+    second, _ = _differences(near, critical.q, size, critical.q[:, np.newaxis])
+    return float(0.5 * critical.p @ second[:, 0])
+
+
+def _period_doubling(near: MapNear, critical: _Critical, size: float) -> float:
+    """The coefficient c of ξ³."""
+    q, one = critical.q, np.eye(len(near.x))
+    second, third = _differences(near, q, size, one)
+    shift = np.linalg.solve(one - near.derivative, second @ q)
+    return float(critical.p @ (third @ q + 3.0 * second @ shift) / 6.0)
+
+
+def _neimark_sacker(near: MapNear, critical: _Critical, size: float) -> float:
+    """The real part of d; with q = a + ib, C(q, q, q̄) = C(a, a, q) + C(b, b, q)."""
+    q, one = critical.q, np.eye(len(near.x))
+    turn = critical.multiplier / abs(critical.multiplier)
+    (second_a, third_a), (second_b, third_b) = (_differences(near, part, size, one) for part in (q.real, q.imag))
+    second, conjugate = second_a + 1j * second_b, second_a - 1j * second_b
+    shift = np.linalg.solve(one - near.derivative, second @ q.conj())
+    double = np.linalg.solve(turn**2 * one - near.derivative, second @ q)
+    cubic = (third_a + third_b) @ q + 2.0 * second @ shift + conjugate @ double
+    return float((0.5 * np.vdot(critical.p, cubic) / turn).real)
+
+
+_COEFFICIENTS = {"fold": _fold, "period_doubling": _period_doubling, "neimark_sacker": _neimark_sacker}

@@ -1,0 +1,177 @@
+"""The criticality of a branch's special points, held against doubled orbits and closed curves that are there."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from app.cli.branch import _normal_form_words, branch_json
+from app.pictures.branches import special_words
+from granchain_core import BadInput, scene
+from granchain_core.hdf5 import seal
+from granchain_core.orbits import Branch, SpecialPoint, continue_branch
+from granchain_core.orbits.branch.between import Between
+from granchain_core.orbits.branch.criticality import with_normal_forms
+from granchain_core.orbits.branch.equations import BranchEquations
+from granchain_core.orbits.branch.newton import Near
+from granchain_core.orbits.branch.normal_forms import GRAZING_IN_INTERVAL, GRAZING_NEAR, REASONS, NormalForm
+from granchain_core.orbits.branch.orbit_checkpoints import _special, _special_as_json
+from granchain_core.orbits.branch.switch import _eigenvector
+from granchain_core.orbits.orbit import sorted_multipliers
+from granchain_core.store import load_branch, save_branch
+
+
+@pytest.fixture(scope="module")
+def doubling() -> Branch:
+    """sec2 across two period doublings, at 255.8 and 233.5 Hz."""
+    return continue_branch(scene("sec2"), "f", 262.0, 225.0, 1)
+
+
+@pytest.fixture(scope="module")
+def torus() -> Branch:
+    """sec2 across a Neimark–Sacker point at 1973.2 Hz."""
+    return continue_branch(scene("sec2"), "f", 1990.0, 1945.0, 1)
+
+
+def the(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
+    """One special point of a kind."""
+    return [s for s in branch.special if s.kind == kind][number]
+
+
+@pytest.mark.parametrize(("number", "criticality"), [(0, "subcritical"), (1, "supercritical")])
+def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Branch, number: int, criticality: str) -> None:
+    """In the plane at amplitude ξ along q: Newton's method on the doubled map knows nothing of normal forms."""
+    special = the(doubling, "period_doubling", number)
+    form = special.normal_form
+    assert form is not None and form.criticality == criticality
+    once, twice = BranchEquations(doubling.axis, 1), BranchEquations(doubling.axis, 2)
+    foot, amplitude = special.before, 2e-4
+    away = np.append(_eigenvector(once, foot.x, foot.knob), 0.0)
+    solved = twice.solve(once.point(foot.x, foot.knob) + amplitude * away, away)
+    unstable = special.before if special.before.unstable > special.after.unstable else special.after
+    beyond = (twice.value(solved.z) - special.knob) * (unstable.knob - special.knob) > 0.0
+    assert abs(twice.value(solved.z) - special.knob) > 0.5 * (special.interval[1] - special.interval[0])
+    assert beyond == (criticality == "supercritical")
+    # (−1 − β + 3cξ²)² with β = cξ²; at 255.8 Hz the next order in ξ is a sixth of it
+    leading = sorted_multipliers(solved.flow.derivative)[0].real
+    assert (leading < 1.0) == beyond
+    assert (1.0 - leading) / (4.0 * amplitude**2) == pytest.approx(form.coefficient, rel=0.25)
+
+
+def test_a_coefficient_is_within_its_error_of_one_with_smaller_amplitudes(doubling: Branch, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("granchain_core.orbits.branch.normal_forms._AMPLITUDES", {"period_doubling": (2e-5,)})
+    monkeypatch.setattr("granchain_core.orbits.branch.criticality._TOLERANCE", 1e-13)
+    for special in (the(doubling, "period_doubling", number) for number in (0, 1)):
+        fine = again(doubling, special).normal_form
+        assert fine is not None and special.normal_form is not None
+        assert abs(fine.coefficient - special.normal_form.coefficient) < special.normal_form.error + fine.error
+
+
+def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> None:
+    """|z|² = −β/Re d on it, with β = |μ| − 1: 1e-5 m beside the orbit the chain goes to the curve and stays there."""
+    form = the(torus, "neimark_sacker").normal_form
+    assert form is not None and form.criticality == "supercritical"
+    equations = BranchEquations(torus.axis, 1)
+    radii, expected = [], []
+    for frequency in (1965.0, 1948.0):
+        point = continue_branch(scene("sec2"), "f", frequency, frequency - 0.1, 1).points[0]
+        values, vectors = np.linalg.eig(equations.stroboscopic_map(frequency)(point.x).derivative)
+        mine = int(np.argmax(np.where(values.imag > 0.0, np.abs(values), 0.0)))
+        q = vectors[:, mine] * np.sqrt(len(values)) / np.linalg.norm(vectors[:, mine])
+        p = np.linalg.inv(vectors)[mine] / (np.linalg.inv(vectors)[mine] @ q)
+        expected.append(np.sqrt((1.0 - abs(values[mine])) / form.coefficient))
+        x, steps = point.x + 2.0 * 0.8 * expected[-1] * q.real, equations.quick_steps(equations.point(point.x, frequency))
+        squares = []
+        for _ in range(int(3.0 / (abs(values[mine]) - 1.0))):
+            x = equations.quick_end(x, frequency, steps)
+            squares.append(abs(p @ (x - point.x)) ** 2)
+        radii.append(np.sqrt(np.mean(squares[-300:])))
+    assert radii == pytest.approx(expected, rel=0.05)
+
+
+def again(branch: Branch, special: SpecialPoint) -> SpecialPoint:
+    """The special point with its normal form computed anew."""
+    equations = BranchEquations(branch.axis, branch.period)
+    near = [Near(equations.stroboscopic_map(p.knob)(p.x).derivative, p.slope) for p in (special.before, special.after)]
+    between = Between(equations, special.before, special.after, (near[0], near[1]))
+    return with_normal_forms([special], between)[0]
+
+
+def test_it_is_the_same_when_it_is_computed_again(doubling: Branch) -> None:
+    special = the(doubling, "period_doubling")
+    assert again(doubling, special).normal_form == special.normal_form
+
+
+def test_nothing_is_decided_where_a_contact_grazes_in_the_same_interval(doubling: Branch) -> None:
+    special = the(doubling, "period_doubling")
+    closings = special.after.closings.copy()
+    closings[3] += 1
+    form = again(doubling, replace(special, after=replace(special.after, closings=closings))).normal_form
+    assert form is not None and (form.criticality, form.reason) == ("not decided", GRAZING_IN_INTERVAL)
+
+
+def test_no_state_is_used_along_which_contacts_close_in_another_order(doubling: Branch, monkeypatch: pytest.MonkeyPatch) -> None:
+    """At 255.8 Hz a contact grazes between the amplitudes 3e-4 and 1e-3."""
+    monkeypatch.setattr("granchain_core.orbits.branch.normal_forms._AMPLITUDES", {"period_doubling": (1e-3,)})
+    form = again(doubling, the(doubling, "period_doubling")).normal_form
+    assert form is not None and (form.criticality, form.reason) == ("not decided", GRAZING_NEAR)
+
+
+def test_a_grazing_has_no_criticality(doubling: Branch) -> None:
+    grazing = the(doubling, "grazing")
+    assert grazing.normal_form is None and grazing.criticality is None and grazing.criticality_words() == ""
+
+
+# --- results ----------------------------------------------------------------------------------------------
+
+
+def test_files_and_checkpoints_keep_it(doubling: Branch, tmp_path: Path) -> None:
+    undecided = replace(the(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=REASONS[0]))
+    doubling = replace(doubling, arms=(replace(doubling.arms[0], special=[*doubling.special, undecided]),))
+    loaded = load_branch(save_branch(doubling, tmp_path / "b.h5"))
+    kept = [_special(json.loads(json.dumps(_special_as_json(one)))) for one in doubling.special]
+    for special, *others in zip(doubling.special, loaded.special, kept, strict=True):
+        for other in others:
+            assert str(other.normal_form) == str(special.normal_form)  # NaN is not equal to itself
+
+
+def test_a_file_without_it_opens(doubling: Branch, tmp_path: Path) -> None:
+    path = save_branch(doubling, tmp_path / "old.h5")
+    with h5py.File(path, "r+") as file:
+        for name in ("criticality", "coefficient", "coefficient_error", "undecided"):
+            del file["special"][name]
+    seal(path)
+    loaded = load_branch(path)
+    assert [s.kind for s in loaded.special] == [s.kind for s in doubling.special]
+    assert all(s.normal_form is None and s.criticality is None for s in loaded.special)
+    assert branch_json(loaded)["normal_form"] == [None] * len(loaded.special)
+
+
+def test_a_reason_that_does_not_fit_is_refused(doubling: Branch, tmp_path: Path) -> None:
+    path = save_branch(doubling, tmp_path / "b.h5")
+    with h5py.File(path, "r+") as file:
+        file["special/undecided"][:] = REASONS[0]
+    seal(path)
+    with pytest.raises(BadInput, match="undecided does not fit"):
+        load_branch(path)
+
+
+def test_it_is_told_in_words_and_numbers(doubling: Branch, torus: Branch) -> None:
+    subcritical, supercritical = (the(doubling, "period_doubling", number) for number in (0, 1))
+    assert special_words(subcritical, doubling).endswith(
+        "; subcritical, beside it an orbit of twice the period repels on the stable side")
+    assert special_words(supercritical, doubling).endswith(
+        "; supercritical, beside it an orbit of twice the period attracts on the unstable side")
+    assert _normal_form_words(supercritical).startswith(", supercritical, coefficient 699.")
+    told = branch_json(torus)["normal_form"][torus.special.index(the(torus, "neimark_sacker"))]
+    assert told["criticality"] == "supercritical" and told["coefficient"] < 0.0 < told["error"] and told["reason"] == ""
+    assert told["angle"] == pytest.approx(1.1995, abs=1e-4)
+    assert _normal_form_words(the(torus, "neimark_sacker")).endswith("angle 68.73°")
+    assert any("subcritical" in line for line in doubling.summary())
+    unknown = replace(subcritical, normal_form=NormalForm("not decided", reason=REASONS[0]))
+    assert special_words(unknown, doubling).endswith(f"; criticality not decided: {REASONS[0]}")
