@@ -45,7 +45,8 @@ def _json(found: Pulse) -> dict[str, Any]:
                             for values in (found.speed, found.speed_in_metres, found.width))
     return {"contact": found.contact.tolist(), "time": found.time.tolist(), "force": found.force.tolist(),
             "speed_beads": speed, "speed": metres, "width": width, "velocity": found.velocity.tolist(),
-            "error_estimate": found.run.displacement_error, "energy_residual": found.run.energy_residual}
+            "error_estimate": found.run.displacement_error, "sampling_error": found.sampling_error,
+            "energy_residual": found.run.energy_residual}
 
 
 def _show(found: Pulse) -> None:
@@ -60,5 +61,6 @@ def _show(found: Pulse) -> None:
             (solitary_speed(chosen, force, CONTINUUM), 9, 6), (found.width[i], 11, 4)
         shown = "  ".join(f"{'–' if math.isnan(x) else f'{x:.{digits}g}':>{wide}}" for x, wide, digits in row)
         print(f"{contact:7}  {found.time[i]:9.4e}  {force:10.6g}  {shown}")
-    print(f"relative error of displacements {found.run.displacement_error:.1e}; "
+    print(f"relative error of displacements {found.run.displacement_error:.1e}, of the forces by sampling "
+          f"{found.sampling_error:.1e}; "
           f"{energy_in_words(found.run.energy_residual)}")

@@ -159,6 +159,15 @@ class Engine:
         """Reset the largest forces."""
         reset_peaks(self.log.peaks)
 
+    def begin_record(self) -> None:
+        """Count largest forces, work and loss from here on.
+
+        The account of a long run before would round away that of a record with little energy: their sums cancel.
+        """
+        self.reset_peaks()
+        if self.scaled.slots.balance is not None:
+            self.y[-2:] = 0.0
+
     @property
     def maxima(self) -> np.ndarray:
         """The largest input, output and elastic output force since they were last reset, in scaled units."""

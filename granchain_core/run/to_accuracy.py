@@ -201,7 +201,7 @@ def _attempt(reached: Reached, sizes: tuple[int, int], progress: Callable[[float
             kept.add(Reached(engine, done + now, strobes[0]))
         if progress is not None:
             progress(min(done + chunk, periods) / (periods + record))
-    engine.reset_peaks()
+    engine.begin_record()
     rows = engine.record(record * samples)
     if progress is not None:
         progress(1.0)

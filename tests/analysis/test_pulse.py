@@ -125,6 +125,34 @@ def test_chains_of_unequal_beads_move_as_an_independent_computation_says(name: s
     assert found.displacement_error < 1e-5 and found.energy_residual < 1e-8
 
 
+def test_a_pulse_with_two_maxima_in_a_contact_has_the_force_of_the_larger_one() -> None:
+    """At ε = 0.3428 every second contact is pressed twice before it opens: 1.42, then 2.07 N."""
+    found = pulse(recorded("impact-dimer"))
+    mass, stiffness = steel(radii("impact-dimer"))
+    own = own_motion(mass, stiffness, 0.01, 1.0 / found.scene.f)
+    two = 0
+    for contact, force, time in zip(found.contact[:20], found.force, found.time, strict=False):  # a reflection comes later
+        there = own[:, contact]
+        least = 0.02 * there.max()
+        first = int(np.flatnonzero(there > least)[0])
+        opens = first + int(np.flatnonzero(there[first:] < least)[0])
+        # samples 1/70 of the passage apart: their largest is below the maximum by 1e-4
+        assert force == pytest.approx(there[first:opens].max(), rel=3e-4)
+        assert time == pytest.approx(found.run.time[first + np.argmax(there[first:opens])], abs=1.1e-6)
+        two += int(there[first + np.argmax(np.diff(there[first:opens]) < 0.0)] < 0.9 * force)
+    assert two >= 8
+
+
+def test_coarse_samples_are_told_by_the_error() -> None:
+    """The stated error of the force by sampling bounds the difference from a fine record."""
+    fine = pulse(recorded("impact"))
+    for samples in (200, 400, 1000):
+        coarse = pulse(run(scene("impact"), periods=0, record=1, samples=samples))
+        wrong = np.abs(coarse.force / fine.force - 1.0).max()
+        assert wrong < coarse.sampling_error < max(1.0, 100.0 * wrong)
+    assert fine.sampling_error < 1e-5
+
+
 def test_a_scene_without_a_drive_has_a_picture_and_no_steady_state() -> None:
     """Its picture is the motion from the start; what needs an orbit is refused with a sentence."""
     chain = scene("impact").evolve(N=5)

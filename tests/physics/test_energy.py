@@ -118,3 +118,11 @@ def test_a_moving_bead_brings_its_energy_along():
     assert energy[0, 0] == pytest.approx(0.5 * thrown.bead(3).mass * 0.01**2, rel=1e-12)  # nothing else moves at t = 0
     stored, work, lost = energy[-1] - energy[0]
     assert work - lost == pytest.approx(stored, abs=1e-8 * energy[0, 0])  # the method's tolerance times its steps
+
+
+def test_a_record_of_little_energy_has_its_own_account() -> None:
+    """Struck, then almost at rest: the work and the loss of the periods before are not in the record's account."""
+    struck = scene("sec2").evolve(N=2, drive="rest", strike=0.05, k=3e6, f=55.0)
+    for periods in (1, 3):
+        found = run(struck, periods=periods, record=2)
+        assert found.kinetic_energy.max() < 1e-9 * 0.5 * struck.beads[0].mass * 0.05**2 and found.energy_residual < 1e-4
