@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.cli.branch import _normal_form_words, branch_json
-from app.pictures.branches import special_words
+from app.pictures.branches import criticality_words
 from granchain_core import BadInput, scene, settled
 from granchain_core.hdf5 import seal
 from granchain_core.orbits import Branch, Continuation, SpecialPoint, continue_branch, switch_to_doubled
@@ -179,10 +179,11 @@ def test_a_reason_that_does_not_fit_is_refused(doubling: Branch, tmp_path: Path)
 
 def test_it_is_told_in_words_and_numbers(doubling: Branch, torus: Branch) -> None:
     subcritical, supercritical = (the(doubling, "period_doubling", number) for number in (0, 1))
-    assert special_words(subcritical, doubling).endswith(
-        "; subcritical, beside it an orbit of twice the period repels on the stable side")
-    assert special_words(supercritical, doubling).endswith(
-        "; supercritical, beside it an orbit of twice the period attracts on the unstable side")
+    assert criticality_words(subcritical) == "subcritical: beside it, on the stable side, an orbit of twice the period repels"
+    assert criticality_words(supercritical) == (
+        "supercritical: beside it, on the unstable side, an orbit of twice the period attracts")
+    assert criticality_words(the(torus, "neimark_sacker")).endswith("a closed curve of the map attracts")
+    assert criticality_words(the(doubling, "grazing")) == ""
     assert _normal_form_words(supercritical).startswith(", supercritical, coefficient 699.")
     told = branch_json(torus)["normal_form"][torus.special.index(the(torus, "neimark_sacker"))]
     assert told["criticality"] == "supercritical" and told["coefficient"] < 0.0 < told["error"] and told["reason"] == ""
@@ -190,4 +191,4 @@ def test_it_is_told_in_words_and_numbers(doubling: Branch, torus: Branch) -> Non
     assert _normal_form_words(the(torus, "neimark_sacker")).endswith("angle 68.73°")
     assert any("subcritical" in line for line in doubling.summary())
     unknown = replace(subcritical, normal_form=NormalForm("not decided", reason=REASONS[0]))
-    assert special_words(unknown, doubling).endswith(f"; criticality not decided: {REASONS[0]}")
+    assert criticality_words(unknown) == f"criticality not decided: {REASONS[0]}"
