@@ -32,7 +32,7 @@ _BORN = {"period_doubling": "an orbit of twice the period", "neimark_sacker": "a
 _LINES = {"stable": (2.6, "solid"), "unstable": (1.8, [6, 4])}
 _ORBIT = ("x", "y", "tooltip", "elastic", "output", "input", "period", "motion", "residual", "stable", "target", "arm",
           "place")
-_MARK = ("x", "y", "tooltip", "place")
+_MARK = ("x", "y", "tooltip", "criticality", "place")
 #: Source of the points of the resonance curve behind the branches.
 _CURVE = "curve"
 #: Source of the lines between two neighbouring points of it that both repeat.
@@ -72,7 +72,8 @@ class BranchRows:
             for i, p in enumerate(new)])}
         for kind in SPECIAL:
             rows[kind] = _columns(_MARK, [
-                (*self._place(s.before, s.knob), special_words(s, branch), len(self.special) + i)
+                (*self._place(s.before, s.knob), special_words(s, branch), criticality_words(s),
+                 len(self.special) + i)
                 for i, s in enumerate(special) if s.kind == kind])
         pieces = self._lines(arm, before[-1:], new)
         before.extend(new)
@@ -229,13 +230,17 @@ def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) ->
 
 def _tools(plot: figure, targets: Any, items: list[LegendItem]) -> None:
     """Hover and tap for orbits and special points, and a legend that hides what is clicked in it."""
-    marks = [one for item in items for one in item.renderers if item.label.value in SPECIAL.values()]
+    marks = {kind: one for item in items for one in item.renderers for kind, words in SPECIAL.items()
+             if item.label.value == words}
+    born, others = ([one for kind, one in marks.items() if (kind in _BORN) is wanted] for wanted in (True, False))
+    above: dict[str, Any] = {"limit": 2, "attachment": "above"}
     plot.add_tools(
         HoverTool(renderers=[targets], limit=1, attachment="below", tooltips=[
             ("orbit", "@tooltip"), ("motion", "@motion"), ("elastic output force", "@elastic"),
             ("output force", "@output"), ("input force", "@input"), ("relative error of the orbit", "@residual")]),
-        HoverTool(renderers=marks, tooltips=[("", "@tooltip")], limit=2, attachment="above"),
-        TapTool(name="tap", renderers=[targets, *marks], mode="replace"))
+        HoverTool(renderers=born, tooltips=[("", "@tooltip"), ("", "@criticality")], **above),
+        HoverTool(renderers=others, tooltips=[("", "@tooltip")], **above),
+        TapTool(name="tap", renderers=[targets, *marks.values()], mode="replace"))
     plot.add_layout(Legend(name="legend", items=items, click_policy="hide", orientation="horizontal", ncols=len(items),
                            padding=0, margin=4, spacing=12, glyph_width=26), "below")
 
@@ -259,20 +264,23 @@ def special_words(special: SpecialPoint, branch: Branch) -> str:
     elif special.kind == "neimark_sacker" and special.multiplier is not None:
         words += (f": a pair μ = {special.multiplier.real:+.3f} ± {abs(special.multiplier.imag):.3f}i crosses the unit "
                   "circle")
-    return words + _criticality_words(special)
+    return words
 
 
-def _criticality_words(special: SpecialPoint) -> str:
-    """Whether a period doubling or Neimark–Sacker point is supercritical, and what follows where one side is stable."""
+def criticality_words(special: SpecialPoint) -> str:
+    """Whether a period doubling or Neimark–Sacker point is supercritical, and what follows where one side is stable.
+
+    Empty for other kinds.
+    """
     new, form = _BORN.get(special.kind), special.normal_form
     if new is None or form is None:
         return ""
-    words = f"; {special.criticality_words()}"
+    words = special.criticality_words()
     if form.reason or special.before.stable == special.after.stable:
         return words
     if form.criticality == SUPERCRITICAL:
-        return f"{words}, beside it {new} attracts on the unstable side"
-    return f"{words}, beside it {new} repels on the stable side"
+        return f"{words}: beside it, on the unstable side, {new} attracts"
+    return f"{words}: beside it, on the stable side, {new} repels"
 
 
 def _orbit_words(point: BranchPoint, branch: Branch) -> tuple[Any, ...]:

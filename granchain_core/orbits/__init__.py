@@ -3,6 +3,7 @@
 from .branch.axis import CONTINUOUS, KnobAxis
 from .branch.branch import Branch, Continuation, begin_branch, continue_branch
 from .branch.check import check_branch
+from .branch.normal_forms import NormalForm
 from .branch.point import BranchPoint
 from .branch.special import SpecialPoint
 from .branch.switch import switch_to_doubled
@@ -11,7 +12,7 @@ from .orbit import Orbit, periodic_orbit, random_state
 from .response import Response, response
 
 __all__ = [
-    "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "KnobAxis", "Orbit", "Response", "SpecialPoint",
-    "begin_branch", "check_branch", "continue_branch", "periodic_orbit", "random_state", "response",
+    "CONTINUOUS", "Arm", "Branch", "BranchPoint", "Continuation", "KnobAxis", "NormalForm", "Orbit", "Response",
+    "SpecialPoint", "begin_branch", "check_branch", "continue_branch", "periodic_orbit", "random_state", "response",
     "switch_to_doubled",
 ]

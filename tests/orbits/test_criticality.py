@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from app.cli.branch import _normal_form_words, branch_json
-from app.pictures.branches import special_words
-from granchain_core import BadInput, scene
+from app.pictures.branches import criticality_words
+from granchain_core import BadInput, scene, settled
 from granchain_core.hdf5 import seal
-from granchain_core.orbits import Branch, SpecialPoint, continue_branch
+from granchain_core.orbits import Branch, Continuation, SpecialPoint, continue_branch, switch_to_doubled
 from granchain_core.orbits.branch.between import Between
 from granchain_core.orbits.branch.criticality import with_normal_forms
 from granchain_core.orbits.branch.equations import BranchEquations
@@ -61,6 +61,22 @@ def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Br
     leading = sorted_multipliers(solved.flow.derivative)[0].real
     assert (leading < 1.0) == beyond
     assert (1.0 - leading) / (4.0 * amplitude**2) == pytest.approx(form.coefficient, rel=0.25)
+
+
+def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
+    """The doubled branch, followed from its supercritical end, folds back above the subcritical one."""
+    subcritical, supercritical = (the(doubling, "period_doubling", number) for number in (0, 1))
+    doubled = Continuation(switch_to_doubled(doubling, supercritical)).run()
+    fold, end = the(doubled, "fold"), doubled.special[-1]
+    assert fold.criticality == "generic" and fold.knob > subcritical.interval[1] + 0.5
+    assert end.kind == "period_doubling" and end.normal_form is None
+    assert end.knob == pytest.approx(subcritical.knob, abs=sum(s.interval[1] - s.interval[0] for s in (end, subcritical)))
+    # between the doubling and the fold the chain stays on whichever orbit it is near: both attract
+    between = next(p for p in doubled.points if p.stable and p.knob > subcritical.interval[1])
+    chain = doubled.axis.scene_at(between.knob)
+    once = continue_branch(scene("sec2"), "f", between.knob, 262.0, 1).points[0]
+    assert once.stable
+    assert settled(chain, doubled.state(between)).regime.period == 2 and settled(chain, doubling.state(once)).regime.period == 1
 
 
 def test_a_coefficient_is_within_its_error_of_one_with_smaller_amplitudes(doubling: Branch, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -163,10 +179,11 @@ def test_a_reason_that_does_not_fit_is_refused(doubling: Branch, tmp_path: Path)
 
 def test_it_is_told_in_words_and_numbers(doubling: Branch, torus: Branch) -> None:
     subcritical, supercritical = (the(doubling, "period_doubling", number) for number in (0, 1))
-    assert special_words(subcritical, doubling).endswith(
-        "; subcritical, beside it an orbit of twice the period repels on the stable side")
-    assert special_words(supercritical, doubling).endswith(
-        "; supercritical, beside it an orbit of twice the period attracts on the unstable side")
+    assert criticality_words(subcritical) == "subcritical: beside it, on the stable side, an orbit of twice the period repels"
+    assert criticality_words(supercritical) == (
+        "supercritical: beside it, on the unstable side, an orbit of twice the period attracts")
+    assert criticality_words(the(torus, "neimark_sacker")).endswith("a closed curve of the map attracts")
+    assert criticality_words(the(doubling, "grazing")) == ""
     assert _normal_form_words(supercritical).startswith(", supercritical, coefficient 699.")
     told = branch_json(torus)["normal_form"][torus.special.index(the(torus, "neimark_sacker"))]
     assert told["criticality"] == "supercritical" and told["coefficient"] < 0.0 < told["error"] and told["reason"] == ""
@@ -174,4 +191,4 @@ def test_it_is_told_in_words_and_numbers(doubling: Branch, torus: Branch) -> Non
     assert _normal_form_words(the(torus, "neimark_sacker")).endswith("angle 68.73°")
     assert any("subcritical" in line for line in doubling.summary())
     unknown = replace(subcritical, normal_form=NormalForm("not decided", reason=REASONS[0]))
-    assert special_words(unknown, doubling).endswith(f"; criticality not decided: {REASONS[0]}")
+    assert criticality_words(unknown) == f"criticality not decided: {REASONS[0]}"

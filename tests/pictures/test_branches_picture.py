@@ -56,6 +56,7 @@ def test_special_points_are_told_with_their_uncertainty(branch: Branch) -> None:
     assert "contact 3 has one separation more on one side" in told["grazing"]
     plot = branches([branch], THEMES["light"])
     assert data(plot, "period_doubling")["tooltip"] == [told["period_doubling"]]
+    assert data(plot, "period_doubling")["criticality"][0].startswith("subcritical: ")
     shown = {item.label.value: item.visible for item in plot.legend[0].items}
     assert shown["period doubling"] and not shown["fold"]  # there is none
 

@@ -39,7 +39,8 @@ class Choice {
 
   show(source, columns, row) {
     this.root.hidden = false;
-    this.root.replaceChildren(columns.tooltip[row]);
+    const criticality = columns.criticality?.[row];
+    this.root.replaceChildren(columns.tooltip[row] + (criticality ? `; ${criticality}` : ""));
     if (source === "orbits") this.loadOrbit(columns, row);
     else if (source === "period_doubling") this.offerDoubled(columns.place[row]);
   }
