@@ -54,7 +54,7 @@ STATED = (
            "the finer of two computations is the same one", k.HONESTY),
     Mutant("sample-index-without-phase", _RUN, "first = periods * samples + round(begin.phase * samples)", "first = periods * samples",
            "time and driver of a run from a given phase are those of phase 0", k.CONTINUATION),
-    Mutant("peaks-of-the-transient", _RUN, "    engine.reset_peaks()\n", "", "largest forces are those of the discarded periods too",
+    Mutant("peaks-of-the-transient", _RUN, "    engine.begin_record()\n", "", "largest forces are those of the discarded periods too",
            k.CLAIMS_RUN),
     Mutant("energy-residual-of-work", "result.py", "abs(work - lost - stored) / largest", "abs(work - lost) / largest",
            "the energy account does not count what is stored", k.ENERGY_PLAIN),
