@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `rotation`."""
     add_scene(parser)
-    parser.add_argument("--periods", type=whole, default=8000, metavar="P", help="drive periods of a record")
+    parser.add_argument("--periods", type=whole, default=4000, metavar="P",
+                        help="drive periods of the first record; up to two follow, each twice as long")
     add_json(parser)
     add_picture(parser)
 

@@ -1,7 +1,7 @@
 """The rotation number of a quasi-periodic motion: its second frequency over that of the drive.
 
-Definition  On a closed curve that P maps to itself the states turn by ρ of a full turn per drive period in the mean:
-            ρ = lim (θ_P − θ_0) / P. The second frequency is f₂ = ρ f
+Definition  ρ = lim (θ_p − θ_0) / p: on a closed curve that the stroboscopic map P takes to itself, the mean advance of
+            the angle θ, in turns, per drive period p. The second frequency is f₂ = ρ f
 Convention  ρ is known up to its sign and a whole number, and is given in [0, ½]. On q closed curves that are visited in
             turn it is the rotation number of P^q, and f₂ = ρ f / q, up to its sign and multiples of f / q
 Source      winding.py beside this file, which computes it from strobes
@@ -19,6 +19,7 @@ import numpy as np
 from ..errors import whole_number
 from ..integrate import Engine, fixed_step_setting
 from ..integrate.methods import FIXED_STEP
+from ..integrate.safety_factors import IRREGULAR
 from ..regime import Regime
 from ..scene import Scene
 from ..scene.given import require_scene
@@ -29,14 +30,19 @@ from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 from .winding import LARGEST_DENOMINATOR, LENGTHS, Winding, folded, winding_of
 
-#: Fewest drive periods in a record.
+#: Fewest drive periods in a first record.
 FEWEST_PERIODS = 1000
-#: Most drive periods in a record.
-MOST_PERIODS = 200_000
-#: Steps in a drive period over the default ones: the difference of the two is the stated error of the shorter steps.
+#: Most drive periods in a first record.
+MOST_PERIODS = 10_000
+#: Steps in a drive period over the default ones: the difference of the two gives the error of the shorter steps.
 _LONGER, _SHORTER = 2.0, 4.0
-#: Most records of one motion, each after the one before: the regime is known before the curve is reached to rounding.
-_MOST_RECORDS = 4
+#: Most records of one motion, each after the one before and twice as long: the regime is known before the curve is
+#: reached to rounding, and near a fraction a record must be long.
+_MOST_RECORDS = 3
+#: Most beads whose strobes are kept, evenly spaced along a longer chain.
+_MOST_BEADS = 30
+#: Drive periods that are run at once.
+_PERIODS_AT_ONCE = 1000
 #: A record with a smaller error of its average is the last.
 _SMALL_ERROR = 1e-8
 
@@ -57,11 +63,11 @@ class RotationNumber(Labelled):
         Error of the average: three times the largest difference of the first, middle and last half of the record, and
         of other projections.
     step_error : float or None
-        Error of the integration: the difference from steps twice as long.
+        Error of the integration: three times the difference from steps twice as long.
     curves : int
         Number of closed curves that the motion visits in turn.
     periods : int
-        Drive periods of the record.
+        Drive periods of the last record.
     projections : int
         Number of projections of the state from which it was computed, and which agree within `average_error`.
     reason : str
@@ -73,7 +79,7 @@ class RotationNumber(Labelled):
     Examples
     --------
     >>> from granchain_core import rotation_number, scene
-    >>> found = rotation_number(scene("sec2").evolve(f=1700.0), periods=4000)
+    >>> found = rotation_number(scene("sec2").evolve(f=1700.0))
     >>> f"{found.value:.6f}", found.curves, found.error < 1e-6
     ('0.221811', 1, True)
     >>> f"{found.second_frequency:.2f} Hz"
@@ -165,19 +171,19 @@ def with_error(value: float, error: float | None) -> str:
     return f"{value:.{decimals}f} ± {error:.1e}"
 
 
-def rotation_number(scene: Scene, periods: int = 8000, start: State | None = None, stop: Stop | None = None,
+def rotation_number(scene: Scene, periods: int = 4000, start: State | None = None, stop: Stop | None = None,
                     progress: Callable[[float], None] | None = None) -> RotationNumber:
     """The rotation number of the quasi-periodic motion that a chain settles to.
 
     The chain settles; then its strobes are recorded with half the default step and with a quarter of it. While the
-    average's error is above 1e-8, the next record follows, up to four with each step.
+    average's error is above 1e-8, a record twice as long follows, up to three with each step.
 
     Parameters
     ----------
     scene : Scene
         The chain.
     periods : int
-        Drive periods of a record, 1000 to 200,000.
+        Drive periods of the first record, 1000 to 10,000.
     start : State, optional
         Where the chain starts before it settles; its scene's start if not given.
     stop : Stop, optional
@@ -210,32 +216,48 @@ def rotation_number(scene: Scene, periods: int = 8000, start: State | None = Non
         return _result(scene, settled.regime, periods,
                        Winding(None, None, 1, f"the motion is {settled.regime.name}, not quasi-periodic"), None)
     told = progress or (lambda _: None)
-    longer, state = _recorded(scene, _LONGER, settled.engine.state, periods, settled.stop, lambda part: told(part / 3))
-    shorter, _ = _recorded(scene, _SHORTER, state, periods, settled.stop, lambda part: told((1 + 2 * part) / 3))
-    return _result(scene, settled.regime, periods, *_compared(longer, shorter))
+    engine = _engine(scene, _LONGER, settled.engine.state, settled.stop)
+    longer, _ = _recorded(engine, periods, lambda part: told(part / 3))
+    engine = _engine(scene, _SHORTER, engine.state, settled.stop)
+    shorter, length = _recorded(engine, periods, lambda part: told((1 + 2 * part) / 3))
+    return _result(scene, settled.regime, length, *_compared(longer, shorter))
 
 
-def _recorded(scene: Scene, refined: float, state: State, periods: int, stop: Stop,
-              told: Callable[[float], None]) -> tuple[Winding, State]:
-    """The rotation number of the last record by `refined` times the default steps, and the state there."""
+def _engine(scene: Scene, refined: float, state: State, stop: Stop) -> Engine:
+    """The fixed-step method with `refined` times the default steps, at `state`."""
     engine = Engine(scene, fixed_step_setting(refined), 1, stop=stop)
     engine.start(state)
-    for number in range(1, _MOST_RECORDS + 1):
-        found = winding_of(engine.periods(periods, watch=False)[0])
-        told(number / _MOST_RECORDS)
+    return engine
+
+
+def _recorded(engine: Engine, periods: int, told: Callable[[float], None]) -> tuple[Winding, int]:
+    """The rotation number of the last record, and its length: the first has `periods`, each other one twice as many."""
+    for number in range(_MOST_RECORDS):
+        length = periods << number
+        found = winding_of(_strobes(engine, length))
+        told((2.0 ** (number + 1) - 1.0) / (2.0**_MOST_RECORDS - 1.0))
         if found.error is not None and found.error < _SMALL_ERROR:
             break
-    return found, engine.state
+    return found, length
+
+
+def _strobes(engine: Engine, periods: int) -> np.ndarray:
+    """The strobes (P, 2, n) of the next periods, of all beads or of at most `_MOST_BEADS` of a longer chain."""
+    every = -(-engine.scaled.beads // _MOST_BEADS)
+    parts = [min(_PERIODS_AT_ONCE, periods - first) for first in range(0, periods, _PERIODS_AT_ONCE)]
+    return np.concatenate([engine.periods(part, watch=False)[0][1:, :, ::every] for part in parts])
 
 
 def _compared(longer: Winding, shorter: Winding) -> tuple[Winding, float | None]:
-    """The rotation number by the shorter steps, and its difference from that by the longer ones."""
-    if longer.value is None or shorter.value is None:
-        return (shorter if shorter.value is None else longer), None
+    """The rotation number by the shorter steps, and the error of these, from its difference from the longer ones."""
+    if shorter.value is None:
+        return shorter, None
+    if longer.value is None:
+        return Winding(None, None, shorter.curves, f"with steps twice as long there is none: {longer.reason}"), None
     if longer.curves != shorter.curves:
         reason = f"with steps twice as long there are {longer.curves} curves in place of {shorter.curves}"
         return Winding(None, None, shorter.curves, reason), None
-    return shorter, folded(longer.value - shorter.value)
+    return shorter, IRREGULAR * folded(longer.value - shorter.value)
 
 
 def _result(scene: Scene, regime: Regime, periods: int, found: Winding, step_error: float | None) -> RotationNumber:

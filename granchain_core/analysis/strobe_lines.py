@@ -20,7 +20,7 @@ _MOST_LINES = 10
 #: Distance in units of 1/P within which two peaks of the spectrum are one line: the width of the window's main lobe.
 _WIDTH = 8
 #: Zeros that are appended to a record: so many times its length in all.
-_PADDED = 4
+_PADDED = 2
 #: Most curves that are visited in turn.
 MOST_CURVES = 16
 #: Difference of a line from a fraction j/q, in units of 1/P, below which it is one.
@@ -42,12 +42,15 @@ class Basic:
 
 
 def lines_of(states: np.ndarray) -> np.ndarray:
-    """Frequencies per period (L,) of the lines of states (P, D) without mean, in [0, ½], the strongest first.
+    """Frequencies per period (L,) of the lines of pairs of successive states, in [0, ½], the strongest first.
 
+    `states` (P, 2D) are the pairs, without mean; the spectrum is that of the first of each.
     Slower than a few turns in the record is no line: it is a drift, or what is left of the mean.
     """
     count = len(states)
-    power = (np.abs(np.fft.rfft(weights(count)[:, None] * states, n=_PADDED * count, axis=0)) ** 2).sum(axis=1)
+    power = np.zeros(_PADDED * count // 2 + 1)
+    for column in states.T[: states.shape[1] // 2]:  # one at a time, because a long padded record is large
+        power += np.abs(np.fft.rfft(weights(count) * column, n=_PADDED * count)) ** 2
     power[: _PADDED * _WIDTH] = 0.0
     around = np.concatenate([[0.0], power, [0.0]])
     peaks = np.nonzero((power >= around[:-2]) & (power >= around[2:]) & (power > WEAKEST_LINE**2 * power.max()))[0]

@@ -69,7 +69,7 @@ def winding_of(states: np.ndarray) -> Winding:
     embedded = _embedded(states)
     if len(embedded) < FEWEST_STATES:
         return _none(1, f"there are fewer than {FEWEST_STATES} states on one curve")
-    if not np.isfinite(embedded).all() or np.ptp(states, axis=0).max() <= _AT_REST * np.abs(states).max():
+    if np.ptp(states, axis=0).max() <= _AT_REST * np.abs(states).max():
         return _none(1, "the states are all the same")
     lines = lines_of(embedded)
     curves = curves_of(lines, len(embedded))
@@ -105,7 +105,8 @@ def _on_one_curve(embedded: np.ndarray, lines: np.ndarray, curves: int) -> Windi
     if basic is None:
         shown = ", ".join(f"{line:.6f}" for line in lines[:_PROJECTED_LINES])
         return _none(curves, f"the strongest lines of their spectrum ({shown} per period) and the others are no "
-                             "multiples of one frequency: there is a third one, or the motion is chaotic")
+                             "multiples of one frequency: there is a third one, the motion is chaotic, or it is "
+                             "locked to a long period")
     increments = [(steps, multiple) for steps, multiple in _projections(embedded, lines, basic) if steps is not None]
     if len(increments) < 2:
         return _none(curves, "no two projections were found in which they go round a closed curve")

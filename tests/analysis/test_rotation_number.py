@@ -20,7 +20,7 @@ from granchain_core import (
     spectrum,
 )
 from granchain_core.analysis.birkhoff import average, refined_frequency, weights
-from granchain_core.analysis.rotation_number import with_error
+from granchain_core.analysis.rotation_number import _strobes, with_error
 from granchain_core.analysis.winding import Winding, winding_of
 from granchain_core.integrate import Engine, fixed_step_setting
 from granchain_core.stop import Stop
@@ -176,6 +176,21 @@ def test_chaos_is_not_decided() -> None:
         assert found.value is None and "multiples of one frequency" in found.reason
 
 
+@pytest.mark.parametrize("f", [594.0, 1090.0])
+def test_the_strobes_of_a_chaotic_chain_are_not_decided(f: float) -> None:
+    """Whatever the regime is called: six and three bands visited in turn, with exponents of 0.09 per period."""
+    engine = Engine(scene("sec2").evolve(f=f), fixed_step_setting(), 1)
+    engine.periods(1000)
+    found = winding_of(engine.periods(6000)[0])
+    assert found.value is None and found.curves in {3, 6} and found.reason
+
+
+def test_of_a_long_chain_every_other_bead_is_kept() -> None:
+    chain = scene("sec2").evolve(N=31, f=1700.0)
+    kept, every = (Engine(chain, fixed_step_setting(), 1) for _ in range(2))
+    np.testing.assert_array_equal(_strobes(kept, 1100), every.periods(1100)[0][1:, :, ::2])
+
+
 def test_three_frequencies_are_not_decided() -> None:
     states = np.concatenate([circle(rigid(GOLDEN)), circle(rigid(np.sqrt(3.0) - 1.5))], axis=2)
     assert "there is a third one" in winding_of(states).reason
@@ -283,7 +298,7 @@ def test_it_tells_how_far_it_is_and_can_be_stopped() -> None:
         rotation_number(CURVE, stop=stop)
 
 
-@pytest.mark.parametrize("periods", [999, 200_001, 1000.5])
+@pytest.mark.parametrize("periods", [999, 10_001, 1000.5])
 def test_a_record_has_a_length(periods: float) -> None:
     with pytest.raises(BadInput, match="periods ="):
         rotation_number(CURVE, periods)  # type: ignore[arg-type]

@@ -48,7 +48,7 @@ ROTATION = (
            "curves that are visited in turn are taken for one", k.ROTATION),
     Mutant("rotation-of-a-multiple", _WINDING, "round(multiple * near - advance)) / multiple", "round(multiple * near - advance))",
            "an angle that goes round twice in a turn of the curve is taken for the curve's own", k.ROTATION),
-    Mutant("rotation-of-these-steps", "analysis/rotation_number.py", "return shorter, folded(longer.value - shorter.value)", "return shorter, 0.0",
+    Mutant("rotation-of-these-steps", "analysis/rotation_number.py", "return shorter, IRREGULAR * folded(longer.value - shorter.value)", "return shorter, 0.0",
            "the steps have no error", k.ROTATION_STEPS),
 )
 
