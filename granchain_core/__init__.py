@@ -5,8 +5,8 @@
 
 This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
 function of the same name; `curve` is `resonance_curve`, `map` is `diagram`, `strobes` is `strobe_diagram`, `lyapunov`
-is `lyapunov_spectrum` and `accuracy` is `work_precision`. `settle`, `orbit` and `branch` are also known by their longer
-names `settled`, `periodic_orbit` and `continue_branch`.
+is `lyapunov_spectrum`, `rotation` is `rotation_number` and `accuracy` is `work_precision`. `settle`, `orbit` and
+`branch` are also known by their longer names `settled`, `periodic_orbit` and `continue_branch`.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from .analysis.basins import Basins, basins
     from .analysis.lyapunov_spectrum import LyapunovSpectrum, lyapunov_spectrum
     from .analysis.pulse import Pulse, pulse
+    from .analysis.rotation_number import RotationNumber, rotation_number
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .diagram import Attractor, Attractors, Diagram, attractors, diagram
@@ -62,6 +63,7 @@ _MODULES = {
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),
+    "analysis.rotation_number": ("RotationNumber", "rotation_number"),
     "analysis.strobe_diagram": ("StrobeDiagram", "strobe_diagram"), "analysis.pulse": ("Pulse", "pulse"),
     "analysis.bands": ("bands",),
 }
@@ -72,11 +74,11 @@ _SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 __all__ = [
     "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve",
     "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit",
-    "OverBudget", "Pulse", "Regime", "Run", "Runs", "Scene", "Settled", "Signal", "Spectrum", "State", "Stop",
-    "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors", "bands", "basins", "branch",
+    "OverBudget", "Pulse", "Regime", "RotationNumber", "Run", "Runs", "Scene", "Settled", "Signal", "Spectrum", "State",
+    "Stop", "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors", "bands", "basins", "branch",
     "continue_branch", "diagram", "drive", "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit",
-    "periodic_orbit", "pulse", "resonance_curve", "run", "run_many", "save", "scene", "scene_names", "settle",
-    "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
+    "periodic_orbit", "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save", "scene", "scene_names",
+    "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
 ]
 
 

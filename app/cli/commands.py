@@ -50,6 +50,7 @@ COMMANDS = {
     "map": "regime and largest forces over two knobs",
     "spectrum": "lines of a force, and the transfer from input to output",
     "lyapunov": "all Lyapunov exponents, and the dimension of the attractor",
+    "rotation": "rotation number and second frequency of a quasi-periodic motion",
     "strobes": "strobes over a knob: the bifurcation diagram",
     "attractors": "the steady states that coexist at one setting, and the share of random starts that lead to each",
     "basins": "to which steady state each start of a plane leads",

@@ -22,6 +22,7 @@ from granchain_core import (
     Observation,
     Orbit,
     Pulse,
+    RotationNumber,
     Run,
     Settled,
     Spectrum,
@@ -52,6 +53,7 @@ from .motion import motion
 from .multipliers import multipliers
 from .observation import observation
 from .paper import paper_figure, size_of
+from .rotation import rotation
 from .spectrum import spectrum
 from .strobe_diagram import strobe_diagram
 from .theme import THEMES, Theme
@@ -103,7 +105,8 @@ def _strobes(found: StrobeDiagram, theme: Theme, bead: int | None = None) -> Lay
 DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
     Run: motion, Settled: _settled, Driven: motion, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
     Diagram: both_maps, Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum,
-    Transfer: transfer, LyapunovSpectrum: lyapunov, StrobeDiagram: _strobes, Basins: basins, Attractors: attractors,
+    Transfer: transfer, LyapunovSpectrum: lyapunov, RotationNumber: rotation, StrobeDiagram: _strobes,
+    Basins: basins, Attractors: attractors,
 }
 _PAPER = (EnergyMaps, Observers, Rig, RigResponse, ShakerAmplitude, Trains, Transmission)
 #: Lists of results that are drawn over each other.

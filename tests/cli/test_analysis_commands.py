@@ -1,4 +1,4 @@
-"""spectrum, lyapunov, strobes, attractors, basins, pulse, bands: their words, their pictures, and what they refuse."""
+"""spectrum, lyapunov, rotation, strobes, attractors, basins, pulse, bands: words, pictures, and what they refuse."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ SHORT = ["sec2", "--set", "N=2", "--set", "f=2000"]
 COMMANDS = {
     "spectrum": [*SHORT, "--samples", "32"],
     "lyapunov": [*SHORT, "--periods", "20"],
+    "rotation": ["sec2", "--set", "f=1700", "--periods", "2000"],
     "strobes": [*SHORT, "--over", "f=1900:2000:2", "--keep", "4"],
     "attractors": [*SHORT, "--random-states", "2"],
     "basins": [*SHORT, "--x", "u1=0:2e-7:2", "--y", "v1=0:1e-3:2"],
     "pulse": ["impact", "--set", "N=5"], "bands": ["precompressed"],
 }
 #: A source in the picture of each, where it has one.
-SOURCES = {"spectrum": "lines", "strobes": "strobes", "attractors": "period 1", "basins": "basin 1"}
+SOURCES = {"spectrum": "lines", "rotation": "convergence", "strobes": "strobes", "attractors": "period 1", "basins": "basin 1"}
 
 
 @pytest.mark.parametrize("command", SOURCES)
@@ -33,7 +34,7 @@ def test_a_picture_has_its_points(command: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("command", "words"), [
     ("spectrum", "Fourier series of a motion of period 1"), ("lyapunov", "of 4 exponents resolved"),
-    ("strobes", "settled within"), ("basins", "100%"), ("attractors", "100 ± 19 %             2.30266     yes       5  period 1"),
+    ("rotation", "rotation number 0.22181"), ("strobes", "settled within"), ("basins", "100%"), ("attractors", "100 ± 19 %             2.30266     yes       5  period 1"),
     ("pulse", "energy closes to"), ("bands", "cut-off 7200.22 Hz"),
 ])
 def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -43,6 +44,7 @@ def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFix
 
 @pytest.mark.parametrize(("words", "sentence"), [
     (["spectrum", *SHORT, "--force", "wall"], "force 'wall'"), (["lyapunov", *SHORT, "--periods", "3"], "outside 20 to"),
+    (["rotation", *SHORT, "--periods", "3"], "periods = 3 is outside 1000 to"), (["rotation", "impact"], "drive = rest"),
     (["strobes", *SHORT, "--over", "f=1:2"], "must have the form KNOB=a:b:n"),
     (["strobes", *SHORT, "--over", "wall=1:2:3"], "knob of a strobe diagram 'wall'"),
     (["strobes", *SHORT, "--over", "f=1000:1100:2", "--bead", "3"], "--bead 3 is outside 1 to 2"),

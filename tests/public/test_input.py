@@ -27,6 +27,7 @@ from granchain_core import (
     orbit,
     pulse,
     resonance_curve,
+    rotation_number,
     run,
     run_many,
     save,
@@ -56,6 +57,7 @@ def test_counts_of_numpy_become_plain_ones_and_the_run_can_be_saved(tmp_path: Pa
     lambda wrong: run(CHAIN, samples=wrong), lambda wrong: settle(CHAIN, samples=wrong),
     lambda wrong: orbit(CHAIN, period=wrong), lambda wrong: attractors(CHAIN, random_states=wrong),
     lambda wrong: attractors(CHAIN, random_states=1, seed=wrong), lambda wrong: lyapunov_spectrum(CHAIN, periods=wrong),
+    lambda wrong: rotation_number(CHAIN, periods=wrong),
     lambda wrong: strobe_diagram(CHAIN, "A0", [5e-7], keep=wrong), lambda wrong: twin(CHAIN, periods=wrong),
     lambda wrong: twin(CHAIN, samples=wrong), lambda wrong: LiveChain(CHAIN, samples=wrong),
     lambda wrong: LiveChain(CHAIN).advance(wrong)])

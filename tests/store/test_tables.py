@@ -51,6 +51,8 @@ RESULTS = {
     "Fit of features": lambda: _fit(FeatureTarget([Feature(1500.0, "1:1 resonance", 1, "")], np.linspace(800.0, 2400.0, 5), 50.0)),
     "Spectrum": lambda: granchain_core.spectrum(settle(CHAIN).run),
     "Transfer": lambda: granchain_core.transfer(settle(CHAIN).run),
+    "RotationNumber": lambda: granchain_core.rotation_number(CHAIN),
+    "RotationNumber decided": lambda: granchain_core.rotation_number(scene("sec2").evolve(f=1700.0), 2000),
     "LyapunovSpectrum": lambda: granchain_core.lyapunov_spectrum(CHAIN, periods=20),
     "StrobeDiagram": lambda: granchain_core.strobe_diagram(CHAIN, "f", [1900.0, 2000.0], keep=4),
     "Basins": lambda: granchain_core.basins(CHAIN, ("u1", [0.0, 1e-7, 2e-7]), ("v1", [0.0, 1e-3])),

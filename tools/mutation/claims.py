@@ -34,6 +34,24 @@ STEADY = (
            "the exponent is that of a distance long since large", k.LYAPUNOV),
 )
 
+_WINDING = "analysis/winding.py"
+ROTATION = (
+    Mutant("rotation-equal-weights", "analysis/birkhoff.py", "bump = np.exp(-1.0 / (t * (1.0 - t)))", "bump = np.ones(count)",
+           "the average of a torus converges as 1/P", k.ROTATION),
+    Mutant("rotation-halves-not-compared", _WINDING, "error = max(_STATED * max(*errors, convergence[-1, 2]), _ROUNDING)", "error = _ROUNDING",
+           "the error of an average is always rounding", k.ROTATION),
+    Mutant("rotation-near-any-fraction", _WINDING, " * states < _FEWEST_PASSES:", " * states < 0.0:",
+           "a record in which the curve is not filled has a rotation number", k.ROTATION),
+    Mutant("rotation-of-another-line", _WINDING, "abs(excess) > AT_MULTIPLE / len(states) or ", "",
+           "the angle of a stronger line is taken for that of a weak one", k.ROTATION),
+    Mutant("rotation-of-one-curve", _WINDING, "if curves == 1:", "if curves >= 1:",
+           "curves that are visited in turn are taken for one", k.ROTATION),
+    Mutant("rotation-of-a-multiple", _WINDING, "round(multiple * near - advance)) / multiple", "round(multiple * near - advance))",
+           "an angle that goes round twice in a turn of the curve is taken for the curve's own", k.ROTATION),
+    Mutant("rotation-of-these-steps", "analysis/rotation_number.py", "return shorter, IRREGULAR * folded(longer.value - shorter.value)", "return shorter, 0.0",
+           "the steps have no error", k.ROTATION_STEPS),
+)
+
 STATED = (
     Mutant("error-factor", "integrate/safety_factors.py", "\nREGULAR = 1.5", "\nREGULAR = 0.015",
            "the stated error is a hundredth of what was seen", k.HONESTY),
@@ -99,4 +117,4 @@ COMPILED = (
            "the compiler may take it that there is no infinity", k.FASTMATH, optimised=True),
 )
 
-CLAIMS = STEADY + STATED + FAILING + OBSERVED + COMPILED
+CLAIMS = STEADY + ROTATION + STATED + FAILING + OBSERVED + COMPILED

@@ -1,0 +1,52 @@
+"""`granchain rotation`: the rotation number and the second frequency of a quasi-periodic motion."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from .common import chosen_scene, in_background, show_json, show_percent
+from .options import add_json, add_scene, whole
+from .picture import add_option as add_picture
+from .picture import check_picture, write_picture
+
+if TYPE_CHECKING:
+    from granchain_core import RotationNumber
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `rotation`."""
+    add_scene(parser)
+    parser.add_argument("--periods", type=whole, default=4000, metavar="P",
+                        help="drive periods of the first record; up to two follow, each twice as long")
+    add_json(parser)
+    add_picture(parser)
+
+
+def do(arguments: argparse.Namespace) -> None:
+    """Compute the rotation number of the motion that a scene settles to."""
+    from granchain_core import rotation_number
+
+    chosen = chosen_scene(arguments)
+    check_picture(arguments.picture)
+    progress = show_percent if sys.stderr.isatty() else None
+    found = in_background(lambda stop: rotation_number(chosen, arguments.periods, stop=stop, progress=progress),
+                          reports=True)
+    write_picture(arguments.picture, f"Rotation number of {chosen.name}", found)
+    if arguments.json:
+        show_json(_json(found))
+        return
+    for line in found.summary():
+        print(f"{chosen.name}: {line}")
+
+
+def _json(found: RotationNumber) -> dict[str, Any]:
+    nearest = found.nearest_fraction
+    return {"regime": found.regime.name, "rotation_number": found.value, "error": found.error,
+            "average_error": found.average_error, "step_error": found.step_error, "curves": found.curves,
+            "second_frequency": found.second_frequency, "second_frequency_error": found.second_frequency_error,
+            "nearest_fraction": None if nearest is None else [nearest.numerator, nearest.denominator],
+            "fraction_distance": found.fraction_distance, "projections": found.projections, "reason": found.reason,
+            "periods": found.periods,
+            "convergence": None if found.value is None else found.convergence.tolist()}

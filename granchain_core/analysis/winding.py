@@ -1,0 +1,177 @@
+"""The rotation number of stroboscopic states, from the angle at which they go round a closed curve.
+
+Equation   ρ = ⟨θ_{p+1} − θ_p⟩ with θ = arg(z) / 2π, z = a* · (x_p, x_{p+1}) and ⟨⟩ the weighted Birkhoff average
+           a = C⁺ X: C is the covariance of (x_p, x_{p+1}), X its Fourier coefficient at one line of the spectrum
+Source     Das, Saiki, Sander & Yorke 2016, 2017; Sander & Meiss 2020 for the average as a test of chaos
+Note       C⁺ X is the projection in which this line is strongest beside everything else (a matched filter), so that z
+           goes round zero once in each turn of the line even where the curve is folded in every plane of two
+           coordinates. The angle is well defined where z, turned back by ν p, stays in one half plane. By a line at mρ
+           the angle advances by mρ.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+
+from .birkhoff import average, fourier_coefficient, turns
+from .strobe_lines import AT_MULTIPLE, Basic, basic_frequency, curves_of, fraction_at, lines_of
+
+#: Fewest states on one curve from which a rotation number is read.
+FEWEST_STATES = 200
+#: Directions in which the states vary by less than this part of the largest variance are left out of a projection.
+_LEAST_VARIANCE = 1e-8
+#: States whose changes are smaller than this part of the largest are at rest.
+_AT_REST = 1e-9
+#: Lines whose angles are averaged.
+_PROJECTED_LINES = 3
+#: Largest denominator of a fraction that a rotation number is compared with: the longest period that a regime may have.
+LARGEST_DENOMINATOR = 60
+#: Fewest times that the states must pass from one of the places of a locked motion to the next.
+_FEWEST_PASSES = 4.0
+#: The stated error over the largest difference: differences of a few averages may all be small by chance.
+_STATED = 3.0
+#: Smallest error that is stated: rounding.
+_ROUNDING = 1e-15
+#: Parts of a record whose averages are compared: as fractions of its length.
+_PARTS = ((0.0, 0.5), (0.25, 0.75), (0.5, 1.0))
+#: Lengths at which the convergence is shown: the last so many halvings of the record.
+LENGTHS = 4
+
+
+@dataclass(frozen=True)
+class Winding:
+    """The rotation number of states, or why there is none.
+
+    `value` is in [0, ½] and belongs to the `curves`-th iterate of the map. `error` is three times the largest of the
+    differences between three halves of the record (first, middle, last), between `projections` projections, and from
+    the line of the spectrum. `convergence` (4, 3) has a row for each length: states on one curve, rotation number of
+    the first so many, largest difference of their halves. Where `value` is None, `reason` says why.
+    """
+
+    value: float | None
+    error: float | None
+    curves: int
+    reason: str = ""
+    projections: int = 0
+    convergence: np.ndarray | None = None
+
+
+def folded(value: float) -> float:
+    """A rotation number in [0, ½]: it is known up to its sign and a whole number."""
+    return abs(value - round(value))
+
+
+def winding_of(states: np.ndarray) -> Winding:
+    """The rotation number of stroboscopic states (P, 2, N), once a period: displacements, and v or w."""
+    embedded = _embedded(states)
+    if len(embedded) < FEWEST_STATES:
+        return _none(1, f"there are fewer than {FEWEST_STATES} states on one curve")
+    if np.ptp(states, axis=0).max() <= _AT_REST * np.abs(states).max():
+        return _none(1, "the states are all the same")
+    lines = lines_of(embedded)
+    curves = curves_of(lines, len(embedded))
+    if curves == 1:
+        return _on_one_curve(embedded, lines, 1)
+    embedded = _embedded(states[: len(states) // curves * curves : curves])
+    if len(embedded) < FEWEST_STATES:
+        return _none(curves, f"there are fewer than {FEWEST_STATES} states on each of {curves} curves")
+    if np.abs(embedded).max() <= _AT_REST:
+        return _none(curves, f"the states repeat after {curves} periods")
+    return _on_one_curve(embedded, lines_of(embedded), curves)
+
+
+def _none(curves: int, reason: str) -> Winding:
+    return Winding(None, None, curves, reason)
+
+
+def _embedded(states: np.ndarray) -> np.ndarray:
+    """Pairs of successive states (P − 1, 4N) without their mean, each kind of coordinate relative to its largest."""
+    largest = np.maximum(np.abs(states).max(axis=(0, 2), keepdims=True), np.finfo(float).tiny)
+    flat = (states / largest).reshape(len(states), -1)
+    flat = flat - average(flat)
+    return np.concatenate([flat[:-1], flat[1:]], axis=1)
+
+
+def _on_one_curve(embedded: np.ndarray, lines: np.ndarray, curves: int) -> Winding:
+    count = len(embedded)
+    if len(lines) == 0:
+        return _none(curves, "their spectrum has no line")
+    if any(fraction_at(float(line), count) for line in lines):
+        return _none(curves, "the states repeat, or there are more curves than are looked for")
+    basic = basic_frequency(lines, count)
+    if basic is None:
+        shown = ", ".join(f"{line:.6f}" for line in lines[:_PROJECTED_LINES])
+        return _none(curves, f"the strongest lines of their spectrum ({shown} per period) and the others are no "
+                             "multiples of one frequency: there is a third one, the motion is chaotic, or it is "
+                             "locked to a long period")
+    increments = [(steps, multiple) for steps, multiple in _projections(embedded, lines, basic) if steps is not None]
+    if len(increments) < 2:
+        return _none(curves, "no two projections were found in which they go round a closed curve")
+    found = [_rotation(steps, multiple, basic.frequency) for steps, multiple in increments]
+    few = _passes(found[0], count)
+    if few is not None:
+        return _none(curves, f"the rotation number is within {abs(folded(found[0]) - few):.1e} of {few}, and the "
+                             "record is too short to show that the motion is not locked there")
+    errors = [abs(other - found[0]) for other in (*found[1:], basic.frequency)]
+    steps, multiple = increments[0]
+    convergence = np.array([_at_length(steps[: count >> k], multiple, basic.frequency) for k in range(LENGTHS)][::-1])
+    error = max(_STATED * max(*errors, convergence[-1, 2]), _ROUNDING)
+    return Winding(folded(found[0]), float(error), curves, "", len(found), convergence)
+
+
+def _projections(embedded: np.ndarray, lines: np.ndarray, basic: Basic) -> list[tuple[np.ndarray | None, int]]:
+    """Increments of the angle in several projections, and how often each goes round in a turn of the curve.
+
+    All coordinates by each of the strongest lines; displacements alone and velocities alone by the strongest.
+    """
+    half = np.arange(embedded.shape[1]) % (embedded.shape[1] // 2) < embedded.shape[1] // 4
+    strongest = zip(lines[:_PROJECTED_LINES], basic.multiples, strict=False)
+    return [*((_increments(embedded, float(line)), multiple) for line, multiple in strongest),
+            *((_increments(embedded[:, part], float(lines[0])), basic.multiples[0]) for part in (half, ~half))]
+
+
+def _increments(states: np.ndarray, line: float) -> np.ndarray | None:
+    """Advance of the angle in turns from state to state (P − 1,), in the projection by one line; None if undefined.
+
+    Where too few coordinates cannot separate the line from a stronger one, z follows that one.
+    """
+    variances, directions = np.linalg.eigh(states.T @ states / len(states))
+    kept = variances > _LEAST_VARIANCE * variances.max()
+    directions = directions[:, kept]
+    projection = directions @ ((directions.T @ fourier_coefficient(states, line)) / variances[kept])
+    z = states @ projection.real - 1j * (states @ projection.imag)
+    back = z * turns(line, len(z))
+    turned = np.angle(back[1:] / back[:-1]) / (2.0 * np.pi)
+    excess = float(average(turned))
+    still = back * turns(excess, len(back))
+    if abs(excess) > AT_MULTIPLE / len(states) or (still / still.mean()).real.min() <= 0.0:
+        return None
+    return np.asarray(line + turned)
+
+
+def _rotation(steps: np.ndarray, multiple: int, near: float) -> float:
+    """The rotation number near `near` of an angle that goes round `multiple` times in a turn of the curve."""
+    advance = float(average(steps))
+    return (advance + round(multiple * near - advance)) / multiple
+
+
+def _at_length(steps: np.ndarray, multiple: int, near: float) -> tuple[float, float, float]:
+    """States, rotation number, and the largest difference of the first, middle and last half."""
+    count = len(steps)
+    halves = [_rotation(steps[int(a * count) : int(b * count)], multiple, near) for a, b in _PARTS]
+    whole = _rotation(steps, multiple, near)
+    return count, folded(whole), max(max(halves) - min(halves), *(abs(half - whole) for half in halves))
+
+
+def _passes(rotation: float, states: int) -> Fraction | None:
+    """The fraction near which so many states do not fill a curve.
+
+    Near p/q the states stay close to q places, and move on by q|ρ − p/q| of their distance in q periods.
+    """
+    for q in range(1, LARGEST_DENOMINATOR + 1):
+        if abs(q * folded(rotation) - round(q * folded(rotation))) * states < _FEWEST_PASSES:
+            return Fraction(round(q * folded(rotation)), q)
+    return None
