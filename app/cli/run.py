@@ -125,13 +125,21 @@ def _warn(result: Run, budget: float) -> None:
     asked, error = result.scene.accuracy, result.displacement_error
     if result.status == "accuracy-not-reached":
         say(f"The accuracy asked for, {asked:g}, was not reached: the error may be {error:.1e} of the largest "
-            "displacement.")
+            f"displacement.{_forces_in_words(result)}")
     if result.status == "over-budget":
         say(f"A finer computation would not fit the budget of {budget:g} s: the error may be {error:.1e} of the "
             f"largest displacement, {asked:g} was asked for.")
     if result.jumps.unresolved:
         say(f"{result.jumps.unresolved} touches were shorter than a step of {result.cost.method} and are not resolved: "
             "their jumps are read off the step's ends.")
+
+
+def _forces_in_words(result: Run) -> str:
+    """That the largest forces are as accurate as asked for although a displacement somewhere is not; else nothing."""
+    stated = [one for one in asdict(result.force_errors).values() if one is not None]
+    if not stated or max(stated) > result.scene.accuracy:
+        return ""
+    return f" The largest forces reached it, with {max(stated):.1e}."
 
 
 def _run_json(result: Run) -> dict[str, Any]:

@@ -212,9 +212,8 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         if integration <= scene.accuracy or halvings == MOST_HALVINGS:
             break
         before = now
-    thin = record.thinned()
+    thin, kept, of_thin = record.thinned()
     coarse = PushedChain(scene, thin, stop, chain.counts).run(begin, halvings)
-    kept = np.searchsorted(record.time, thin.time)
     maxima, scales = chain.maxima, chain.scaled.scales
     displacement = now.displacement * scales.length
     forces = now.force * scales.force
@@ -226,7 +225,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         scene=scene, record=record, displacement=displacement, velocity=now.velocity * scales.velocity, force=forces,
         max_output_force=float(maxima[1]) * scales.force, max_output_force_elastic=float(maxima[2]) * scales.force,
         integration_error=integration,
-        interpolation_error=IRREGULAR * relative_difference(now.displacement[kept], coarse.displacement),
+        interpolation_error=IRREGULAR * relative_difference(now.displacement[kept], coarse.displacement[of_thin]),
         status="done" if integration <= scene.accuracy else "accuracy-not-reached",
         cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),

@@ -44,7 +44,7 @@ class ForceRecord:
     """Samples of a force: time (T,) [s], force (T,) [N], measured output force (T,) [N] or None.
 
     `place` names the place of a sample in its source, "Line 7" or "Sample 6", for messages; `understood` describes how
-    it was read and treated.
+    it was read and treated; `put_in` are the indices of samples that were put into gaps.
     """
 
     time: np.ndarray
@@ -53,16 +53,26 @@ class ForceRecord:
     place: Callable[[int], str] = _number
     understood: str = ""
     notes: tuple[str, ...] = field(default=())
+    put_in: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
 
     @property
     def spacing(self) -> float:
         """The usual time between samples [s]."""
         return float(np.median(np.diff(self.time)))
 
-    def thinned(self) -> ForceRecord:
-        """Every second sample, the first and the last among them: the record of a sensor half as fast."""
-        kept = np.unique(np.append(np.arange(0, len(self.time), 2), len(self.time) - 1))
-        return ForceRecord(self.time[kept], self.force[kept], place=lambda i: self.place(int(kept[i])))
+    def thinned(self) -> tuple[ForceRecord, np.ndarray, np.ndarray]:
+        """The record of a sensor half as fast, and the indices of its measured samples here and in it.
+
+        It has every second measured sample, the first and the last among them. The zero force in gaps begins and ends
+        beside the samples that are left, at twice the distance: the force falls to it half as fast, whichever sample
+        was the last before a gap.
+        """
+        measured = np.delete(np.arange(len(self.time)), self.put_in)
+        kept = np.unique(np.append(measured[::2], measured[-1]))
+        gaps = np.unique(np.searchsorted(kept, self.put_in)) - 1
+        spacing = 2.0 * float(np.median(np.diff(self.time[measured])))
+        time, force, put_in = _with_zeros(self.time[kept], self.force[kept], gaps, spacing)
+        return ForceRecord(time, force, put_in=put_in), kept, np.delete(np.arange(len(time)), put_in)
 
     def cubics(self) -> np.ndarray:
         """Coefficients (T − 1, 4) of the force in every interval, constant term first, in N and s."""
@@ -128,8 +138,9 @@ def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: 
                      "have it subtracted")
     moved = ForceRecord(record.time, record.force - zero, record.output, record.place, record.understood)
     bridged = _bridged(moved, gap, notes)
-    _check_sampling(bridged, scene)
-    return ForceRecord(bridged.time, bridged.force, bridged.output, bridged.place, bridged.understood, tuple(notes))
+    _check_sampling(moved, scene)
+    return ForceRecord(bridged.time, bridged.force, bridged.output, bridged.place, bridged.understood, tuple(notes),
+                       bridged.put_in)
 
 
 def _offset(record: ForceRecord, offset: float | str) -> float:
@@ -162,11 +173,17 @@ def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
     if record.output is not None:
         raise BadInput(f"{where}: a gap in a record with an output force can only be interpolated, since there is no "
                        "output force for samples that are put in.")
-    beside = np.minimum(usual, _PART_OF_GAP * steps[gaps])
-    inside = np.sort(np.concatenate([record.time[gaps] + beside, record.time[gaps + 1] - beside]))
-    places = np.searchsorted(record.time, inside)
-    return ForceRecord(np.insert(record.time, places, inside), np.insert(record.force, places, 0.0), None,
-                       record.place, record.understood)
+    time, force, put_in = _with_zeros(record.time, record.force, gaps, usual)
+    return ForceRecord(time, force, None, record.place, record.understood, put_in=put_in)
+
+
+def _with_zeros(time: np.ndarray, force: np.ndarray, gaps: np.ndarray,
+                spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Samples with zero force in the gaps after these, and the indices of the zeros; it ends a spacing beside them."""
+    beside = np.minimum(spacing, _PART_OF_GAP * (time[gaps + 1] - time[gaps]))
+    inside = np.sort(np.concatenate([time[gaps] + beside, time[gaps + 1] - beside]))
+    places = np.searchsorted(time, inside)
+    return np.insert(time, places, inside), np.insert(force, places, 0.0), places + np.arange(len(places))
 
 
 def shortest_pulse(scene: Scene, force: float) -> float:

@@ -7,12 +7,14 @@
                  criticality, coefficient, coefficient_error, undecided (special), which older files lack
 /special_before, /special_after   the two orbits around each special point, as in /branch
 /turns           turning points of the overlaps on each arm's last orbit, with which the next step is compared
-The root's attribute `amplitude` describes A0 over f where it is not the scene's.
+The root's attribute `amplitude` describes A0 over f where it is not the scene's. `coordinate` says that p is linear in
+the static overlap; in older files over F0, which lack it, p is linear in F0, and their branches go on so.
 Components are the beads' displacements, then their w, scaled by the chain's own A0 and A0·φ (docs/model.md).
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -65,11 +67,13 @@ def _read(file: File) -> Branch:
     header, scene = _header(file.json("branch")), file.scene()
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
     axis = KnobAxis.of(scene, header["knob"], header["start"], header["end"], amplitude)
+    if axis.by_overlap and not file.stated("coordinate"):
+        axis = replace(axis, by_overlap=False)
     for table in branch_tables(axis, ()):
         file.expect_units(table.units)
-    points = _read_orbits(file, "branch", scene.N)
+    points = _read_orbits(file, "branch", axis)
     place = _places(file, "branch/arm", len(points), len(header["arms"]))
-    special = _read_special(file, scene.N)
+    special = _read_special(file, axis)
     special_place = _places(file, "special/arm", len(special), len(header["arms"]))
     arms = []
     for number, arm in enumerate(header["arms"]):
@@ -107,7 +111,8 @@ def _places(file: File, path: str, count: int, arms: int) -> np.ndarray:
     return within(f"/{path}", file.numbers(path, (count,), "i"), 0, arms - 1)
 
 
-def _read_orbits(file: File, group: str, n: int) -> list[BranchPoint]:
+def _read_orbits(file: File, group: str, axis: KnobAxis) -> list[BranchPoint]:
+    n = axis.scene.N
     count, longest = file.shape(f"{group}/residual")
     read = {name: file.numbers(f"{group}/{name}", (count, *width)) for name, width in (
         ("knob", ()), ("state", (2 * n,)), ("tangent", (2 * n + 1,)), ("slope", (2 * n,)), ("arclength", ()),
@@ -123,15 +128,16 @@ def _read_orbits(file: File, group: str, n: int) -> list[BranchPoint]:
         **{force: float(read[force][i]) for force in MAXIMA}, closings=closings[i],
         residuals=tuple(float(r) for r in read["residual"][i] if not np.isnan(r)),
         liouville=float(read["liouville"][i]), turns=np.zeros((0, _TURN)),
+        damped=axis.damped_at(float(read["knob"][i])),
     ) for i in range(count)]
 
 
-def _read_special(file: File, n: int) -> list[SpecialPoint]:
-    before, after = (_read_orbits(file, f"special_{side}", n) for side in ("before", "after"))
+def _read_special(file: File, axis: KnobAxis) -> list[SpecialPoint]:
+    before, after = (_read_orbits(file, f"special_{side}", axis) for side in ("before", "after"))
     count = len(before)
     read = {name: file.numbers(f"special/{name}", (count,)) for name in (
         "knob", "knob_low", "knob_high", "multiplier_real", "multiplier_imag")}
-    contacts = within("/special/contact", file.numbers("special/contact", (count,), "i"), NO_CONTACT, n)
+    contacts = within("/special/contact", file.numbers("special/contact", (count,), "i"), NO_CONTACT, axis.scene.N)
     forms = _read_normal_forms(file, count)
     kinds, events = file.words("special/kind", count, SPECIAL_KINDS), file.words("special/event", count, _EVENTS)
     return [SpecialPoint(

@@ -120,6 +120,32 @@ def test_a_gap_is_bridged_only_as_chosen_and_said() -> None:
     assert error(smooth.displacement[-1], true.displacement[-1]) < 0.1 * error(zero.displacement[-1], true.displacement[-1])
 
 
+def test_the_error_beside_a_gap_does_not_depend_on_which_sample_is_the_last_before_it() -> None:
+    """Zero force was put into the gap; a sensor half as fast has it at twice the distance, whatever the parity."""
+    shown, step, finer = scene("sec2").evolve(N=3, k=1e5), 2e-6, 4
+    dense = np.arange(finer * 1000) * step / finer
+    force = np.maximum(0.0, np.sin(2.0 * np.pi * 800.0 * dense)) ** 2
+    stated = []
+    for last in (500, 501, 502):
+        outside = (np.arange(len(dense)) <= finer * last) | (np.arange(len(dense)) >= finer * 700)
+        coarse = outside & (np.arange(len(dense)) % finer == 0)
+        seen = observe(shown, dense[coarse], force[coarse], gap="zero")
+        better = observe(shown, dense[outside], force[outside], gap="zero")
+        common = np.searchsorted(better.time, dense[coarse])
+        mine = seen.displacement[np.searchsorted(seen.time, dense[coarse])]
+        assert error(mine, better.displacement[common]) <= seen.displacement_error
+        stated.append(seen.interpolation_error)
+    assert max(stated) < 0.01 and max(stated) < 1.05 * min(stated)
+
+
+def test_a_sample_beside_a_gap_is_named_as_in_its_source() -> None:
+    """Too coarse a record is refused with the place of its largest force, zeros in gaps not counted."""
+    time, force = np.arange(60) * 1e-3, np.zeros(60)
+    force[50] = 1.0
+    with pytest.raises(BadInput, match="Sample 45: a pulse of 1 N"):
+        observe(CHAIN, np.delete(time, np.s_[20:25]), np.delete(force, np.s_[20:25]), gap="zero")
+
+
 def test_an_offset_is_subtracted_only_if_asked() -> None:
     time, force = np.arange(400) * STEP, np.maximum(0.0, np.sin(np.arange(400) * 0.03) - 0.3)
     true = observe(CHAIN, time, force)

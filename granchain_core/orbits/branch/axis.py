@@ -1,8 +1,8 @@
 """The knob of a branch: which knobs are continuous, and the coordinate used for continuation.
 
 A branch is a curve of points z = (x/√(2N), p): x is the scaled state (u, w) at drive phase 0 in the scales of its own
-scene, so that a new amplitude A0, which changes the scales, leaves x of order one; p is a logarithmic or linear
-coordinate of the knob. Arclength is measured in z.
+scene, so that a new amplitude A0, which changes the scales, leaves x of order one; p is a coordinate of the knob, its
+logarithm, the knob itself or, for F0, the static overlap. Arclength is measured in z.
 """
 
 from __future__ import annotations
@@ -19,15 +19,20 @@ from ...scene import Amplitude, Scene
 CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)
 #: Length of a factor e in a logarithmic knob: the state changes by about its own size where f changes by a tenth.
 _LENGTH_OF_FACTOR_E = 10.0
-#: Length of the whole range of a linear knob.
+#: Length of the whole range of every other knob.
 _LENGTH_OF_RANGE = 20.0
+#: The attribute `coordinate` of a file with a branch over F0.
+STATIC_OVERLAP = "static overlap"
+#: The chain depends on F0 through its static overlaps (F0/K)^{2/3} alone, and smoothly. Over F0 itself orbits have an
+#: infinite slope at F0 = 0.
+_OVERLAP_POWER = 2.0 / 3.0
 
 
 @dataclass(frozen=True)
 class KnobAxis:
     """One knob of a scene from `start` to `end`, with its coordinate p (0 at `start`).
 
-    With `amplitude` A0 follows the knob, which is f.
+    With `amplitude` A0 follows the knob, which is f. With `by_overlap` p is linear in F0^{2/3}, not in F0.
     """
 
     scene: Scene
@@ -35,10 +40,14 @@ class KnobAxis:
     start: float
     end: float
     amplitude: Amplitude | None = None
+    by_overlap: bool = False
 
     @classmethod
     def of(cls, scene: Scene, knob: str, start: object, end: object, amplitude: Amplitude | None = None) -> KnobAxis:
-        """The checked axis; `BadInput` for a knob that is unknown or discrete, and for values that it cannot take."""
+        """The checked axis, over F0 with `by_overlap`.
+
+        Raises `BadInput` for a knob that is unknown or discrete, and for values that it cannot take.
+        """
         if knob not in QUANTITIES:
             raise unknown_name("knob", knob, CONTINUOUS)
         quantity = QUANTITIES[knob]
@@ -52,7 +61,7 @@ class KnobAxis:
             amplitude.check_knobs(knob)
             for value in (first, last):
                 amplitude.at(value)
-        return cls(scene, knob, first, last, amplitude)
+        return cls(scene, knob, first, last, amplitude, by_overlap=knob == "F0")
 
     @property
     def logarithmic(self) -> bool:
@@ -74,30 +83,51 @@ class KnobAxis:
         """The larger end."""
         return max(self.start, self.end)
 
+    @property
+    def _power(self) -> float:
+        """The power of the knob in which p is linear, where it is not logarithmic."""
+        return _OVERLAP_POWER if self.by_overlap else 1.0
+
+    @property
+    def _range(self) -> tuple[float, float]:
+        """That power of the smaller end, and its change per unit of p."""
+        low, high = (end**self._power for end in (self.low, self.high))
+        return low, (high - low) / _LENGTH_OF_RANGE
+
     def coordinate(self, value: float) -> float:
         """p of a knob value."""
         if self.logarithmic:
             return _LENGTH_OF_FACTOR_E * math.log(value / self.low)
-        return _LENGTH_OF_RANGE * (value - self.low) / (self.high - self.low)
+        low, unit = self._range
+        return (value**self._power - low) / unit
 
     def value(self, p: float) -> float:
         """Knob value at p, limited to the knob's allowed range."""
         if self.logarithmic:
             value = self.low * math.exp(p / _LENGTH_OF_FACTOR_E)
         else:
-            value = self.low + p / _LENGTH_OF_RANGE * (self.high - self.low)
+            low, unit = self._range
+            value = low + p * unit
+            if self.by_overlap:
+                value = max(value, 0.0) ** (1.0 / _OVERLAP_POWER)
         quantity = QUANTITIES[self.knob]
         return min(max(value, quantity.low), quantity.high)
 
     def slope(self, value: float) -> float:
         """Change of the knob with p."""
-        return value / _LENGTH_OF_FACTOR_E if self.logarithmic else (self.high - self.low) / _LENGTH_OF_RANGE
+        if self.logarithmic:
+            return value / _LENGTH_OF_FACTOR_E
+        return self._range[1] * value ** (1.0 - self._power) / self._power
 
     def scene_at(self, value: float) -> Scene:
         """The scene with the knob at `value`."""
         if self.amplitude is None:
             return self.scene.evolve(**{self.knob: value})
         return self.scene.evolve(f=value, A0=self.amplitude.held(value))
+
+    def damped_at(self, value: float) -> bool:
+        """Whether the chain loses energy with the knob at `value`."""
+        return self.scene_at(value).has_dissipation
 
     def text(self, value: float) -> str:
         """A knob value in words."""

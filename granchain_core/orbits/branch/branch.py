@@ -24,9 +24,9 @@ from ...tables import Labelled, Table, amplitude_attribute, provenance
 from ...tables.provenance import Attribute
 from ..orbit import periodic_orbit
 from ..stroboscopic_map import FLOW_METHOD
-from .axis import KnobAxis
+from .axis import STATIC_OVERLAP, KnobAxis
 from .equations import BranchEquations
-from .point import BranchPoint, branch_point, state_at
+from .point import ON_CIRCLE, BranchPoint, branch_point, state_at
 from .special import SpecialPoint
 from .tables import branch_tables
 from .walk import Arm, Walk
@@ -99,7 +99,8 @@ class Branch(Labelled):
                 "arms": [{"direction": arm.direction, "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason}
                          for arm in self.arms]}
         return {**provenance(self.scene, FLOW_METHOD, None), "branch": json.dumps(header),
-                **amplitude_attribute(self.axis.amplitude)}
+                **amplitude_attribute(self.axis.amplitude),
+                **({"coordinate": STATIC_OVERLAP} if self.axis.by_overlap else {})}
 
     def summary(self) -> list[str]:
         """How many orbits, where it ended, and the special points."""
@@ -108,8 +109,9 @@ class Branch(Labelled):
                  + (f", {one.criticality_words()}" if one.normal_form and one.kind != "fold" else "")
                  for one in self.special if one.kind != "grazing"]
         grazings = sum(one.kind == "grazing" for one in self.special)
-        undamped = [] if self.axis.scene.has_dissipation else [
-            "without damping stable orbits have their multipliers on the unit circle, where rounding decides"]
+        undamped = [] if all(p.damped for p in self.points) else [
+            "without damping stable orbits have their multipliers on the unit circle: a modulus up to "
+            f"1 + {ON_CIRCLE:g} counts as on it, and nothing attracts"]
         return [f"{len(self.points)} orbits of period {self.period}, {sum(p.stable for p in self.points)} stable, from "
                 f"{self.axis.text(self.axis.start)} towards {self.axis.text(self.axis.end)}", *ends, *kinds,
                 *([f"{grazings} grazings"] if grazings else []), *undamped]

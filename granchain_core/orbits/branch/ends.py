@@ -75,7 +75,7 @@ class Ends:
         solved = self.equations.solve(guess, fixed, last.slope)
         point = branch_point(self.equations, solved, self.equations.tangent(solved, last.tangent),
                              last.arclength + fraction * (beyond.arclength - last.arclength))
-        return replace(point, knob=end), solved.near
+        return replace(point, knob=end, damped=axis.damped_at(end)), solved.near
 
     def _halves(self, point: BranchPoint) -> np.ndarray:
         """Difference of the state half an orbit later from the state now."""

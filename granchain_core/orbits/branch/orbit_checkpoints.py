@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from ...checkpoints import Kept, digest_of
-from .axis import KnobAxis
+from .axis import STATIC_OVERLAP, KnobAxis
 from .branch import Branch
 from .normal_forms import NormalForm
 from .point import BranchPoint
@@ -28,8 +28,9 @@ _ARRAYS = ("x", "tangent", "multipliers", "closings", "slope", "turns")
 def asked_digest(axis: KnobAxis, both: bool) -> str:
     """Hash of everything that changes a branch but for its period, which may be left to the settled motion."""
     driven = {} if axis.amplitude is None else {"amplitude": axis.amplitude.to_json()}
+    coordinate = {"coordinate": STATIC_OVERLAP} if axis.by_overlap else {}
     return digest_of({"scene": axis.scene.digest, "knob": axis.knob, "from": axis.start, "to": axis.end, "both": both,
-                      **driven})
+                      **driven, **coordinate})
 
 
 class OrbitCheckpoints:

@@ -23,6 +23,9 @@ _TOLERANCE = 1e-11
 _ROUGH_TOLERANCE = 1e-9
 #: Room for turning points of overlaps at first, for each contact and period.
 _FIRST_ROOM = 32
+#: Without damping the multipliers of a stable orbit lie on the unit circle. Where two meet they are known to about the
+#: root of the map's error only; so near to the circle a multiplier is on it.
+ON_CIRCLE = 1e-6
 #: Count of the closings of a contact that is always closed; it is 0 of one that is always open.
 _CLOSED = -1
 #: Columns of a turning point (`OrbitRecord`): contact, +1 for a largest and −1 for a smallest overlap, time, overlap.
@@ -38,7 +41,7 @@ class BranchPoint:
     forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
     open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
     the last being the orbit's; `liouville` is how far ln |det| of the monodromy matrix is from ∫ trace. `turns` are the
-    turning points of all overlaps (kernels/dop853/orbit_record.py).
+    turning points of all overlaps (kernels/dop853/orbit_record.py). `damped` is whether its chain loses energy.
     """
 
     knob: float
@@ -54,6 +57,7 @@ class BranchPoint:
     residuals: tuple[float, ...]
     liouville: float
     turns: np.ndarray
+    damped: bool = True
 
     @property
     def residual(self) -> float:
@@ -62,12 +66,12 @@ class BranchPoint:
 
     @property
     def unstable(self) -> int:
-        """How many multipliers are outside the unit circle."""
-        return int((np.abs(self.multipliers) >= 1.0).sum())
+        """How many multipliers are outside the unit circle; without damping, by more than `ON_CIRCLE`."""
+        return int((np.abs(self.multipliers) >= (1.0 if self.damped else 1.0 + ON_CIRCLE)).sum())
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers are inside the unit circle."""
+        """Whether no multiplier is outside the unit circle."""
         return self.unstable == 0
 
     @property
@@ -93,7 +97,8 @@ def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, 
         knob=equations.value(solved.z), x=equations.state(solved.z), tangent=tangent, arclength=arclength,
         multipliers=multipliers, max_input_force=np.nan, max_output_force=np.nan, max_output_force_elastic=np.nan,
         closings=np.zeros(equations.size // 2 + 1, dtype=int), slope=solved.knob_slope, residuals=solved.residuals,
-        liouville=liouville_error(multipliers, solved.flow.log_determinant), turns=np.zeros((0, 4)))
+        liouville=liouville_error(multipliers, solved.flow.log_determinant), turns=np.zeros((0, 4)),
+        damped=equations.axis.damped_at(equations.value(solved.z)))
 
 
 def recorded(equations: BranchEquations, point: BranchPoint, changes: np.ndarray) -> BranchPoint:
@@ -121,7 +126,7 @@ def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, 
         knob=value, x=x, tangent=tangent, arclength=arclength, multipliers=multipliers,
         max_input_force=np.nan, max_output_force=np.nan, max_output_force_elastic=np.nan,
         closings=_counted_turns(len(x) // 2 + 1, record.turns), slope=slope, residuals=tuple(residuals),
-        liouville=np.nan, turns=record.turns)
+        liouville=np.nan, turns=record.turns, damped=equations.axis.damped_at(value))
 
 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float,

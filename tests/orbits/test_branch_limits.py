@@ -1,0 +1,107 @@
+"""Branches to the ends F0 = 0 and D = 0, where contacts just touch and where nothing is damped."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from granchain_core import Scene, scene
+from granchain_core.orbits import (
+    Branch,
+    Continuation,
+    KnobAxis,
+    begin_branch,
+    check_branch,
+    continue_branch,
+    periodic_orbit,
+)
+from granchain_core.store import load_branch, save_branch
+
+
+def stands(shown: Scene, found: Branch) -> None:
+    """The branch has reached its end, is right everywhere, and its last orbit is that of a search of its own."""
+    last = found.points[-1]
+    assert found.arms[0].ended == "reached" and last.knob == found.axis.end and check_branch(found) == []
+    direct = periodic_orbit(shown.evolve(**{found.axis.knob: last.knob}), 1, found.state(last))
+    np.testing.assert_allclose(direct.state.displacement, found.state(last).displacement, rtol=1e-8, atol=1e-18)
+
+
+@pytest.mark.parametrize(("preload", "changes"), [
+    (3.0, {"N": 3, "f": 3000.0}),
+    (1.0, {"N": 2, "f": 2000.0, "dissipation": "tsuji"}),
+])
+def test_a_branch_over_the_preload_reaches_zero_and_begins_there(preload: float, changes: dict[str, object]) -> None:
+    """The static overlap goes as F0^{2/3}, and so do the orbits near F0 = 0."""
+    shown = scene("sec2").evolve(**changes)
+    down, up = (continue_branch(shown.evolve(F0=ends[0]), "F0", *ends, 1) for ends in ((preload, 0.0), (0.0, preload)))
+    stands(shown, down)
+    stands(shown, up)
+    # one branch: the same force at both ends, from both sides
+    for one, other in ((down.points[-1], up.points[0]), (down.points[0], up.points[-1])):
+        assert one.max_output_force == pytest.approx(other.max_output_force, rel=1e-6)
+
+
+def test_the_coordinate_of_the_preload_and_its_inverse() -> None:
+    axis = KnobAxis.of(scene("sec2"), "F0", 3.0, 0.5)
+    values = np.array([0.5, 0.7, 1.9, 3.0])
+    p = np.array([axis.coordinate(value) for value in values])
+    assert p[0] == 0.0 and p[-1] == pytest.approx(20.0)
+    np.testing.assert_allclose(np.diff(p) / np.diff(p)[0], np.diff(values ** (2 / 3)) / np.diff(values ** (2 / 3))[0])
+    np.testing.assert_allclose([axis.value(one) for one in p], values)
+    slopes = [(axis.value(one + 1e-5) - axis.value(one - 1e-5)) / 2e-5 for one in p]
+    np.testing.assert_allclose([axis.slope(value) for value in values], slopes, rtol=1e-8)
+    assert axis.value(-1e3) == 0.0
+
+
+def test_a_file_from_before_goes_on_in_its_own_coordinate(tmp_path: Path) -> None:
+    """Tangents and P_p of a file without the attribute belong to a coordinate that is linear in F0."""
+    shown = scene("sec2").evolve(N=2, f=2000.0, F0=1.0)
+    begun = begin_branch(shown, "F0", 1.0, 0.5, 1)
+    assert load_branch(save_branch(begun, tmp_path / "new.h5")).axis == begun.axis
+    # what the earlier version followed: the same seed with its tangent in the linear coordinate
+    seed, axis = begun.points[0], replace(begun.axis, by_overlap=False)
+    ratio = axis.slope(1.0) / begun.axis.slope(1.0)
+    tangent = np.append(seed.tangent[:-1], seed.tangent[-1] / ratio)
+    begun.arms[0].points[0] = replace(seed, tangent=tangent / np.linalg.norm(tangent), slope=seed.slope * ratio)
+    old = Branch(axis, 1, begun.arms)
+    Continuation(old).run(4)
+    file = save_branch(old, tmp_path / "old.h5")
+    with h5py.File(file) as written:
+        assert "coordinate" not in written.attrs
+    resumed = load_branch(file)
+    assert resumed.axis == axis
+    for one, other in zip(Continuation(resumed).run().points, Continuation(old).run().points, strict=True):
+        np.testing.assert_array_equal(one.tangent, other.tangent)
+        assert one.knob == other.knob
+    assert resumed.arms[0].ended == "reached"
+
+
+@pytest.mark.parametrize("changes", [{"N": 3, "f": 1500.0}, {"N": 2, "f": 2000.0}])
+def test_the_end_without_damping_is_no_special_point(changes: dict[str, object], tmp_path: Path) -> None:
+    """At D = 0 the map is conservative: whether |μ| of a stable pair is above 1 was decided by rounding."""
+    shown = scene("sec2").evolve(**changes)
+    found = continue_branch(shown, "D", 50.0, 0.0, 1)
+    stands(shown, found)
+    last = found.points[-1]
+    on_circle = np.abs(np.abs(last.multipliers) - 1.0) < 1e-9
+    assert on_circle.any() and not last.damped and found.points[-2].damped
+    assert last.unstable == (np.abs(last.multipliers[~on_circle]) > 1.0).sum()
+    assert all(one.knob > 1.0 for one in found.special)
+    assert "counts as on it" in found.summary()[-1]
+    again = load_branch(save_branch(found, tmp_path / "b.h5"))
+    assert [point.signature for point in again.points] == [point.signature for point in found.points]
+
+
+def test_without_damping_stability_changes_only_where_multipliers_leave_the_circle() -> None:
+    shown = scene("sec2").evolve(N=2, f=3000.0, F0=5.0)
+    damped = continue_branch(shown, "D", 100.0, 0.0, 1)
+    found = continue_branch(shown.evolve(D=0.0), "f", 3000.0, 2930.0, 1, damped.state(damped.points[-1]))
+    assert check_branch(found) == []
+    kinds = [one.kind for one in found.special if one.kind != "grazing"]
+    assert kinds == ["period_doubling"]
+    for point in found.points:
+        assert point.unstable == (np.abs(point.multipliers) > 1.001).sum()
