@@ -21,7 +21,7 @@ import numpy as np
 from .accuracy.effect_cost import CODE, MOTION
 from .accuracy.work_precision import compile_methods
 from .child_processes import pool, starting
-from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting
+from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting, following_setting
 from .integrate.batch import Batch, can_share_batch, is_uniform
 from .kernels.compiling.cache import CACHE_FOLDER, MARK
 from .kernels.rk4.short_chain import WIDTHS
@@ -93,7 +93,7 @@ def _curve(short: Scene) -> None:
     """A curve: located jumps, the shadow of irregular motions, and the batch if the scene can use it."""
     if short.forces_jump:
         Engine(short, fixed_step_setting(), 1).record(1)
-    exponents(Engine(short, fixed_step_setting(), 1), 1, 1)
+    exponents(Engine(short, following_setting(short.cuts_tension), 1), 1, 1)
     if can_share_batch(short):
         block = Batch(short, Stop())
         scaled = scale_chain(short)

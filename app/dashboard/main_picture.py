@@ -13,7 +13,7 @@ from functools import partial
 import numpy as np
 
 from granchain_core import Cancelled, OverBudget, Run, Scene, Settled, State, settling
-from granchain_core.pieces import FIXED_STEP_KERNELS
+from granchain_core.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
 
 from ..frames import Frames, prepared_frames, samples_for
 from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
@@ -174,16 +174,17 @@ class MainPicture:
             self._host.address_changed()
 
     def _await_first_kernels(self, scene: Scene, stop: TurnFlag) -> None:
-        """Wait for the fixed-step kernels, which any first picture needs. Raises `Cancelled`.
+        """Wait for the kernels that the first picture needs. Raises `Cancelled`.
 
         Another process compiles them, and the other kernels of the picture and its curve.
         """
-        if not COMPILER.has(scene, FIXED_STEP_KERNELS):
+        needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # dop853 settles it then
+        if not COMPILER.has(scene, *needed):
             words = compiling_words("the kernels for this set of effects", FIXED_STEP_KERNELS).capitalize()
             self._host.next_tick(self._note, f"{words}; the picture then appears by itself.")
             for piece in PICTURE_PIECES:
                 COMPILER.ask(scene, piece)
-            if not COMPILER.await_piece(scene, FIXED_STEP_KERNELS, stop):
+            if not all(COMPILER.await_piece(scene, piece, stop) for piece in needed):
                 raise Cancelled
 
     def _live_step(self, samples: int | None, stop: TurnFlag) -> Iterator[LivePicture]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..input_checks import whole_number
-from ..integrate import Engine
+from ..integrate import Engine, following_setting
 from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
@@ -22,13 +22,13 @@ from ..scene.given import require_scene
 from ..state import State, rest
 from ..steady.batch.job import Start
 from ..steady.exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
-from ..steady.regime_criteria import find_period, grows, is_neutral
+from ..steady.regime_criteria import find_period, grows, is_neutral, rounding_of
 from ..steady.settling.regime_decisions import REMEMBERED
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .attractor import Attractor, Attractors, Origin
 from .compute import settle_on_all_cores
-from .sameness import SECTION_SETTING, Found, found, merged
+from .sameness import Found, found, merged
 
 #: Frequencies of a sweep before the one asked for.
 _SWEEP_POINTS = 8
@@ -161,7 +161,8 @@ def _locks(one: Found, stop: Stop | None) -> bool:
     if one.result.regime.period is not None:
         return False
     _, strobes, _ = _run_on(one.result.scene, one.result.state, _LATER_PERIODS, stop)
-    return find_period(strobes[-REMEMBERED:]).period is not None
+    rounding = rounding_of(following_setting(one.result.scene.cuts_tension))
+    return find_period(strobes[-REMEMBERED:], rounding=rounding).period is not None
 
 
 def share(count: int, of: int) -> tuple[float, float]:
@@ -198,8 +199,8 @@ def _swept(scene: Scene, factor: float, stop: Stop | None) -> State:
 
 
 def _run_on(scene: Scene, state: State, periods: int, stop: Stop | None) -> tuple[State, np.ndarray, float]:
-    """State after so many periods by the fixed-step method, scaled strobes on the way, the unit of velocity [m/s]."""
-    engine = Engine(scene, SECTION_SETTING, 1, stop=stop)
+    """State after so many periods, scaled strobes on the way, the unit of velocity [m/s]."""
+    engine = Engine(scene, following_setting(scene.cuts_tension), 1, stop=stop)
     engine.start(state)
     strobes, _ = engine.periods(periods)
     return engine.state, strobes, engine.scaled.scales.velocity

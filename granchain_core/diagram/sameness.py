@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import BadInput, NumbersFailed
-from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting
+from ..integrate import Engine, Setting, adaptive_setting, following_setting
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.search import least_period_of
 from ..scaling import scale_chain
@@ -36,8 +36,7 @@ _SECTION_FACTOR = 3.0
 #: States in the section of a motion that is not periodic, taken after as many further periods, and in the longer ones
 #: that are compared where sections differ.
 _STATES_OF_SECTION = (400, 1600, 6400)
-#: Method by which a motion's section is taken, and the tolerance for that of an orbit.
-SECTION_SETTING = fixed_step_setting()
+#: Tolerance for the section of an orbit that Newton's method has found.
 _ADAPTIVE_SETTING = adaptive_setting(1e-11)
 
 
@@ -77,13 +76,18 @@ class Found:
 def found(result: SteadyState) -> Found:
     """A result with the section of its motion."""
     period = result.regime.period
-    return Found(result, _strobes(result.scene, result.state, period, SECTION_SETTING) if period
+    return Found(result, _strobes(result.scene, result.state, period, _setting(result)) if period
                  else _section(result, _STATES_OF_SECTION[0]))
+
+
+def _setting(result: SteadyState) -> Setting:
+    """The setting that takes the section of a result."""
+    return following_setting(result.scene.cuts_tension)
 
 
 def _section(result: SteadyState, states: int) -> np.ndarray:
     """Stroboscopic states of displacement and velocity of a motion that is not periodic, scaled, (states, 2, N)."""
-    engine = Engine(result.scene, SECTION_SETTING, 1)
+    engine = Engine(result.scene, _setting(result), 1)
     engine.start(result.state)
     engine.periods(states)
     return engine.periods(states)[0][1:]

@@ -2,6 +2,15 @@
 
 from .counts import Counts
 from .engine import Engine
-from .methods import METHODS, Method, Setting, adaptive_setting, fixed_step_setting, method_for
+from .methods import (
+    METHODS,
+    Method,
+    Setting,
+    adaptive_setting,
+    fixed_step_setting,
+    following_setting,
+    method_for,
+)
 
-__all__ = ["METHODS", "Counts", "Engine", "Method", "Setting", "adaptive_setting", "fixed_step_setting", "method_for"]
+__all__ = ["METHODS", "Counts", "Engine", "Method", "Setting", "adaptive_setting", "fixed_step_setting",
+           "following_setting", "method_for"]

@@ -10,7 +10,7 @@ from ..scene import Scene
 from ..state import State, checked_start
 from ..stop import Stop
 from .engine import Engine
-from .methods import fixed_step_setting
+from .methods import following_setting
 
 #: A phase must be k/n with n at most this: the steps of a period are a multiple of n.
 _MOST_PARTS = 10_000
@@ -25,7 +25,7 @@ def nearest_fraction(phase: float) -> tuple[Fraction, bool]:
 
 
 def at_phase_0(scene: Scene, start: State, stop: Stop | None = None) -> State:
-    """The state in which a motion from `start` comes to its next drive phase 0, by the fixed-step method.
+    """The state in which a motion from `start` comes to its next drive phase 0 (`following_setting`).
 
     A state at phase 0 is returned as it is. Raises `BadInput` where `start` is no state of this chain, or its phase is
     no fraction k/n with n up to 10,000; `NumbersFailed` and `Cancelled`.
@@ -37,7 +37,7 @@ def at_phase_0(scene: Scene, start: State, stop: Stop | None = None) -> State:
                        f"fraction k/n with n up to {_MOST_PARTS}: the nearest is {part} = {float(part)!r}.")
     if part.denominator == 1:
         return replace(begin, phase=0.0)
-    engine = Engine(scene, fixed_step_setting(), part.denominator, stop=stop)
+    engine = Engine(scene, following_setting(scene.cuts_tension), part.denominator, stop=stop)
     engine.start(replace(begin, phase=float(part)))
     engine.record(part.denominator - part.numerator)
     return engine.state

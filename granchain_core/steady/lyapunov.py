@@ -78,7 +78,7 @@ def exponents(engine: Engine, blocks: int, block: int,
               offset: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Mean exponent per period of each block of `block` periods, after one block to turn into the leading direction.
 
-    `engine` is a fixed-step one at phase 0 and goes on; returns the exponents (blocks,), its strobes (P, 2, N) and the
+    `engine` is at phase 0 and goes on; returns the exponents (blocks,), its strobes (P, 2, N) and the
     last offset (2(N+2),) of the neighbouring trajectory (`shadow`), with which the next measurement may begin: without
     one it begins in a random direction. In each period the usual kernel runs both; then the distance between them is
     measured, and the neighbour is put back to the first distance.

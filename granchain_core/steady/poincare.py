@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..integrate import Engine, fixed_step_setting
+from ..integrate import Engine, following_setting
 from ..integrate.start import at_phase_0
 from ..scene import Scene
 from ..state import State, rest
@@ -61,11 +61,11 @@ def most_periods(scene: Scene, samples: int, wanted: int) -> int:
 
 def iter_section(scene: Scene, start: State | None, periods: int, samples: int = 48, seconds: float = 0.15,
                  stop: Stop | None = None) -> Iterator[Section]:
-    """The section from `start` (None is the scene's own start) by fixed steps, ever longer: about every `seconds`.
+    """The section from `start` (None is the scene's own start), ever longer: about every `seconds`.
 
     It ends after `most_periods` of `periods`. Raises `NumbersFailed`, `Cancelled`.
     """
-    engine = Engine(scene, fixed_step_setting(), samples, stop=stop)
+    engine = Engine(scene, following_setting(scene.cuts_tension), samples, stop=stop)
     engine.start(rest(scene) if start is None else at_phase_0(scene, start, engine.stop))
     most = most_periods(scene, samples, periods)
     displacement = np.zeros((most, samples, scene.N), dtype=np.float32)

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from ..integrate import Setting
 from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 from ..regime import Regime
@@ -68,6 +69,11 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
         distance = max(distance, rounding * decay / (1.0 - decay))
     return Regime(name="periodic", period=int(period), decay=None if decay < 0.0 else float(decay),
                   distance=float(distance), periods_run=periods_run)
+
+
+def rounding_of(setting: Setting) -> float:
+    """Changes of strobes up to which count as none: rounding, or with error control the tolerance of a step."""
+    return max(ROUNDING, setting.tolerance)
 
 
 def grows(mean: float, error: float, periods: int) -> bool:

@@ -16,7 +16,7 @@ from ..errors import BadInput
 from ..experiment.measured import VIRTUAL
 from ..fit.trains import Train
 from ..input_checks import check_range, whole_number
-from ..integrate import Engine, fixed_step_setting
+from ..integrate import Engine, fixed_step_setting, following_setting
 from ..integrate.methods import typical_error
 from ..result import GIVEN_STATE, Cost, Run, run_from
 from ..scene import Scene
@@ -209,7 +209,7 @@ def _motion(scene: Scene, length: float, samples: int, stop: Stop | None) -> Run
     if periods * samples * scene.N > MOST_VALUES:
         raise BadInput(f"{periods} drive periods of {samples} samples for {scene.N} beads are more than "
                        f"{MOST_VALUES:.0e} values; take fewer periods or a smaller rate.")
-    setting = fixed_step_setting(_STEPS_PER_DEFAULT)
+    setting = following_setting(True) if scene.cuts_tension else fixed_step_setting(_STEPS_PER_DEFAULT)
     engine = Engine(scene, setting, samples, stop=stop)
     engine.start(State(found.run.displacement[-1], found.run.velocity[-1]))
     began, rows = time.perf_counter(), engine.record(periods * samples)

@@ -7,12 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from granchain_core import scene
+from granchain_core import Scene, scene
 from granchain_core.diagram.sameness import Found, found, merged
+from granchain_core.integrate import Engine, adaptive_setting
 from granchain_core.orbits import periodic_orbit
 from granchain_core.regime import Regime
 from granchain_core.state import rest
+from granchain_core.steady.settling.single_chain import settle_to_forces
 from granchain_core.steady.steady_state import SteadyState
+from granchain_core.stop import Stop
 
 #: Newton's method knows no orbits of it, so that results are compared as they are.
 CUT = scene("sec2").evolve(tension="cut")
@@ -70,3 +73,19 @@ def test_an_orbit_is_found_from_states_that_are_known_less_well_than_their_force
     near = [replace(found(one), section=found(one).section * factor) for one, factor in zip(
         results, (1.0 + 2e-4, 1.0 - 2e-4), strict=True)]
     assert len(merged(near)) == 1
+
+
+@pytest.mark.parametrize(("chain", "period"), [
+    (scene("sec2").evolve(N=3, tension="cut", f=2300.0), 2),
+    (scene("sec2").evolve(N=2, tension="cut", dissipation="tsuji", f=1241.221241217652, A0=1.533564291882614e-06,
+                          D=30.039042891685526, k=81388.67421059022, F0=0.028166385379778485), 4)], ids=["2", "4"])
+def test_copies_of_one_cut_orbit_that_begin_in_other_periods_are_one(chain: Scene, period: int) -> None:
+    """No Newton's method brings them together: their sections must be as exact as their forces. Fixed steps are wrong
+    by 1e-3 to 1e-1 with the cut."""
+    first = settle_to_forces(chain, None, Stop())
+    engine = Engine(chain, adaptive_setting(1e-11), 1)
+    engine.start(first.state)
+    engine.periods(1)
+    later = settle_to_forces(chain, engine.state, Stop())
+    assert first.regime.period == later.regime.period == period
+    assert [len(group) for group in merged([found(first), found(later)])] == [2]

@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import run, scene, settled
+from granchain_core import State, resonance_curve, run, scene, settled
+from granchain_core.integrate import following_setting
+from granchain_core.integrate.start import at_phase_0
 from granchain_core.steady import regime_criteria
+from granchain_core.steady.poincare import iter_section
 
 
 @pytest.mark.parametrize(("f", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
@@ -64,3 +67,49 @@ def test_windows_hold_the_largest_changes_oldest_first() -> None:
         each = regime_criteria.changes(strobes, n, 3 * regime_criteria._SLOW_WINDOW)
         np.testing.assert_allclose(found, each.reshape(3, -1).max(axis=1), rtol=2 * np.finfo(float).eps)
     assert len(seen) == regime_criteria.LONGEST_PERIOD and len(regime_criteria._windows(strobes[1:])) == 0
+
+
+def test_a_cut_chain_from_rest_comes_to_the_attractor_that_rest_leads_to():
+    """Here an orbit of period 3 coexists, and fixed steps, of order 1 with the cut, lead to it. Period 1 and 8.1983 N
+    are those of an independent RK4 with events bisected, at 1500, 6000 and 18,000 steps a period."""
+    chain = scene("sec2").evolve(N=2, A0=1.533564291882614e-06, D=30.039042891685526, tension="cut",
+                                 dissipation="tsuji", k=81388.67421059022, F0=0.028166385379778485)
+    point, = resonance_curve(chain, [742.0479417595108]).points
+    assert point.regime.period == 1
+    assert point.max_output_force == pytest.approx(8.19827, rel=1e-5)
+    assert settled(chain.evolve(f=742.0479417595108)).regime.period == 1
+
+
+def test_a_cut_chain_is_where_a_finer_computation_is_at_its_next_phase_0_and_in_its_section():
+    """Both are followed without an accuracy that is asked for; by fixed steps they were wrong by up to a hundredth."""
+    chain = scene("sec2").evolve(N=3, tension="cut", k=2e5, f=1500.0, accuracy=1e-10)
+    fine = run(chain, periods=20, record=1, samples=4)
+    largest = np.abs(fine.displacement).max()
+    carried = at_phase_0(chain, State(fine.displacement[1], fine.velocity[1], 0.25))
+    assert np.abs(carried.displacement - fine.displacement[4]).max() < 1e-8 * largest
+    section = list(iter_section(chain, None, periods=20, samples=4))[-1]
+    assert np.abs(section.displacement[19] - run(chain, periods=19, record=1, samples=4).displacement[:4]).max() < (
+        1e-6 * largest)  # a section is kept in single precision
+
+
+def test_a_cut_chain_that_goes_on_from_its_orbit_stays_there():
+    """The fixed-step method's own orbit has period 6."""
+    chain = scene("sec2").evolve(tension="cut", f=550.0)
+    again = settled(chain, start=settled(chain).state)
+    assert (again.regime.name, again.regime.period) == ("periodic", 2)
+
+
+def test_changes_within_the_tolerance_of_a_step_are_no_motion():
+    """With error control an orbit repeats to the tolerance only, with changes that seem to grow."""
+    strobes = np.tile([[[1.0], [1.0]], [[-1.0], [-1.0]]], (50, 1, 1))
+    strobes[:, 0, 0] += 4e-12 * np.arange(100) / 100 * np.cos(np.arange(100) ** 2)
+    found = regime_criteria.find_period(strobes, rounding=regime_criteria.rounding_of(following_setting(True)))
+    assert (found.name, found.period, found.decay) == ("periodic", 2, None)
+    assert regime_criteria.rounding_of(following_setting(False)) == regime_criteria.ROUNDING
+
+
+def test_the_motion_of_a_cut_chain_without_a_drive_is_known_to_the_accuracy_asked_for():
+    chain = scene("impact").evolve(N=5, tension="cut", dissipation="tsuji", D=30.0, f=2000.0, accuracy=1e-8)
+    found, fine = settled(chain).run, run(chain.evolve(accuracy=1e-11), periods=0, record=1, samples=96)
+    assert found.displacement_error < 1e-8
+    assert np.abs(found.displacement - fine.displacement).max() < 1e-8 * np.abs(fine.displacement).max()

@@ -148,7 +148,7 @@ def test_a_result_names_the_method_that_computed_it(kind: str, method: str) -> N
 
 def test_chains_that_share_no_batch_and_have_no_orbit_do_not_name_them() -> None:
     found = granchain_core.attractors(CHAIN.evolve(tension="cut"), random_states=0)
-    assert found.attributes()["method"] == f"{ALONE} start by start"
+    assert found.attributes()["method"] == "dop853 start by start"
 
 
 def test_error_estimate_is_the_error_that_the_command_line_calls_so() -> None:

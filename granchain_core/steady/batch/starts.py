@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
+from ...integrate import following_setting
 from ...integrate.batch import can_share_batch
 from ...integrate.methods import ADAPTIVE, FIXED_STEP
 from ...scene import Scene
@@ -18,8 +19,13 @@ from .job import Start
 
 def settling_methods(scene: Scene, each: str) -> str:
     """The methods behind many steady states of `scene` in words, for their provenance; `each` is "point", "cell", …"""
-    alone = f"{FIXED_STEP} or {ADAPTIVE} {each} by {each}"
+    alone = f"{methods_alone(scene)} {each} by {each}"
     return f"rk4 in batches, {alone}" if can_share_batch(scene) else alone
+
+
+def methods_alone(scene: Scene) -> str:
+    """The methods by which a chain alone comes to its steady state and is computed there."""
+    return ADAPTIVE if following_setting(scene.cuts_tension).method == ADAPTIVE else f"{FIXED_STEP} or {ADAPTIVE}"
 
 
 def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:

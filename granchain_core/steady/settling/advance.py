@@ -1,8 +1,8 @@
 """Running a chain to its steady state until its regime is decided.
 
-The fixed-step method runs from the start until the distance bound is small (steady/regime_criteria.py) or the regime
-is decided otherwise (regime_decisions.py). A periodic orbit is then computed again with finer steps (refine_orbit.py);
-recording.py records what was reached.
+The chain runs from the start by the setting of `following_setting` (integrate/methods.py) until the distance bound is
+small (steady/regime_criteria.py) or the regime is decided otherwise (regime_decisions.py). A periodic orbit is then
+computed again with a finer setting (refine_orbit.py); recording.py records what was reached.
 """
 
 from __future__ import annotations
@@ -12,18 +12,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...integrate import Engine, fixed_step_setting
+from ...integrate import METHODS, Engine, following_setting
 from ...integrate.start import at_phase_0
 from ...regime import Regime
 from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import State, rest
 from ...stop import Stop
-from ..regime_criteria import find_period
+from ..regime_criteria import find_period, rounding_of
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 
-#: [unsettled] Most steps of the fixed-step method, of a chain alone or of a coarse run. They take 6 s for eleven beads,
-#: at 60 ns a step.
+#: [unsettled] Most steps of a chain alone, or of a coarse run. They take 6 s for eleven beads, at 60 ns a step; where
+#: tension is cut, a hundred times as long.
 MOST_SETTLING_STEPS = 100_000_000
 #: [period n] A chain alone: drive periods before the first check for a period.
 _FIRST_CHECK = 2
@@ -32,7 +32,7 @@ _BETWEEN_CHECKS = 8
 
 
 class SettlingRun:
-    """Runs a chain by the fixed-step method towards its steady state, chunk by chunk, until the regime is decided.
+    """Runs a chain towards its steady state, chunk by chunk, until the regime is decided.
 
     `periods_run` is the number of drive periods after which `start` was reached: they count as run.
     """
@@ -40,10 +40,10 @@ class SettlingRun:
     def __init__(self, scene: Scene, start: State | None, stop: Stop | None, periods_run: int = 0) -> None:
         refuse_undriven(scene)
         self.scene = scene
-        self.engine = Engine(scene, fixed_step_setting(), 1, stop=stop)
+        self.engine = Engine(scene, following_setting(scene.cuts_tension), 1, stop=stop)
         self.stop = self.engine.stop
         self.engine.start(rest(scene) if start is None else at_phase_0(scene, start, self.stop))
-        self._steps = self.engine.grid
+        self._first = periods_run
         self.maxima = np.zeros((0, 3))
         self._begin(periods_run)
         self.decisions = Decisions(self.scene, start is not None)
@@ -74,7 +74,7 @@ class SettlingRun:
                 return False
             chunk = _FIRST_CHECK if per_period == 0.0 else max(1, int(min(left / per_period, MOST_SETTLING_STEPS)))
             chunk = min(chunk, self._check_at - self._here, self._stop_at - self._here,
-                        max(1, self._steps_left() // self._steps))
+                        max(1, self._steps_left() // self._steps_per_period()))
             began = time.perf_counter()
             strobes, maxima = self.engine.periods(chunk)
             per_period = (time.perf_counter() - began) / chunk
@@ -92,8 +92,14 @@ class SettlingRun:
         self.strobes = np.concatenate([self.strobes[-REMEMBERED:], strobes])
         if self._here >= min(self._check_at, self._stop_at):
             self._check_at = self._here + max(_BETWEEN_CHECKS, self._here // 8)
-            self.regime = find_period(self.strobes[-REMEMBERED:])
+            self.regime = find_period(self.strobes[-REMEMBERED:], rounding=rounding_of(self.engine.setting))
         self.regime = replace(self.regime, periods_run=self._run_before + self._here)
+
+    def _steps_per_period(self) -> int:
+        """Steps in a drive period; with error control their mean so far."""
+        if not METHODS[self.engine.setting.method].adaptive:
+            return self.engine.grid
+        return max(1, self.engine.counts.steps // max(1, self.regime.periods_run - self._first))
 
     def _steps_left(self) -> int:
         return MOST_SETTLING_STEPS - self.engine.counts.steps

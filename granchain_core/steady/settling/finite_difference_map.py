@@ -1,8 +1,9 @@
-"""The n-period stroboscopic map by the fixed-step method, its derivative by finite differences, and its fixed points.
+"""The n-period stroboscopic map, its derivative by finite differences, and its fixed points.
 
 While a chain settles, claims near |μ| = 1 are tested with this map: its kernels are already compiled, and it allows cut
-tension. `StroboscopicMap` (orbits/stroboscopic_map.py), whose derivative is the tangent flow, is for orbits that are
-asked for. Both agree on |μ| to 1e-5 (tests/numerics/test_regime_labels.py).
+tension, with the adaptive method in place of fixed steps. `StroboscopicMap` (orbits/stroboscopic_map.py), whose
+derivative is the tangent flow, is for orbits that are asked for. Both agree on |μ| to 1e-5
+(tests/numerics/test_regime_labels.py).
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
-from ...integrate import Engine, adaptive_setting, fixed_step_setting
+from ...integrate import Engine, fixed_step_setting, following_setting
 from ...scene import Scene
 from ...stop import Stop
 from ..returns import sizes
@@ -20,8 +21,6 @@ from ..returns import sizes
 #: [no threshold] Steps in place of one default step: multipliers then differ from those of a tangent flow by about
 #: 1e-6.
 _REFINEMENT = 4.0
-#: [no threshold] Tolerance of the adaptive method, which scenes that cut tension need.
-_TOLERANCE = 1e-11
 #: [no threshold] Half the distance of the two states of a central difference, relative to the largest displacement or
 #: w. The error is its square times the map's third derivative, plus the method's noise, about 1e-10, divided by it.
 _DIFFERENCE = 1e-5
@@ -38,10 +37,10 @@ _HALVINGS = 5
 
 
 class FiniteDifferenceMap:
-    """x → the state n drive periods later by the fixed-step method, for scaled x = (u, w) (2N,) at phase 0."""
+    """x → the state n drive periods later, for scaled x = (u, w) (2N,) at phase 0."""
 
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, refine: float = _REFINEMENT) -> None:
-        setting = adaptive_setting(_TOLERANCE) if scene.cuts_tension else fixed_step_setting(refine)
+        setting = following_setting(True) if scene.cuts_tension else fixed_step_setting(refine)
         self.engine = Engine(scene, setting, 1, stop=stop)
         self.periods = periods
 

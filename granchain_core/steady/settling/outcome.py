@@ -29,7 +29,7 @@ class Settled(Labelled):
     start : str
         Where the motion came from: "rest" or "previous state"; `run.start` has a run's words for it.
     preview : bool
-        Whether this is a first picture by the fixed-step method.
+        Whether this is a first picture, before anything is decided.
     final : bool
         Whether it is the last and best.
 

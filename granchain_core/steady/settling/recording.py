@@ -1,7 +1,7 @@
 """The motion of a settling chain as a result: the motion so far, or its refined periodic orbit with an error.
 
-Motions that are not periodic are recorded by the fixed-step method, without a claim on their error. `origin` is where
-the motion began, in the words of a run's `start`.
+Motions that are not periodic are recorded by the setting they settled with, without a claim on their error. `origin` is
+where the motion began, in the words of a run's `start`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _PERIODS_SHOWN = 4
 
 
 def motion_so_far(motion: SettlingRun, samples: int, began: float, origin: str, final: bool) -> Settled:
-    """The present motion by fixed steps, over one orbit or a few periods; the settling itself is not advanced."""
+    """The present motion, over one orbit or a few periods; the settling itself is not advanced."""
     engine = Engine(motion.scene, motion.engine.setting, samples, stop=motion.stop)
     state = motion.engine.state
     engine.start(state)

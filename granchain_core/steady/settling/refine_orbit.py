@@ -39,10 +39,10 @@ def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> Setting:
 def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> tuple[Engine, float]:
     """The finer method on its own orbit, and the bound on the distance left.
 
-    The orbit of the fixed-step method differs from the true one by its error; a few more periods remove it. With r the
-    contraction of the regime (|μ| where it was computed, else the decay) and `change` from one n-period map to the
-    next, the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that follow; if
-    these are not smaller, the extrapolation is undone.
+    The orbit that the chain settled on differs from the true one by the error of its steps; a few more periods remove
+    it. With r the contraction of the regime (|μ| where it was computed, else the decay) and `change` from one n-period
+    map to the next, the distance left is change·r/(1 − r). After an extrapolation it is known from the changes that
+    follow; if these are not smaller, the extrapolation is undone.
     """
     scene, n = settling.scene, settling.regime.period
     assert n is not None

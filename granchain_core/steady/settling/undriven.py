@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
-from ...integrate import Counts, Engine, Setting, fixed_step_setting
+from ...integrate import Counts, Engine, Setting, following_setting
 from ...integrate.methods import typical_error
 from ...integrate.stated import relative_difference
 from ...kernels.samples import Samples
@@ -24,7 +24,7 @@ _FINEST_REFINEMENT = 64
 def undriven_motion(scene: Scene, start: State | None, samples: int, began: float, stop: Stop | None) -> Settled:
     """The motion of a chain without a drive from its start, over the time 1/f, to the accuracy asked for."""
     begin = rest(scene) if start is None else replace(checked_start(scene, start), phase=0.0)  # nothing has a phase
-    setting, total = fixed_step_setting(), Counts()
+    setting, total = following_setting(scene.cuts_tension), Counts()
 
     def recorded(chosen: Setting) -> tuple[Engine, Samples]:
         engine = Engine(scene, chosen, samples, stop=stop)
@@ -38,7 +38,7 @@ def undriven_motion(scene: Scene, start: State | None, samples: int, began: floa
         setting = setting.finer_than(coarse.scaled, samples)
         fine, rows = recorded(setting)
         change = relative_difference(rows.displacement, before.displacement)
-        if change <= scene.accuracy or setting.refine >= _FINEST_REFINEMENT:
+        if change <= scene.accuracy or setting.finest or setting.refine >= _FINEST_REFINEMENT:
             break
         coarse, before = fine, rows
     regime, cost = Regime.undriven(1), Cost.of(time.perf_counter() - began, total, setting.method)
