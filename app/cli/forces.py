@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
+
+from .common import say
 
 if TYPE_CHECKING:
     from granchain_core import Driven, Run, Scene
@@ -52,3 +55,29 @@ def energy_in_words(residual: float | None) -> str:
 def cost_in_words(cost: Cost) -> str:
     """Method, steps, events and time."""
     return f"{cost.method}, {cost.steps} steps, {cost.events} contact events, {1e3 * cost.wall_s:.1f} ms"
+
+
+def warn(result: Run, budget: float) -> None:
+    """Say on stderr what the numbers do not show: warnings, an accuracy not reached, touches not resolved."""
+    from granchain_core.run.to_accuracy import warnings
+
+    for warning in warnings(result):
+        say(warning)
+    asked, error = result.scene.accuracy, result.displacement_error
+    if result.status == "accuracy-not-reached":
+        say(f"The accuracy asked for, {asked:g}, was not reached: the error may be {error:.1e} of the largest "
+            f"displacement.{_forces_in_words(result)}")
+    if result.status == "over-budget":
+        say(f"A finer computation would not fit the budget of {budget:g} s: the error may be {error:.1e} of the "
+            f"largest displacement, {asked:g} was asked for.")
+    if result.jumps.unresolved:
+        say(f"{result.jumps.unresolved} touches were shorter than a step of {result.cost.method} and are not resolved: "
+            "their jumps are read off the step's ends.")
+
+
+def _forces_in_words(result: Run) -> str:
+    """That the largest forces are as accurate as asked for although a displacement somewhere is not; else nothing."""
+    stated = [one for one in asdict(result.force_errors).values() if one is not None]
+    if not stated or max(stated) > result.scene.accuracy:
+        return ""
+    return f" The largest forces reached it, with {max(stated):.1e}."

@@ -7,7 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from .common import chosen_scene, finite_or_null, in_background, show_json
-from .forces import energy_in_words
+from .forces import energy_in_words, warn
 from .options import add_json, add_scene, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
@@ -28,11 +28,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def do(arguments: argparse.Namespace) -> None:
     """Record the motion from the start over the time 1/f and follow its first pulse."""
     from granchain_core import pulse, run
+    from granchain_core.run.budget import BUDGET
 
     chosen = chosen_scene(arguments)
     check_picture(arguments.picture)
     motion = in_background(lambda stop: run(chosen, periods=0, record=1, samples=arguments.samples, stop=stop))
     found = pulse(motion)
+    warn(motion, BUDGET)
     write_picture(arguments.picture, f"A pulse along {chosen.name}", found)
     if arguments.json:
         show_json(_json(found))

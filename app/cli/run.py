@@ -14,11 +14,11 @@ from granchain_core.regime import Regime
 from granchain_core.result import start_words
 from granchain_core.run.budget import BUDGET
 
-from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
+from .common import chosen_scene, in_background, show_json, show_percent, unbroken
 from .compiling import compiling_beside
 from .data_options import add_answers
 from .driven import do_driven
-from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json
+from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, warn
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
 from .picture import add_option as add_picture
@@ -59,7 +59,7 @@ def do(arguments: argparse.Namespace) -> None:
         _explain(chosen, arguments, sys.stderr if arguments.json else sys.stdout)
     with compiling_beside(chosen, REGIME_KERNELS):
         result = _result(chosen, arguments)
-    _warn(result, arguments.budget)
+    warn(result, arguments.budget)
     write_picture(arguments.picture, f"A motion of {chosen.name}", result)
     if arguments.json:
         show_json(_run_json(result))
@@ -114,32 +114,6 @@ def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:
     from .explain import explanation
 
     print(explanation(chosen, arguments.method, arguments.samples), file=stream, flush=True)
-
-
-def _warn(result: Run, budget: float) -> None:
-    """Say on stderr what the numbers do not show: warnings, an accuracy not reached, touches not resolved."""
-    from granchain_core.run.to_accuracy import warnings
-
-    for warning in warnings(result):
-        say(warning)
-    asked, error = result.scene.accuracy, result.displacement_error
-    if result.status == "accuracy-not-reached":
-        say(f"The accuracy asked for, {asked:g}, was not reached: the error may be {error:.1e} of the largest "
-            f"displacement.{_forces_in_words(result)}")
-    if result.status == "over-budget":
-        say(f"A finer computation would not fit the budget of {budget:g} s: the error may be {error:.1e} of the "
-            f"largest displacement, {asked:g} was asked for.")
-    if result.jumps.unresolved:
-        say(f"{result.jumps.unresolved} touches were shorter than a step of {result.cost.method} and are not resolved: "
-            "their jumps are read off the step's ends.")
-
-
-def _forces_in_words(result: Run) -> str:
-    """That the largest forces are as accurate as asked for although a displacement somewhere is not; else nothing."""
-    stated = [one for one in asdict(result.force_errors).values() if one is not None]
-    if not stated or max(stated) > result.scene.accuracy:
-        return ""
-    return f" The largest forces reached it, with {max(stated):.1e}."
 
 
 def _run_json(result: Run) -> dict[str, Any]:

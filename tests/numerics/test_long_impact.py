@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.cli.run import _warn
+from app.cli.forces import warn
 from granchain_core import run, scene
 from granchain_core.integrate import Engine, Setting, method_for
 from granchain_core.state import rest
@@ -43,8 +43,8 @@ def test_a_run_says_that_its_forces_are_as_accurate_as_asked_for(capsys: pytest.
     found = replace(short, status="accuracy-not-reached", displacement_error=3e-5)
     largest = max(found.force_errors.row)
     assert largest <= found.scene.accuracy
-    _warn(found, 1.0)
+    warn(found, 1.0)
     assert f"may be 3.0e-05 of the largest displacement. The largest forces reached it, with {largest:.1e}." \
         in capsys.readouterr().err
-    _warn(replace(found, scene=found.scene.evolve(accuracy=0.5 * largest)), 1.0)
+    warn(replace(found, scene=found.scene.evolve(accuracy=0.5 * largest)), 1.0)
     assert "largest forces" not in capsys.readouterr().err
