@@ -204,7 +204,7 @@ def scales_of(scene: Scene) -> Scales:
 
 
 def _dissipation(scene: Scene, scales: Scales) -> Any:
-    """λ = D/(mφ), for an overlap-dependent law at one length unit of overlap."""
+    """The slot with λ = D (A₀/δ_r)^a/(mφ), the scaled damping at an overlap of one length unit."""
     law = LAWS[scene.dissipation]
     strength = scene.D / (scene.bead(1).mass * scales.phi)
     return law.slot(strength * (scales.length / scene.reference_overlap) ** law.exponent)

@@ -1,9 +1,9 @@
 """Pass bands of a precompressed chain: the frequencies at which small waves propagate.
 
 Every contact is a spring k_c = dF/dδ = (3/2) K_c^{2/3} F0^{1/3} about the compressed rest. Equal beads have one band,
-from 0, or √(k/m)/2π on a foundation, to the cut-off f_c = (1/π) √(k_c/m); dimers have an acoustic and an optical one
-with a gap between them (Nesterenko, Dynamics of Heterogeneous Materials, 2001, section 1.2). In one dimension a band
-ends where the waves of neighbouring cells are in phase or opposite.
+from 0 to the cut-off f_c = (1/π) √(k_c/m), on a foundation from √(k/m)/2π to √((4k_c + k)/m)/2π. Dimers have an
+acoustic and an optical one with a gap between them (Nesterenko, Dynamics of Heterogeneous Materials, 2001, section
+1.2). In one dimension a band ends where the waves of neighbouring cells are in phase or opposite.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ class Scene(Description):
     F0 : float
         Static preload [N].
     wall : str or float
-        "bead", "same-material", "rigid", or the wall contact's stiffness over that of two beads.
+        "bead", "same-material", "rigid", or the wall contact's stiffness over that of two beads like the last.
     dissipation : str
         "linear", "tsuji", "kuwabara-kono" or "none".
     tension : str

@@ -22,8 +22,8 @@ YIELD_STRESS = 2.28e9
 def contact_geometry(scene: Description) -> tuple[np.ndarray, np.ndarray]:
     """E* [Pa] and R* [m] of every contact (N+1,); the driver is a bead like bead 1.
 
-    The walls "same-material" and "rigid" are flat, and a rigid one has no compliance of its own; a wall that is a
-    number times K counts as a bead.
+    The walls "same-material" and "rigid" are flat, and a rigid one has no compliance of its own; a wall that is given
+    by a number counts as a bead.
     """
     beads = (scene.beads[0], *scene.beads, scene.beads[-1])
     modulus, radius = np.array([reduced(left, right) for left, right in itertools.pairwise(beads)]).T.copy()

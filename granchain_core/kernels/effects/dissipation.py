@@ -1,10 +1,10 @@
-"""Contact damping g(δ) δ̇ whose primitive G (G' = g, G(0) = 0) makes the w-variables continuous.
+"""Contact damping g(δ) δ̇; its primitive G (G' = g, G(0) = 0) defines w, whose rate ẇ has no jump.
 
 Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              LinearDashpot   a = 0     Zhang et al. 2016, eq. (1)
              Tsuji           a = 1/4   Tsuji, Tanaka & Ishida 1992
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
-Values     coefficient: λ in scaled units, at an overlap of one length unit where a > 0
+Values     coefficient: λ = D (A₀/δ_r)^a/(mφ), at an overlap of one length unit where a > 0
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
 Terms      damping, damping_slope, dashpot_force, onset_force, dashpot_slope, primitive, times_primitive, shape = G/λ,
            velocity and its inverse shifted (absent: v = w); keep_primitive, put_primitive and put_prescribed_primitive

@@ -22,8 +22,9 @@ _LIOUVILLE_ERROR = 1e-5
 def check_branch(branch: Branch) -> list[str]:
     """Sentences for each violated invariant; empty for a correct branch.
 
-    Residuals are small, neighbours are near, Liouville's formula holds, stability and contact sequence change at
-    reported special points only, and each of those lies in its interval, between the two orbits that differ by it.
+    Residuals are small, neighbours are near, Liouville's formula holds; stability, direction and the closings of each
+    contact change at reported special points only, and each of those lies in its interval, between the two orbits that
+    differ by it.
     """
     found = []
     for arm in branch.arms:
@@ -60,7 +61,7 @@ def _step_wrong(branch: Branch, arm: Arm, i: int) -> list[str]:
         found.append(f"the knob turns without a fold {where}")
     for contact in np.flatnonzero(a.closings != b.closings):
         if not any(s.contact == contact for s in between):
-            found.append(f"contact {contact} changes its sequence without a grazing {where}")
+            found.append(f"contact {contact} closes more or less often without a grazing {where}")
     return found
 
 
