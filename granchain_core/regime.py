@@ -12,7 +12,7 @@ NEVER_REPEATING = ("quasi-periodic", "chaotic")
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.contraction`).
 LEAST_BELOW_1 = 1e-6
 #: [all] Without |μ| it is taken to shrink by the observed decay, at most this.
-SLOWEST_DECAY = 0.999
+SLOWEST_TRUSTED_DECAY = 0.999
 #: [all] Where no decay was observed, it is taken to shrink by this.
 DECAY_NOT_SEEN = 0.5
 
@@ -95,7 +95,7 @@ class Regime:
         """Factor by which a distance shrinks per orbit: |μ|, else the observed decay, else `DECAY_NOT_SEEN`."""
         if self.multiplier is not None:
             return min(1.0 - LEAST_BELOW_1, self.multiplier)
-        return min(SLOWEST_DECAY, self.decay or DECAY_NOT_SEEN)
+        return min(SLOWEST_TRUSTED_DECAY, self.decay or DECAY_NOT_SEEN)
 
     @property
     def evidence(self) -> str:

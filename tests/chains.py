@@ -16,15 +16,6 @@ LAWS = (*DAMPING_LAWS, "none")
 _REFERENCE = np.load(Path(__file__).parent / "reference" / "reference.npz")
 
 
-def thrown_by_a_touch(depth: float, beta: float) -> float:
-    """Speed of a bead at rest, of mass and stiffness 1, after a driver sin θ at θ = βt reached `depth` into it.
-
-    The push is ∫(depth − θ²/2)^{3/2} dθ/β over the touch, (3π√2/8)·depth²/β, as long as the bead hardly moves
-    meanwhile. The bead's own motion and cos θ are corrections of order depth.
-    """
-    return 3.0 * np.pi * np.sqrt(2.0) / 8.0 * depth**2 / beta
-
-
 def reference_names() -> list[str]:
     """Names of the stored cases."""
     return sorted({key.split("/")[0] for key in _REFERENCE})

@@ -231,12 +231,12 @@ def _show(found: Branch) -> None:
     for p in found.points:
         print(f"{p.knob:14.8g}  {p.max_output_force_elastic:26.8g}  {'stable' if p.stable else 'unstable'}")
     for s in found.special:
-        more = f", contact {s.contact}: {s.event}" if s.contact is not None else _normal_form_words(s)
+        more = f", contact {s.contact}: {s.event}" if s.contact is not None else normal_form_words(s)
         low, high = s.interval
         print(f"{s.kind} at {found.axis.knob} = {s.knob:.8g}, between {low:.9g} and {high:.9g}{more}")
 
 
-def _normal_form_words(found: SpecialPoint) -> str:
+def normal_form_words(found: SpecialPoint) -> str:
     """Criticality, coefficient with its error, and the angle of a Neimark–Sacker point."""
     form = found.normal_form
     if form is None:

@@ -24,15 +24,15 @@ import numpy as np
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..input_checks import unknown_name
 from ..orbits.branch.special import BIFURCATIONS
-from ..orbits.stroboscopic_map import StroboscopicMap
+from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, StroboscopicMap
 from ..quantities import QUANTITIES
 from ..scene import Scene
 from ..state import State
 from ..stop import Stop
 from .grid import KNOBS
 
-#: How exactly the critical multiplier meets its condition; the map's own tangents are good to about 1e-7.
-_CONDITION_ERROR = 1e-6
+#: How exactly the critical multiplier meets its condition: it is not known better.
+_CONDITION_ERROR = MULTIPLIER_ERROR
 #: Residual at which an orbit is found.
 _ORBIT_RESIDUAL = 1e-10
 #: Newton's iterations at most.

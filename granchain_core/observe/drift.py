@@ -12,11 +12,9 @@ import numpy as np
 
 from ..orbits import Orbit
 from ..orbits.modes import eigenpair
-from ..orbits.stroboscopic_map import StroboscopicMap
+from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, StroboscopicMap
 from ..scene import Scene
 
-#: A multiplier this near to the unit circle counts as on it: the error of the tangents.
-_ON_THE_CIRCLE = 1e-6
 #: Squared cosine between a difference and one shift of all beads from which on it is called a translation.
 TRANSLATION = 0.7
 
@@ -40,7 +38,8 @@ def is_drift(scene: Scene, share: float, multiplier: complex | None) -> bool:
 def observer_drift(orbit: Orbit) -> str | None:
     """A sentence if the observer of `orbit` drifts, else None; the orbit must have its observer's multipliers."""
     found = orbit.observer_multipliers
-    if found is None or abs(found[0]) < 1.0 - _ON_THE_CIRCLE:
+    # a multiplier that is not known to be inside the unit circle counts as on it
+    if found is None or abs(found[0]) < 1.0 - MULTIPLIER_ERROR:
         return None
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))

@@ -115,21 +115,31 @@ class Twin:
     @property
     def verdict(self) -> str:
         """"synchronises", "drifts", "breaks down" (it grows apart otherwise) or "neither yet" (docs/observers.md)."""
-        grows = self.rate is not None and self.rate > 1.0
-        against = self.leading is not None and (abs(self.leading) < 1.0 if grows else abs(self.leading) > 1.0)
-        if self.rate is None or against:  # what the multiplier says will be seen later
+        if self.rate is None or self._contradicted:  # what the multiplier says will be seen later
             return "neither yet"
-        if not grows:
+        if self.rate <= 1.0:
             return "synchronises"
         return "drifts" if is_drift(self.scene, self.translation, self.leading) else "breaks down"
 
     @property
+    def _contradicted(self) -> bool:
+        """Whether the distance grows though all multipliers are inside the circle, or shrinks though one is outside."""
+        if self.rate is None or self.leading is None:
+            return False
+        return abs(self.leading) < 1.0 if self.rate > 1.0 else abs(self.leading) > 1.0
+
+    @property
     def sentence(self) -> str:
         """The outcome in words."""
-        if self.verdict == "neither yet":
+        if self.rate is None:
             return "The distance between observer and chain shows no clear rate; give more periods."
         every = "period" if self.period == 1 else f"{self.period} periods"
         factor = f"the distance is multiplied by {self.rate:.4g} every {every}"
+        if self._contradicted and self.leading is not None:
+            size = abs(self.leading)
+            side = "inside" if size < 1.0 else "outside"
+            return (f"So far {factor}, but the leading multiplier, of modulus {size:.4g}, is {side} the unit circle; "
+                    "give more periods.")
         if self.verdict == "synchronises":
             return f"The observer synchronises: {factor}."
         side = ""

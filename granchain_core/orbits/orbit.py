@@ -37,7 +37,7 @@ CONVERGED = 1e-11
 #: Newton's iterations at most.
 MOST_ITERATIONS = 12
 #: Multipliers smaller than this part of the largest are rounding.
-_ROUNDING = 1e-13
+ROUNDING = 1e-13
 #: Most halvings of a Newton step before the iteration fails.
 _MOST_HALVINGS = 6
 
@@ -331,7 +331,7 @@ def _stability_words(multipliers: np.ndarray, errors: np.ndarray | None) -> str:
 def _liouville(multipliers: np.ndarray, log_determinant: float) -> float | None:
     """The error, None where the smallest multiplier is only rounding."""
     sizes = np.abs(multipliers)
-    return None if sizes.min() < _ROUNDING * sizes.max() else liouville_error(multipliers, log_determinant)
+    return None if sizes.min() < ROUNDING * sizes.max() else liouville_error(multipliers, log_determinant)
 
 
 def liouville_error(multipliers: np.ndarray, log_determinant: float) -> float:

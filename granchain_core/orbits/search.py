@@ -19,7 +19,7 @@ from ..state import State
 from ..steady.returns import least_period
 from ..stop import Stop
 from .orbit import Orbit, periodic_orbit
-from .stroboscopic_map import RETURN_DISTANCE, StroboscopicMap
+from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap
 
 #: Closest returns from which Newton's method is started.
 _STARTS = 4
@@ -82,4 +82,4 @@ def least_period_of(orbit: Orbit, stop: Stop | None = None) -> int:
     def after(periods: int) -> np.ndarray:
         return StroboscopicMap(orbit.scene, periods, stop)(x, directions=np.zeros((len(x), 0))).end
 
-    return least_period(after, x, orbit.period, RETURN_DISTANCE)
+    return least_period(after, x, orbit.period, SAME_ORBIT_DISTANCE)

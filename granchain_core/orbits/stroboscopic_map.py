@@ -25,10 +25,17 @@ from ..stop import Stop
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
 #: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.
 TOLERANCE = 1e-13
+#: Error of the derivative at that tolerance, relative to its largest entry. Against a tolerance of 1e-14 it was 3e-12
+#: to 5e-10 on orbits of sec2 and 1e-7 on those of the rig at 60 and 90 Hz. These are near grazings, where the
+#: derivative changes by the root of the tolerance, 3e-7 (docs/orbits.md).
+TANGENT_ERROR = 1e-7
+#: Error of a multiplier near the unit circle: ten times that, as the largest entry of the derivative is 2 to 13 and the
+#: eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).
+MULTIPLIER_ERROR = 10.0 * TANGENT_ERROR
 #: The method, in the provenance of results.
 FLOW_METHOD = "tangent flow (DOP853 in regularised time)"
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
-RETURN_DISTANCE = 1e-8
+SAME_ORBIT_DISTANCE = 1e-8
 
 
 @dataclass(frozen=True, eq=False)

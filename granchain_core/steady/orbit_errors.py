@@ -37,8 +37,9 @@ def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float,
     state, `contraction` is the contraction factor per orbit (|μ|, or else the decay seen): an error
     ε of the n-period map moves its fixed point by ε/(1 − contraction), and the forces with it. If each ran on its own
     orbit, it is 0. `distance` (3,) is what the distance left contributes (`force_distances`), and `further` errors
-    (3,), such as those at jumps, are added. `least` is the typical error of the finer computation: two may agree by
-    chance.
+    (3,), such as those at jumps, are added. `least` is the typical error of the finer
+    computation, because two may agree by chance. Like `change` it is divided by 1 − `contraction` here; a caller whose
+    `contraction` is 0 because each ran on its own orbit divides it beforehand.
     """
     return np.asarray(np.maximum(ORBIT_FORCES * change, least) / (1.0 - contraction) + distance + further)
 

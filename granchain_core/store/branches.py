@@ -25,7 +25,7 @@ from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
 from ..orbits import Arm, Branch, BranchPoint, KnobAxis, SpecialPoint
-from ..orbits.branch.normal_forms import CRITICALITIES, NOT_DECIDED, REASONS, NormalForm
+from ..orbits.branch.normal_forms import CRITICALITIES, EARLIER_REASONS, NOT_DECIDED, REASONS, NormalForm
 from ..orbits.branch.special import SPECIAL_KINDS
 from ..orbits.branch.tables import NO_CONTACT, branch_tables
 from ..scene import Amplitude
@@ -153,7 +153,8 @@ def _read_normal_forms(file: File, count: int) -> list[NormalForm | None]:
     if not file.has("special/criticality"):
         return [None] * count
     found = file.words("special/criticality", count, ("", *CRITICALITIES))
-    reasons = file.words("special/undecided", count, ("", *REASONS))
+    reasons = [EARLIER_REASONS.get(reason, reason)
+               for reason in file.words("special/undecided", count, ("", *REASONS, *EARLIER_REASONS))]
     numbers, errors = (file.numbers(f"special/{name}", (count,)) for name in ("coefficient", "coefficient_error"))
     if any((word == NOT_DECIDED) != bool(reason) for word, reason in zip(found, reasons, strict=True)):
         raise Refused("/special/undecided does not fit /special/criticality")

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from chains import thrown_by_a_touch
+from touches import thrown_by_a_touch
 
 from granchain_core import State, scene
 from granchain_core.integrate import Engine, Setting

@@ -65,6 +65,10 @@ def test_each_verdict_has_its_condition() -> None:
     assert [told(2.0, leading).verdict for leading in (2.0, -2.0, 2.0j)] == ["drifts", "drifts", "breaks down"]
     assert told(2.0, 2.0, 0.1).verdict == "breaks down"
     assert told(None, 2.0).verdict == told(2.0, 0.5).verdict == told(0.5, 2.0).verdict == "neither yet"
+    assert "no clear rate" in told(None, 2.0).sentence
+    for rate, leading, side in ((2.0, 0.5, "inside"), (0.5, 2.0, "outside")):
+        sentence = told(rate, leading).sentence
+        assert f"multiplied by {rate:g} every period" in sentence and f"modulus {leading:g}, is {side}" in sentence
     assert ["other side" in told(2.0, leading).sentence for leading in (2.0, -2.0, -2.0 + 1.0j)] == [False, True, False]
     assert replace(found, orbit=None).verdict == "drifts"  # the multiplier is not known
 

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 import pytest
 
-from app.cli.branch import _normal_form_words, branch_json
+from app.cli.branch import branch_json, normal_form_words
 from app.pictures.branches import criticality_words
 from granchain_core import BadInput, scene, settled
 from granchain_core.hdf5 import seal
@@ -19,9 +19,16 @@ from granchain_core.orbits.branch.between import Between
 from granchain_core.orbits.branch.criticality import with_normal_forms
 from granchain_core.orbits.branch.equations import BranchEquations
 from granchain_core.orbits.branch.newton import Near
-from granchain_core.orbits.branch.normal_forms import GRAZING_IN_INTERVAL, GRAZING_NEAR, REASONS, NormalForm
-from granchain_core.orbits.branch.orbit_checkpoints import _special, _special_as_json
-from granchain_core.orbits.branch.switch import _eigenvector
+from granchain_core.orbits.branch.normal_forms import (
+    AMPLITUDES,
+    EARLIER_REASONS,
+    REASONS,
+    SEQUENCE_IN_INTERVAL,
+    SEQUENCE_NEAR,
+    NormalForm,
+)
+from granchain_core.orbits.branch.orbit_checkpoints import special_as_json, special_from_json
+from granchain_core.orbits.branch.switch import doubling_direction
 from granchain_core.orbits.orbit import sorted_multipliers
 from granchain_core.store import load_branch, save_branch
 
@@ -51,7 +58,7 @@ def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Br
     assert form is not None and form.criticality == criticality
     once, twice = BranchEquations(doubling.axis, 1), BranchEquations(doubling.axis, 2)
     foot, amplitude = special.before, 2e-4
-    away = np.append(_eigenvector(once, foot.x, foot.knob), 0.0)
+    away = np.append(doubling_direction(once, foot.x, foot.knob), 0.0)
     solved = twice.solve(once.point(foot.x, foot.knob) + amplitude * away, away)
     unstable = special.before if special.before.unstable > special.after.unstable else special.after
     beyond = (twice.value(solved.z) - special.knob) * (unstable.knob - special.knob) > 0.0
@@ -79,11 +86,9 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     assert settled(chain, doubled.state(between)).regime.period == 2 and settled(chain, doubling.state(once)).regime.period == 1
 
 
-def test_a_coefficient_is_within_its_error_of_one_with_smaller_amplitudes(doubling: Branch, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("granchain_core.orbits.branch.normal_forms._AMPLITUDES", {"period_doubling": (2e-5,)})
-    monkeypatch.setattr("granchain_core.orbits.branch.criticality._TOLERANCE", 1e-13)
+def test_a_coefficient_is_within_its_error_of_one_with_smaller_amplitudes(doubling: Branch) -> None:
     for special in (the(doubling, "period_doubling", number) for number in (0, 1)):
-        fine = again(doubling, special).normal_form
+        fine = again(doubling, special, {"period_doubling": (2e-5,)}, tolerance=1e-13).normal_form
         assert fine is not None and special.normal_form is not None
         assert abs(fine.coefficient - special.normal_form.coefficient) < special.normal_form.error + fine.error
 
@@ -110,12 +115,17 @@ def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> No
     assert radii == pytest.approx(expected, rel=0.05)
 
 
-def again(branch: Branch, special: SpecialPoint) -> SpecialPoint:
+def again(branch: Branch, special: SpecialPoint, amplitudes: dict[str, tuple[float, ...]] = AMPLITUDES,
+          tolerance: float = 1e-12) -> SpecialPoint:
     """The special point with its normal form computed anew."""
+    return with_normal_forms([special], between(branch, special), amplitudes, tolerance)[0]
+
+
+def between(branch: Branch, special: SpecialPoint) -> Between:
+    """The orbits between those on both sides of a special point."""
     equations = BranchEquations(branch.axis, branch.period)
     near = [Near(equations.stroboscopic_map(p.knob)(p.x).derivative, p.slope) for p in (special.before, special.after)]
-    between = Between(equations, special.before, special.after, (near[0], near[1]))
-    return with_normal_forms([special], between)[0]
+    return Between(equations, special.before, special.after, (near[0], near[1]))
 
 
 def test_it_is_the_same_when_it_is_computed_again(doubling: Branch) -> None:
@@ -128,14 +138,30 @@ def test_nothing_is_decided_where_a_contact_grazes_in_the_same_interval(doubling
     closings = special.after.closings.copy()
     closings[3] += 1
     form = again(doubling, replace(special, after=replace(special.after, closings=closings))).normal_form
-    assert form is not None and (form.criticality, form.reason) == ("not decided", GRAZING_IN_INTERVAL)
+    assert form is not None and (form.criticality, form.reason) == ("not decided", SEQUENCE_IN_INTERVAL)
 
 
-def test_no_state_is_used_along_which_contacts_close_in_another_order(doubling: Branch, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("frequency", [228.0, 252.0])
+def test_nothing_is_decided_where_contact_events_change_their_order_and_none_grazes(doubling: Branch, frequency: float) -> None:
+    """At about 228 Hz a closing passes the strobe phase 0; at about 252 Hz a closing and an opening change places."""
+    points = doubling.points
+    after = next(i for i, point in enumerate(points) if point.knob < frequency)
+    special = replace(the(doubling, "period_doubling"), before=points[after - 1], after=points[after])
+    assert np.array_equal(special.before.closings, special.after.closings)
+    events = [between(doubling, special).contacts(point) for point in (special.before, special.after)]
+    if frequency == 228.0:
+        assert np.array_equal(np.roll(events[0], -1), events[1])
+    else:
+        place = int(np.flatnonzero(events[0] != events[1])[0])
+        assert np.array_equal(events[0][[*range(place), place + 1, place, *range(place + 2, len(events[0]))]], events[1])
+    form = again(doubling, special).normal_form
+    assert form is not None and (form.criticality, form.reason) == ("not decided", SEQUENCE_IN_INTERVAL)
+
+
+def test_no_state_is_used_along_which_contacts_close_in_another_order(doubling: Branch) -> None:
     """At 255.8 Hz a contact grazes between the amplitudes 3e-4 and 1e-3."""
-    monkeypatch.setattr("granchain_core.orbits.branch.normal_forms._AMPLITUDES", {"period_doubling": (1e-3,)})
-    form = again(doubling, the(doubling, "period_doubling")).normal_form
-    assert form is not None and (form.criticality, form.reason) == ("not decided", GRAZING_NEAR)
+    form = again(doubling, the(doubling, "period_doubling"), {"period_doubling": (1e-3,)}).normal_form
+    assert form is not None and (form.criticality, form.reason) == ("not decided", SEQUENCE_NEAR)
 
 
 def test_a_grazing_has_no_criticality(doubling: Branch) -> None:
@@ -150,7 +176,7 @@ def test_files_and_checkpoints_keep_it(doubling: Branch, tmp_path: Path) -> None
     undecided = replace(the(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=REASONS[0]))
     doubling = replace(doubling, arms=(replace(doubling.arms[0], special=[*doubling.special, undecided]),))
     loaded = load_branch(save_branch(doubling, tmp_path / "b.h5"))
-    kept = [_special(json.loads(json.dumps(_special_as_json(one)))) for one in doubling.special]
+    kept = [special_from_json(json.loads(json.dumps(special_as_json(one)))) for one in doubling.special]
     for special, *others in zip(doubling.special, loaded.special, kept, strict=True):
         for other in others:
             assert str(other.normal_form) == str(special.normal_form)  # NaN is not equal to itself
@@ -166,6 +192,14 @@ def test_a_file_without_it_opens(doubling: Branch, tmp_path: Path) -> None:
     assert [s.kind for s in loaded.special] == [s.kind for s in doubling.special]
     assert all(s.normal_form is None and s.criticality is None for s in loaded.special)
     assert branch_json(loaded)["normal_form"] == [None] * len(loaded.special)
+
+
+@pytest.mark.parametrize(("earlier", "now"), EARLIER_REASONS.items())
+def test_a_reason_as_earlier_versions_spelled_it_is_read(doubling: Branch, tmp_path: Path, earlier: str, now: str) -> None:
+    special = replace(the(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=earlier))
+    assert special_from_json(json.loads(json.dumps(special_as_json(special)))).criticality_words() == f"criticality not decided: {now}"
+    old = replace(doubling, arms=(replace(doubling.arms[0], special=[special]),))
+    assert load_branch(save_branch(old, tmp_path / "old.h5")).special[0].criticality_words() == f"criticality not decided: {now}"
 
 
 def test_a_reason_that_does_not_fit_is_refused(doubling: Branch, tmp_path: Path) -> None:
@@ -184,11 +218,11 @@ def test_it_is_told_in_words_and_numbers(doubling: Branch, torus: Branch) -> Non
         "supercritical: beside it, on the unstable side, an orbit of twice the period attracts")
     assert criticality_words(the(torus, "neimark_sacker")).endswith("a closed curve of the map attracts")
     assert criticality_words(the(doubling, "grazing")) == ""
-    assert _normal_form_words(supercritical).startswith(", supercritical, coefficient 699.")
+    assert normal_form_words(supercritical).startswith(", supercritical, coefficient 699.")
     told = branch_json(torus)["normal_form"][torus.special.index(the(torus, "neimark_sacker"))]
     assert told["criticality"] == "supercritical" and told["coefficient"] < 0.0 < told["error"] and told["reason"] == ""
     assert told["angle"] == pytest.approx(1.1995, abs=1e-4)
-    assert _normal_form_words(the(torus, "neimark_sacker")).endswith("angle 68.73°")
+    assert normal_form_words(the(torus, "neimark_sacker")).endswith("angle 68.73°")
     assert any("subcritical" in line for line in doubling.summary())
     unknown = replace(subcritical, normal_form=NormalForm("not decided", reason=REASONS[0]))
     assert criticality_words(unknown) == f"criticality not decided: {REASONS[0]}"

@@ -7,7 +7,7 @@ from math import gamma, pi, sqrt
 
 import numpy as np
 import pytest
-from chains import thrown_by_a_touch
+from touches import thrown_by_a_touch
 
 from granchain_core import State, scene
 from granchain_core.laws import LAWS

@@ -109,6 +109,19 @@ def test_a_bead_that_meets_a_dashpot_has_the_closed_form_which_a_naive_tangent_m
     assert column_error(naive[:, :1], exact[:, :1]) == pytest.approx(0.6820, abs=1e-3)
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_the_second_derivative_jumps_where_a_contact_closes_at_the_strobe(side: float) -> None:
+    """u' = w − γu while the contact is closed and u' = w before it; the onset at −u/w is in the period if u < 0.
+
+    So ∂u_end/∂u is e^{−γ(T + u/w)} for u < 0 and e^{−γT} for u > 0: continuous, and no contact grazes.
+    """
+    damping, period, w, u = 0.4, 2.0, 0.8, 1e-3
+    at, beside = (dashpot_wall(damping, period)(np.array([side * part * u, w])).derivative[0, 0] for part in (1e-6, 1.0))
+    slope = -damping * np.exp(-damping * period) / w if side < 0.0 else 0.0
+    assert at == pytest.approx(np.exp(-damping * period), abs=1e-9)
+    assert side * (beside - at) / u == pytest.approx(slope, abs=1e-3)
+
+
 def dashpot_wall(damping: float, period: float) -> StroboscopicMap:
     """The map of one bead far from the driver whose contact with the wall at 0 has a dashpot and no spring."""
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=1, F0=0.5), 1)

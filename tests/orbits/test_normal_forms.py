@@ -11,10 +11,10 @@ from granchain_core.orbits.branch.normal_forms import (
     ANOTHER_MULTIPLIER,
     DISAGREE,
     GENERIC,
-    GRAZING_NEAR,
     NO_MULTIPLIER,
     NOT_DECIDED,
     RESONANCE,
+    SEQUENCE_NEAR,
     SUBCRITICAL,
     SUPERCRITICAL,
     MapNear,
@@ -158,14 +158,14 @@ def test_no_sign_is_told_without_evidence() -> None:
 
 
 @pytest.mark.parametrize(("smooth_to", "criticality", "reason"), [
-    (1.0, SUPERCRITICAL, ""), (5e-5, SUPERCRITICAL, ""), (1e-5, NOT_DECIDED, GRAZING_NEAR)])
+    (1.0, SUPERCRITICAL, ""), (5e-5, SUPERCRITICAL, ""), (1e-5, NOT_DECIDED, SEQUENCE_NEAR)])
 def test_no_state_beyond_a_grazing_is_used(smooth_to: float, criticality: str, reason: str) -> None:
     def side(beta: float) -> MapNear:
         smooth = logistic(beta)
 
         def product(x: np.ndarray, columns: np.ndarray) -> np.ndarray:
             if abs(x[0] - smooth.x[0]) > smooth_to:
-                raise NotSmooth(GRAZING_NEAR)
+                raise NotSmooth(SEQUENCE_NEAR)
             return smooth.product(x, columns)
 
         return MapNear(smooth.x, smooth.derivative, product)

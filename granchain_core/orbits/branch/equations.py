@@ -15,7 +15,7 @@ import numpy as np
 from ...scaling import scale_chain, scale_like
 from ...steady.returns import least_period
 from ...stop import Stop
-from ..stroboscopic_map import RETURN_DISTANCE, TOLERANCE, Flow, StroboscopicMap
+from ..stroboscopic_map import SAME_ORBIT_DISTANCE, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
 from .newton import ROUGH_TOLERANCE, Near, Newton
 from .quick import QuickMap, quick_steps
@@ -98,7 +98,7 @@ class BranchEquations:
         change = self.quick_end(x, above, steps) - self.quick_end(x, below, steps)
         return change / (self.axis.coordinate(above) - self.axis.coordinate(below))
 
-    def least_period(self, x: np.ndarray, value: float, back: float = RETURN_DISTANCE) -> int:
+    def least_period(self, x: np.ndarray, value: float, back: float = SAME_ORBIT_DISTANCE) -> int:
         """The drive periods after which the orbit through x is `back` again, relatively, at most `period`."""
         return least_period(lambda periods: self.stroboscopic_map(value, periods).end(x), x, self.period, back)
 

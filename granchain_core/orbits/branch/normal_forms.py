@@ -7,14 +7,14 @@ Equation   with ξ (z) the coordinate along the critical eigenvector q on the ce
                               d = ½ e^{−iθ}⟨p, C(q, q, q̄) + 2 B(q, (1 − A)⁻¹ B(q, q̄)) + B(q̄, (e^{2iθ} − A)⁻¹ B(q, q))⟩
            A, B, C are the first three derivatives of the map, Aq = μq, Aᵀp = μ̄p, ⟨p, q⟩ = 1; q has a mean square of 1.
 Source     Kuznetsov 2004, Elements of Applied Bifurcation Theory, 3rd edition: chapter 4, and the projection method of
-           section 5.4; Kuznetsov & Meijer 2005, SIAM J. Sci. Comput. 26
+           section 5.4
 Note       B and C are central differences of the exact derivative A, so that no difference is of higher order than the
            second. They hold only where the map is smooth: `MapNear.product` raises `NotSmooth` elsewhere.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,18 +23,21 @@ SUPERCRITICAL, SUBCRITICAL, GENERIC, NOT_DECIDED = CRITICALITIES = (
     "supercritical", "subcritical", "generic", "not decided")
 
 #: Why a criticality is not decided; results, files and JSON spell these so.
-GRAZING_IN_INTERVAL = "a contact grazes in the same interval of the knob"
-GRAZING_NEAR = "a contact grazes within the smallest amplitude"
+SEQUENCE_IN_INTERVAL = "the sequence of contact events changes in the same interval of the knob"
+SEQUENCE_NEAR = "the sequence of contact events changes within the smallest amplitude"
 DISAGREE = "its two values disagree"
 ANOTHER_MULTIPLIER = "another multiplier is at the unit circle"
 NO_MULTIPLIER = "no multiplier of this kind is found on both sides"
 RESONANCE = "strong resonance"
 NO_MAP = "the map cannot be computed beside the orbit"
-REASONS = (GRAZING_IN_INTERVAL, GRAZING_NEAR, DISAGREE, ANOTHER_MULTIPLIER, NO_MULTIPLIER, RESONANCE, NO_MAP)
+REASONS = (SEQUENCE_IN_INTERVAL, SEQUENCE_NEAR, DISAGREE, ANOTHER_MULTIPLIER, NO_MULTIPLIER, RESONANCE, NO_MAP)
+#: As earlier versions spelled two of them, and what is read for these.
+EARLIER_REASONS = {"a contact grazes in the same interval of the knob": SEQUENCE_IN_INTERVAL,
+                   "a contact grazes within the smallest amplitude": SEQUENCE_NEAR}
 
 #: Amplitudes ξ of the differences, tried in this order; the value on the second side has half of it. With 1e-4 rounding
 #: changes the cubic coefficients of sec2, some hundreds to 20,000, by up to 0.3. A fold needs no second differences.
-_AMPLITUDES = {"fold": (2e-5,), "period_doubling": (1e-4, 2e-5), "neimark_sacker": (1e-4, 2e-5)}
+AMPLITUDES = {"fold": (2e-5,), "period_doubling": (1e-4, 2e-5), "neimark_sacker": (1e-4, 2e-5)}
 #: Largest difference of the two values, relative to their mean, at which the sign is believed: it would take an error
 #: of four times the difference to change it.
 _LARGEST_ERROR = 0.25
@@ -95,7 +98,8 @@ class _Critical:
     p: np.ndarray
 
 
-def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear]) -> NormalForm:
+def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear],
+                amplitudes: Mapping[str, tuple[float, ...]] = AMPLITUDES) -> NormalForm:
     """The normal form of a bifurcation point, from the fixed points on both sides of it.
 
     Parameters
@@ -106,6 +110,8 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear]) 
         About the multiplier that passes the unit circle; of a pair the one above the real axis.
     sides : tuple of MapNear
         The map near a fixed point before and near one after the bifurcation, so near that their coefficients agree.
+    amplitudes : mapping of str to tuple of float
+        For every kind, the amplitudes ξ of the differences, tried in this order until one decides.
     """
     found = NormalForm(NOT_DECIDED)
     try:
@@ -116,7 +122,7 @@ def normal_form(kind: str, multiplier: complex, sides: tuple[MapNear, MapNear]) 
         return NormalForm(NOT_DECIDED, reason=str(obstacle))
     if kind == "fold":  # the sign of a depends on that of q
         critical[1] = _alike(critical[1], critical[0])
-    for amplitude in _AMPLITUDES[kind]:
+    for amplitude in amplitudes[kind]:
         try:
             found = _judged(kind, *(_COEFFICIENTS[kind](side, one, size) for side, one, size in
                                     zip(sides, critical, (amplitude, 0.5 * amplitude), strict=True)))

@@ -16,7 +16,7 @@ import numpy as np
 from ...checkpoints import Kept, digest_of
 from .axis import STATIC_OVERLAP, KnobAxis
 from .branch import Branch
-from .normal_forms import NormalForm
+from .normal_forms import EARLIER_REASONS, NormalForm
 from .point import BranchPoint
 from .special import SpecialPoint
 from .walk import Arm
@@ -53,7 +53,7 @@ class OrbitCheckpoints:
         self._written[arm.direction] = len(arm.points), len(arm.special)
         self.kept.add({"period": period, "direction": arm.direction, "first": [points, special],
                        "points": [_as_json(point) for point in arm.points[points:]],
-                       "special": [_special_as_json(one) for one in arm.special[special:]],
+                       "special": [special_as_json(one) for one in arm.special[special:]],
                        "step": arm.step.hex(), "ended": arm.ended, "reason": arm.reason})
 
     def begin(self, branch: Branch) -> None:
@@ -74,7 +74,7 @@ class OrbitCheckpoints:
                 arm = arms.setdefault(record["direction"], Arm(record["direction"], []))
                 if record["first"] == [len(arm.points), len(arm.special)]:
                     arm.points += [_point(one) for one in record["points"]]
-                    arm.special += [_special(one) for one in record["special"]]
+                    arm.special += [special_from_json(one) for one in record["special"]]
                     arm.step, arm.ended, arm.reason = float.fromhex(record["step"]), record["ended"], record["reason"]
                     period = record["period"]
         arms = {direction: arm for direction, arm in arms.items() if arm.points}
@@ -106,16 +106,20 @@ def _point(record: dict[str, Any]) -> BranchPoint:
     return BranchPoint(**{**record, **arrays, "multipliers": multipliers, "residuals": tuple(record["residuals"])})
 
 
-def _special_as_json(one: SpecialPoint) -> dict[str, Any]:
+def special_as_json(one: SpecialPoint) -> dict[str, Any]:
+    """A special point as JSON has it; `special_from_json` gives it back to the last bit."""
     multiplier = None if one.multiplier is None else [complex(one.multiplier).real, complex(one.multiplier).imag]
     return {"kind": one.kind, "knob": one.knob, "interval": list(one.interval), "before": _as_json(one.before),
             "after": _as_json(one.after), "multiplier": multiplier, "contact": one.contact, "event": one.event,
             "normal_form": None if one.normal_form is None else asdict(one.normal_form)}
 
 
-def _special(record: dict[str, Any]) -> SpecialPoint:
+def special_from_json(record: dict[str, Any]) -> SpecialPoint:
+    """The special point that `special_as_json` made a record of."""
     multiplier = None if record["multiplier"] is None else complex(*record["multiplier"])
     form = record.get("normal_form")  # earlier versions had none
+    if form:
+        form = {**form, "reason": EARLIER_REASONS.get(form["reason"], form["reason"])}
     return SpecialPoint(**{**record, "interval": tuple(record["interval"]), "before": _point(record["before"]),
                            "after": _point(record["after"]), "multiplier": multiplier,
                            "normal_form": NormalForm(**form) if form else None})

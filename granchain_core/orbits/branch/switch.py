@@ -38,7 +38,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
     twice = BranchEquations(branch.axis, 2 * branch.period, stop)
     foot = special.before
     z = once.point(foot.x, foot.knob)
-    direction = np.append(_eigenvector(once, foot.x, foot.knob), 0.0)
+    direction = np.append(doubling_direction(once, foot.x, foot.knob), 0.0)
     tried = []
     for distance in _DISTANCES:
         try:
@@ -55,7 +55,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
                         f"{branch.axis.text(special.knob)}: {tried[-1]}", "no-convergence")
 
 
-def _eigenvector(equations: BranchEquations, x: np.ndarray, value: float) -> np.ndarray:
+def doubling_direction(equations: BranchEquations, x: np.ndarray, value: float) -> np.ndarray:
     """Unit eigenvector of the multiplier nearest to −1."""
     found, vectors = np.linalg.eig(equations.stroboscopic_map(value)(x).derivative)
     vector = np.real(vectors[:, np.argmin(np.abs(found + 1.0))])

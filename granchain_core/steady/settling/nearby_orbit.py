@@ -59,7 +59,7 @@ _SLOW_DIRECTION = 0.3
 _ENLARGED_LENGTH = 3e-3
 #: [period n] An orbit that is back within this, relatively, after a part of its period has that shorter period. The
 #: fixed-step map is known less well than the one of `granchain_core/orbits/stroboscopic_map.py`.
-_RETURN_DISTANCE = 1e-6
+_SAME_ORBIT_DISTANCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +153,7 @@ def orbit_of(scene: Scene, period: int, x: np.ndarray, stop: Stop) -> NearbyOrbi
     if found is None:
         return None
     parts = {n: FiniteDifferenceMap(scene, n, stop) for n in range(1, period) if period % n == 0}
-    for shorter in shorter_periods(lambda n: parts[n](found.x), found.x, period, _RETURN_DISTANCE):
+    for shorter in shorter_periods(lambda n: parts[n](found.x), found.x, period, _SAME_ORBIT_DISTANCE):
         again = fixed_point(parts[shorter], found.x)
         if again is not None:
             return NearbyOrbit(parts[shorter], again, x, again.modulus)
