@@ -25,8 +25,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--data", action="append", default=[], metavar="FILE",
                         help="a measured curve, or a series; several series at once, each with its --at")
     parser.add_argument("--at", action="append", type=number, default=[], metavar="f",
-                        help="drive frequency of a series [Hz]; once for each --data, in their order; without it the "
-                             "scene's f")
+                        help="drive frequency of a series [Hz]; once for each --data, in their order; for one series "
+                             "without it the scene's f")
     parser.add_argument("--features", metavar="paper", help="the peaks and valleys that the paper states, in place of "
                                                             "--data")
     parser.add_argument("--free", action="append", default=[], metavar="NAME=low:high",
@@ -56,7 +56,7 @@ def do(arguments: argparse.Namespace) -> None:
     from pathlib import Path
 
     from granchain_core import fit
-    from granchain_core.fit.parameters import per_frequency
+    from granchain_core.fit import per_frequency
 
     chosen = chosen_scene(arguments)
     check_files(arguments)

@@ -1,10 +1,10 @@
 """Fitting a model's parameters to measurements: misfit, search, confidence intervals, verdict."""
 
 from .fit import Fit, fit
-from .parameters import Free
+from .parameters import Free, per_frequency
 from .records import RecordsTarget
 from .targets import CurveTarget, FeatureTarget, SeriesTarget
 from .virtual import virtual_curve, virtual_series
 
-__all__ = ["CurveTarget", "FeatureTarget", "Fit", "Free", "RecordsTarget", "SeriesTarget", "fit", "virtual_curve",
-           "virtual_series"]
+__all__ = ["CurveTarget", "FeatureTarget", "Fit", "Free", "RecordsTarget", "SeriesTarget", "fit", "per_frequency",
+           "virtual_curve", "virtual_series"]

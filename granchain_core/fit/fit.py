@@ -220,6 +220,8 @@ def fit(scene: Scene, target: Target, free: Sequence[Free], design: int = 0, int
     if not 1 <= len(free) <= MOST_FREE or len(set(names)) < len(names) or {"k", "kappa"} <= set(names):
         raise BadInput(f"A fit has 1 to {MOST_FREE} different parameters, of k and kappa only one; not "
                        f"{', '.join(names) or 'none'}.")
+    if "kappa" in names and any(one.at is not None for one in free):
+        raise BadInput("kappa = k/(K√A0) has no one value where each frequency has its own A0; fit k instead.")
     problem = Problem(scene, target, tuple(free), Stop() if stop is None else stop,
                       progress or (lambda _: None), scheduler=scheduler)
     middle = np.full(len(free), 0.5)

@@ -43,7 +43,7 @@ class RecordsTarget:
 
     @property
     def error_freedom(self) -> None:
-        """None: the standard deviation is given, if it is known."""
+        """None: the standard deviation is given, or estimated from the fit; never from repeats."""
         return None
 
     @property

@@ -187,7 +187,7 @@ class SeriesTarget:
 
     @property
     def error_freedom(self) -> None:
-        """None: the standard deviation is given, if it is known."""
+        """None: the standard deviation is given, or estimated from the fit; never from repeats."""
         return None
 
     @property

@@ -1,7 +1,8 @@
 """Long kernel calls divided into parts of some hundredths of a second, between which other computations may run.
 
-A kernel reads the stop flag every 4096 steps, which is milliseconds for eleven beads and seconds for ten thousand. How
-a call is divided depends on the numbers of beads and steps alone, so results do not depend on the machine's speed.
+A kernel reads the stop flag every `STEPS_BETWEEN_STOP_CHECKS` steps (kernels/status.py), which is milliseconds for
+eleven beads and seconds for ten thousand. How a call is divided depends on the numbers of beads and steps alone, so
+results do not depend on the machine's speed.
 """
 
 from __future__ import annotations

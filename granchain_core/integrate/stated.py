@@ -60,7 +60,8 @@ class Computations:
       - the difference of the last two, times a factor;
       - the previous difference, reduced by the method's order, or with error control by the ratio of the tolerances;
       - the typical error of a method with such steps;
-      - the rounding of the steps, times the largest growth of errors that any of the computations showed.
+      - the rounding of the steps, times the largest growth of errors that any of the computations showed;
+      - for the largest forces, the error at jumps (`jump_errors`).
     The first quantity determines how errors grow.
     """
 

@@ -82,7 +82,7 @@ _TABLE = (
                 f"peak and valley elsewhere. (b) Model (5) at 60 Hz with {_micrometres(_AT_60.A0)}. " + _IMAGES,
                 lambda given, stop, progress: computations.response(given, False, stop, progress),
                 ("curve", "series"), (60.0,)),
-    PaperFigure("7", "Force trains at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
+    PaperFigure("7", "Force trains at 90 Hz (anti-resonance) and 100 Hz (model at 50 Hz)",
                 _AMPLITUDES + _IMAGES,
                 lambda given, stop, progress: computations.trains((90.0, 100.0), given, False, stop, progress),
                 ("series",), (90.0, 100.0)),
@@ -97,7 +97,7 @@ _TABLE = (
                 "(b) Model (3) fed with a measured input force or, without one, with that of model (5). " + _IMAGES,
                 lambda given, stop, progress: computations.response(given, True, stop, progress),
                 ("curve", "series"), (60.0,)),
-    PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (1:2 resonance)",
+    PaperFigure("10", "Model (3) at 90 Hz (anti-resonance) and 100 Hz (model at 50 Hz)",
                 "Model (3) from rest, fed with a measured input force or, without one, with that of model (5), and "
                 f"shown after {computations.FOLLOWED_PERIODS} periods. " + _AMPLITUDES +
                 "At 50 Hz this observer is unstable and does not find the chain's motion. " + _IMAGES,

@@ -138,6 +138,15 @@ def _states() -> Numbers:
     return [*(one.run.max_output_force_elastic for one in found), " or ".join(sorted(same))]
 
 
+def _trains() -> Numbers:
+    """The presets at 90 and 50 Hz; then 100 Hz from rest with the amplitudes of `_two_solutions`."""
+    shown = [_settle(STATES[f]) for f in (90.0, 100.0)]
+    twice = scene(STATES[100.0]).evolve(f=100.0)
+    gentle = [settle(chain, rest(chain)) for chain in (twice.evolve(A0=a, kappa=KAPPA) for a in (RIG_AMPLITUDE, 10e-6))]
+    groups = shown, gentle, [settle(twice, rest(twice))]
+    return [" or ".join(sorted({_words(one.regime) for one in group})) for group in groups]
+
+
 def _two_solutions() -> Numbers:
     """At 100 Hz with the rig's amplitude, with one between, and with that of the preset; then the preset at 50 Hz."""
     preset = scene("fig12-100")
@@ -159,7 +168,7 @@ def _contact() -> Numbers:
 _NUMBERS: dict[str, Callable[[], Numbers]] = {
     "scales": _scales, "peaks": _peaks, "dips": _dips, "stop band": _stop_band, "energy": _energy, "mass": _mass,
     "shaker": _shaker, "one amplitude": _one_amplitude, "stiffness": _stiffness, "four amplitudes": _four_amplitudes,
-    "output force": _output_force, "model 3": _model_3, "model 4": _model_4, "states": _states,
+    "output force": _output_force, "model 3": _model_3, "model 4": _model_4, "states": _states, "trains": _trains,
     "two solutions": _two_solutions, "contact": _contact,
 }
 

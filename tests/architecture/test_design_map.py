@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from pathlib import Path
 
 import pytest
-from source import ROOT, imports_in
+from source import ROOT, imports_in, parsed
 
 PAGE = (ROOT / "docs" / "design.md").read_text(encoding="utf-8")
 #: Folder → the folders of its last column.
@@ -22,6 +23,13 @@ FAMILIES = {family: {folder.split("/")[2]: uses for folder, uses in ROWS.items()
                      if re.fullmatch(rf"granchain_core/{family}/\w+", folder)} for family in ("kernels", "steady")}
 #: The core's folders at the top, whose imports the map orders.
 LAYERS = {folder.split("/")[1]: uses for folder, uses in ROWS.items() if re.fullmatch(r"granchain_core/\w+", folder)}
+
+
+#: Powers and factors of Hertz's law: p = 3/2, p + 1, what they are divided by, and those of contact times and waves.
+_POWERS = {1.5, 2.5, 0.4, 0.25, 2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0, -1.0 / 3.0, -1.0 / 6.0}
+_FACTORS = {1.5, 2.5, 0.4}
+#: Files in which such a number means something else: a share of a record's samples, a reserve of time.
+_OTHER_NUMBERS = {"experiment/grid.py", "run/budget.py"}
 
 
 def allowed(layer: str, layers: dict[str, list[str]] = LAYERS) -> set[str]:
@@ -93,3 +101,28 @@ def test_a_folder_uses_no_module_that_uses_it(layer: str) -> None:
     beside = used(layer) & set(MODULES)
     assert "warm" not in beside and not (layer == "kernels" and beside - {"errors"})
     assert not [module for module in beside if layer in MODULES[module]]
+
+
+def constant(node: ast.expr) -> float | None:
+    """The value of an expression of numbers, such as 2.0 / 3.0; None for any other."""
+    try:
+        return float(eval(compile(ast.Expression(node), "", "eval"), {"__builtins__": {}}))
+    except (NameError, TypeError, ValueError, ZeroDivisionError):
+        return None
+
+
+def writes_the_exponent(node: ast.AST) -> bool:
+    """Whether an expression has a power or a factor of Hertz's law."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
+        return constant(node.right) in _POWERS
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        return constant(node.left) in _FACTORS or constant(node.right) in _FACTORS
+    return isinstance(node, ast.Name) and node.id == "three_halves"
+
+
+def test_every_file_that_writes_the_exponent_of_the_contacts_is_on_the_list() -> None:
+    core = ROOT / "granchain_core"
+    listed = set(re.findall(r"`([\w/]+\.py)`", PAGE.partition("### The exponent 3/2\n")[2].partition("\n##")[0]))
+    written = {path.relative_to(core).as_posix() for path in core.rglob("*.py")
+               if any(map(writes_the_exponent, ast.walk(parsed(path))))}
+    assert {name for name in written if not name.startswith("hard/")} - listed == _OTHER_NUMBERS

@@ -42,7 +42,8 @@ def lines_of_docstrings(tree: ast.Module) -> int:
                if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node))
 
 
-def test_an_edit_of_any_kernel_starts_an_empty_cache() -> None:
+def test_the_cache_is_named_by_the_sources_of_all_kernels() -> None:
+    """What changes that hash is tested in tests/kernels/compiling/test_sources.py."""
     from granchain_core.kernels.compiling.cache import CACHE_FOLDER, sources_hash
 
     assert CACHE_FOLDER is not None and sources_hash() in CACHE_FOLDER.name
@@ -66,6 +67,17 @@ def test_code_inlined_by_numba_has_one_caller_or_one_of_each_kind_of_step() -> N
     assert [call for call in calls if call[0] in parts and calls.count(call) > 1] == []
     callers = {name: [caller for called, caller in calls if called == name] for name in parts}
     assert all(1 <= len(found) <= 2 for found in callers.values()), callers
+
+
+def test_a_batch_takes_every_slot_in_the_order_of_its_field() -> None:
+    """`batch_slots` fills `Slots` by place: one that it left out would be None, and the effect absent from curves."""
+    tree = parsed(ROOT / "granchain_core" / "kernels" / "equations" / "motion.py")
+    (slots,) = (node for node in tree.body if isinstance(node, ast.ClassDef) and node.name == "Slots")
+    fields = [node.target.id for node in slots.body if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name)]
+    (function,) = (node for node in tree.body if isinstance(node, ast.FunctionDef) and node.name == "batch_slots")
+    read = [node for node in ast.walk(function) if isinstance(node, ast.Attribute)]
+    assert [node.attr for node in sorted(read, key=lambda node: node.lineno)] == fields
+    assert {ast.unparse(node.value) for node in read} == {"slots"}
 
 
 def test_kernels_take_few_arguments() -> None:

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 import pytest
-from documents import ROOT
+from documents import ROOT, blocks
 from edited_tree import edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-command.md"
@@ -19,9 +19,22 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_page_edits_five_files_and_writes_one() -> None:
-    edits, new = files_of(PAGE)
+    edits, new = files_of(PAGE, until="## Add an option\n")
     assert (len(edits), len(new)) == (5, 1)
     assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a command: edit 5 files, write 1"
+
+
+def test_an_option_edits_four_files_and_writes_one() -> None:
+    before = len(blocks(PAGE, until="## Add an option\n"))
+    files = [block.path for block in blocks(PAGE)[before:]]
+    assert len(files) == len(set(files)) == 4 + 1
+    assert "An option edits 4 files and writes or edits one of tests." in PAGE.read_text(encoding="utf-8")
+
+
+def test_the_option_passes_its_tests(tree: Path) -> None:
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/cli/test_beads.py",
+                     "tests/cli/test_json_keys.py::test_the_keys_are_those_of_the_page[beads, one]")
+    assert printed.startswith("....") and "F" not in printed
 
 
 def test_the_new_command_prints_its_result(tree: Path) -> None:

@@ -15,8 +15,16 @@ import pytest
 from granchain_core import Amplitude, BadInput, Cancelled, Fit, Stop, fit, resonance_curve, scene, settle
 from granchain_core.experiment import Feature, Measured, Series, read_data
 from granchain_core.experiment.measured import VIRTUAL
-from granchain_core.fit import CurveTarget, FeatureTarget, Free, SeriesTarget, virtual_curve, virtual_series
-from granchain_core.fit.parameters import free_of, per_frequency, stiffened, with_values
+from granchain_core.fit import (
+    CurveTarget,
+    FeatureTarget,
+    Free,
+    SeriesTarget,
+    per_frequency,
+    virtual_curve,
+    virtual_series,
+)
+from granchain_core.fit.parameters import free_of, stiffened, with_values
 from granchain_core.fit.search import Problem
 from granchain_core.fit.targets import FAILED, SCATTER, extrema
 from granchain_core.fit.trains import Train
@@ -170,6 +178,7 @@ def test_contacts_become_stiffer_and_nothing_else() -> None:
 
 @pytest.mark.parametrize(("free", "sentence"), [
     ([], "1 to 30 different parameters"), ([Free("k", 1, 2), Free("kappa", 1e-3, 1e-2)], "of k and kappa only one"),
+    ([Free("kappa", 1e-3, 1e-2), Free("A0@60", 1e-6, 1e-5)], "kappa = .* has no one value"),
     ([FREE[0], FREE[0]], "different"), (per_frequency(FREE, FREQUENCIES), "9 data and priors do not determine 11"),
 ])
 def test_what_cannot_be_fitted_is_refused(free: list[Free], sentence: str) -> None:

@@ -14,8 +14,7 @@ from app.pictures.fit import fit as drawn
 from app.pictures.theme import THEMES
 from granchain_core import Amplitude, BadInput, Fit, Scene, Stop, fit, save, scene
 from granchain_core.experiment import Series
-from granchain_core.fit import Free, RecordsTarget, SeriesTarget, virtual_series
-from granchain_core.fit.parameters import per_frequency
+from granchain_core.fit import Free, RecordsTarget, SeriesTarget, per_frequency, virtual_series
 from granchain_core.fit.search import Target
 from granchain_core.fit.targets import Evaluation
 

@@ -30,7 +30,7 @@ KNOWN: dict[str, dict[str, object]] = {
     "dimer": {"dimer": 0.4}, "taper": {"taper": 0.7}, "soft-wall": {"wall": 0.1}, "rigid-wall": {"wall": "rigid"},
     "struck": {"drive": "rest", "strike": 0.01},
 }
-#: Of these dop853-root knows none yet: the tension cut, and any effect that is added, with its usual values.
+#: Of the added ones dop853-root knows none yet: the tension cut, and any new effect, with its usual values.
 CHAINS = KNOWN | {effect.name: dict(effect.usual) for effect in EFFECTS if effect.name not in (*KNOWN, "dashpot")}
 #: Chains that a batch or a method's vectors for long chains may know: one with each effect.
 WITH_EFFECT = CHAINS | {"dashpot": {}}
