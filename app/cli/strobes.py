@@ -49,14 +49,17 @@ def do(arguments: argparse.Namespace) -> None:
     if arguments.json:
         show_json(_json(found, arguments.bead))
         return
-    print(f"{knob:>12}  distinct  regime")
+    print(f"{knob:>12}  distinct    error  regime")
     for point in found.points:
-        print(f"{point.value:12.6g}  {point.distinct(arguments.bead):8d}  {point.failure or point.regime.sentence}")
+        error = "–" if point.strobe_error is None else f"{point.strobe_error:.1e}"
+        print(f"{point.value:12.6g}  {point.distinct(arguments.bead):8d}  {error:>7}  "
+              f"{point.failure or point.regime.sentence}")
 
 
 def _json(found: StrobeDiagram, bead: int) -> dict[str, Any]:
     return {"knob": found.knob, "start": found.start, "bead": bead, "values": [point.value for point in found.points],
             "regime": [point.regime.name for point in found.points],
             "period": [point.regime.period for point in found.points],
+            "strobe_error": [point.strobe_error for point in found.points],
             "displacement": [point.strobes[:, 0, bead - 1].tolist() for point in found.points],
             "velocity": [point.strobes[:, 1, bead - 1].tolist() for point in found.points]}

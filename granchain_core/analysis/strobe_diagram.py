@@ -1,8 +1,8 @@
 """The bifurcation diagram: a bead's states once per drive period (strobes) over a knob.
 
-At each value of the knob the chain settles (regime, with its evidence), and its next strobes are kept: n points of an
-orbit of period n, a closed curve seen from the side, or the many points of chaos. Where sweeps up and down differ,
-more than one attractor exists.
+At each value of the knob the chain settles (regime, with its evidence), and strobes are kept: the n points of an orbit
+of period n, refined to the scene's accuracy and repeated, or the next points of a motion that does not repeat, a closed
+curve seen from the side or the many points of chaos. Where sweeps up and down differ, more than one attractor exists.
 """
 
 from __future__ import annotations
@@ -15,22 +15,30 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..input_checks import numbers_in, unknown_name, whole_number
-from ..integrate.methods import FIXED_STEP
+from ..integrate import Engine
+from ..integrate.methods import typical_error
+from ..integrate.safety_factors import IRREGULAR
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..scene import Scene
 from ..scene.given import require_scene
 from ..state import State
+from ..steady.batch.starts import methods_alone
 from ..steady.batch.threads import on_all_cores
 from ..steady.curve.order import CURVE_STARTS, coarse_first
-from ..steady.settling.advance import run_until_settled
+from ..steady.settling.advance import SettlingRun, run_until_settled
+from ..steady.settling.refine_orbit import refined_orbit
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, provenance, regime_columns
-from ..tables.provenance import Attribute
+from ..tables.provenance import Attribute, or_nan
 from ..tables.words import evidence_columns, state_columns
 
 #: Strobes closer than this part of the largest are one.
 _APART = 1e-3
+#: An orbit is refined to this part of the accuracy asked for, because the error of its strobes is stated with a factor.
+_REFINED_PART = 0.1
+#: What the error of a value's strobes is.
+_ERROR = "largest error of a strobe over the largest displacement or velocity, NaN where none is stated"
 #: Most values of the knob.
 MOST_VALUES = 20_000
 #: Most strobes at each.
@@ -41,7 +49,9 @@ MOST_STROBES = 10_000
 class StrobePoint:
     """The strobes at one value of the knob: displacement and velocity of every bead at phase 0, (P, 2, N) [m, m/s].
 
-    `failure` is a sentence where the computation failed; there are no strobes then.
+    `failure` is a sentence where the computation failed; there are no strobes then. `strobe_error` is the largest error
+    of a displacement over the largest of them, or of a velocity over the largest velocity; None where the motion is not
+    periodic or its orbit is not known to 1e-3. `state` is where the next value begins if the state is carried along.
     """
 
     value: float
@@ -49,6 +59,7 @@ class StrobePoint:
     strobes: np.ndarray
     state: State | None = None
     failure: str = ""
+    strobe_error: float | None = None
 
     def distinct(self, bead: int) -> int:
         """How many of the bead's displacements differ by more than a thousandth of the largest."""
@@ -104,24 +115,33 @@ class StrobeDiagram(Labelled):
         strobes = axis("strobe", np.arange(most), "1", "number of the strobe, one a drive period")
         failures = np.array([point.failure for point in self.points], dtype=object)
         regimes = [point.regime for point in self.points]
+        errors = np.array([or_nan(point.strobe_error) for point in self.points])
         return (Table("strobes", {**knob, **strobes, **bead_axis(self.scene.N)}, {
             **state_columns(states[:, :, 0], states[:, :, 1], (self.knob, "strobe", "bead")),
             **regime_columns(regimes, self.knob)}, (self.knob, "strobe")),
             Table("values", knob, {**regime_columns(regimes, self.knob), **evidence_columns(regimes, self.knob),
+                                   "strobe_error": Column(errors, (self.knob,), "1", _ERROR),
                                    "failure": Column(failures, (self.knob,), "", "why there are no strobes")}))
 
     def attributes(self) -> dict[str, Attribute]:
-        """Knob and start, and where it comes from."""
-        return {**provenance(self.scene, FIXED_STEP, None), "knob": self.knob, "start": self.start}
+        """Knob and start, and where it comes from; `accuracy_reached` is the largest error of a strobe."""
+        method = f"{methods_alone(self.scene)} value by value"
+        return {**provenance(self.scene, method, self._largest_error()), "knob": self.knob, "start": self.start}
+
+    def _largest_error(self) -> float | None:
+        """The largest error of a strobe, None where none is stated."""
+        return max((point.strobe_error for point in self.points if point.strobe_error is not None), default=None)
 
     def summary(self) -> list[str]:
-        """The range of the knob, and what kinds of motion there are."""
+        """The range of the knob, what kinds of motion there are, and the largest error of a periodic one."""
         if not self.points:
             return ["no values"]
         unit, low, high = QUANTITIES[self.knob].unit, self.points[0].value, self.points[-1].value
         counts = Counter(f"period {p.regime.period}" if p.regime.period else p.regime.name for p in self.points)
+        error = self._largest_error()
         return [f"{len(self.points)} values of {self.knob}, {low:g} to {high:g} {unit}, start: {self.start}",
-                ", ".join(f"{count} {name}" for name, count in sorted(counts.items()))]
+                ", ".join(f"{count} {name}" for name, count in sorted(counts.items())),
+                *([] if error is None else [f"relative error of periodic strobes: at most {error:.1e}"])]
 
 
 def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray, start: str = "up", keep: int = 60,
@@ -148,7 +168,7 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
     Returns
     -------
     StrobeDiagram
-        Strobes and regime at each value.
+        Strobes, regime, and the error of the strobes where it is periodic, at each value.
 
     Raises
     ------
@@ -204,9 +224,30 @@ def _carried(chains: Iterable[tuple[float, Scene]], keep: int, stop: Stop | None
 def _point(value: float, chain: Scene, start: State | None, keep: int, stop: Stop | None) -> StrobePoint:
     try:
         settling = run_until_settled(chain, start, stop)
-        strobes = settling.engine.periods(keep)[0][1:]
+        engine, strobes, error = _refined(settling) or (settling.engine, settling.engine.periods(keep)[0][1:], None)
     except NumbersFailed as failed:
         return StrobePoint(value, Regime.unsettled(0), np.zeros((0, 2, chain.N)), start, failed.sentence)
     scales = settling.engine.scaled.scales
     units = np.array([scales.length, scales.velocity])[:, None]
-    return StrobePoint(value, settling.regime, strobes * units, settling.engine.state)
+    kept = np.resize(strobes, (keep, *strobes.shape[1:])) * units  # those of an orbit are repeated
+    return StrobePoint(value, settling.regime, kept, engine.state, strobe_error=error)
+
+
+def _refined(settling: SettlingRun) -> tuple[Engine, np.ndarray, float | None] | None:
+    """The strobes (n, 2, N) of an orbit to the scene's accuracy, with their error: integration plus distance from it.
+
+    None where the motion is not periodic, or its orbit is not known to `_APART`. An error e of the n-period map moves
+    its fixed point by e/(1 − |μ|).
+    """
+    regime = settling.regime
+    if regime.period is None:
+        return None
+    coarse, distance = refined_orbit(settling, _REFINED_PART * settling.scene.accuracy)
+    finer = Engine(settling.scene, coarse.setting.finer(), 1, stop=settling.stop)
+    finer.start(coarse.state)
+    before, strobes = (engine.periods(regime.period, watch=False)[0][1:] for engine in (coarse, finer))
+    largest = np.abs(strobes).max(axis=(0, 2), keepdims=True)
+    change = float((np.abs(strobes - before) / np.where(largest > 0.0, largest, 1.0)).max())
+    integration = max(IRREGULAR * change, typical_error(finer.setting)) / (1.0 - regime.contraction)
+    error = integration + distance
+    return (finer, strobes, error) if error <= _APART else None

@@ -13,7 +13,7 @@ from __future__ import annotations
 #: Displacements whose error falls by the method's order at every refinement (`Method.converges_regularly`).
 REGULAR = 1.5
 #: Displacements whose error does not: at contact events with the other methods, with tension cut, and between the
-#: samples of a measured force.
+#: samples of a measured force. Also strobes of an orbit, which an error of its map may move by more than 1/(1 − |μ|).
 IRREGULAR = 3.0
 #: Largest forces of a run, on top of the factor above, where no force jumps. Found by trial, as is the next one
 #: (`python -m tests.numerics.forces run`).

@@ -137,7 +137,7 @@ FLOW = "tangent flow (DOP853 in regularised time)"
 
 
 @pytest.mark.parametrize(("kind", "method"), [
-    ("Run", "rk4-split"), ("Orbit", FLOW), ("Branch", FLOW), ("LyapunovSpectrum", FLOW), ("StrobeDiagram", "rk4-split"),
+    ("Run", "rk4-split"), ("Orbit", FLOW), ("Branch", FLOW), ("LyapunovSpectrum", FLOW), ("StrobeDiagram", f"{ALONE} value by value"),
     ("Curve", f"rk4 in batches, {ALONE} point by point"), ("Diagram", f"rk4 in batches, {ALONE} cell by cell"),
     ("Basins", f"rk4 in batches, {ALONE} start by start; orbits by {FLOW}"),
     ("Attractors", f"rk4 in batches, {ALONE} start by start; orbits by {FLOW}"),
