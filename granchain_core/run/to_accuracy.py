@@ -14,7 +14,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..input_checks import seconds_allowed, whole_number
-from ..integrate import Counts, Engine, Setting, fixed_step_setting, method_for
+from ..integrate import Counts, Engine, Setting, following_setting, method_for
 from ..integrate.methods import setting_of
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
@@ -240,7 +240,7 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime
     regime = replace(find_period(attempt.strobes, rounding=noise), periods_run=periods)
     if periods < _FEWEST_PERIODS_CLASSIFIED or attempt.engine.grid_index != 0:
         return regime
-    engine = Engine(scene, fixed_step_setting(), 1, stop=stop)
+    engine = Engine(scene, following_setting(scene.cuts_tension), 1, stop=stop)
     engine.start(attempt.engine.state)
     return regime_without_continuing(engine, attempt.strobes, regime)
 
