@@ -117,6 +117,9 @@ NORMAL_FORMS = (
            "a sign is told that only one of two values has", k.NORMAL_FORMS),
     Mutant("differences-across-a-grazing", _CRITICALITY, "if not np.array_equal(flow.changes[:, 0], between.contacts(point)):",
            "if flow.derivative is None:", "states are used along which a contact closes once more", k.CRITICALITY),
+    Mutant("order-in-the-interval-not-compared", _CRITICALITY,
+           "            and np.array_equal(between.contacts(before), between.contacts(after))):", "            ):",
+           "a normal form is computed across an event that passes phase 0", k.CRITICALITY),
 )
 
 TANGENT_FLOW = FLOW + TANGENTS + ORBITS + NORMAL_FORMS
