@@ -16,7 +16,7 @@ from granchain_core import BadInput, scene, settled
 from granchain_core.hdf5 import seal
 from granchain_core.orbits import Branch, Continuation, SpecialPoint, continue_branch, switch_to_doubled
 from granchain_core.orbits.branch.between import Between
-from granchain_core.orbits.branch.criticality import with_normal_forms
+from granchain_core.orbits.branch.criticality import same_sequence, with_normal_forms
 from granchain_core.orbits.branch.equations import BranchEquations
 from granchain_core.orbits.branch.newton import Near
 from granchain_core.orbits.branch.normal_forms import (
@@ -75,6 +75,11 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     subcritical, supercritical = (the(doubling, "period_doubling", number) for number in (0, 1))
     doubled = Continuation(switch_to_doubled(doubling, supercritical)).run()
     fold, end = the(doubled, "fold"), doubled.special[-1]
+    # μ − 1 = 2aξ along the branch, so two orbits and their multipliers have the same coefficient
+    before, after = (min(point.multipliers, key=lambda z: abs(z - 1.0)).real for point in (fold.before, fold.after))
+    apart = np.sqrt(np.mean((fold.after.x - fold.before.x) ** 2))
+    assert fold.normal_form is not None
+    assert fold.normal_form.coefficient == pytest.approx(abs(after - before) / (2.0 * apart), rel=0.05)
     assert fold.criticality == "generic" and fold.knob > subcritical.interval[1] + 0.5
     assert end.kind == "period_doubling" and end.normal_form is None
     assert end.knob == pytest.approx(subcritical.knob, abs=sum(s.interval[1] - s.interval[0] for s in (end, subcritical)))
@@ -142,8 +147,8 @@ def test_nothing_is_decided_where_a_contact_grazes_in_the_same_interval(doubling
 
 
 @pytest.mark.parametrize("frequency", [228.0, 252.0])
-def test_nothing_is_decided_where_contact_events_change_their_order_and_none_grazes(doubling: Branch, frequency: float) -> None:
-    """At about 228 Hz a closing passes the strobe phase 0; at about 252 Hz a closing and an opening change places."""
+def test_the_order_of_contact_events_counts_where_none_grazes(doubling: Branch, frequency: float) -> None:
+    """At about 228 Hz a closing passes the strobe phase 0; at about 252 Hz events of distant contacts change places."""
     points = doubling.points
     after = next(i for i, point in enumerate(points) if point.knob < frequency)
     special = replace(the(doubling, "period_doubling"), before=points[after - 1], after=points[after])
@@ -155,7 +160,26 @@ def test_nothing_is_decided_where_contact_events_change_their_order_and_none_gra
         place = int(np.flatnonzero(events[0] != events[1])[0])
         assert np.array_equal(events[0][[*range(place), place + 1, place, *range(place + 2, len(events[0]))]], events[1])
     form = again(doubling, special).normal_form
-    assert form is not None and (form.criticality, form.reason) == ("not decided", SEQUENCE_IN_INTERVAL)
+    assert form is not None and (form.reason == SEQUENCE_IN_INTERVAL) == (frequency == 228.0)
+
+
+@pytest.mark.parametrize(("other", "fold", "doubling"), [
+    ([1, -1, 4, -4, 2, -2], True, True),  # as before
+    ([1, 4, -1, -4, 2, -2], True, True),  # contacts 1 and 4 have no common bead
+    ([1, -1, 4, 2, -4, -2], True, True),
+    ([1, 2, -1, 4, -4, -2], True, False),  # contacts 1 and 2 have one
+    ([-1, 4, -4, 2, -2, 1], False, False),  # a closing passes phase 0
+    ([-1, 4, -4, 2, -2], False, False),  # at one end of the period only
+    ([1, -1, 4, -4, 2, -2, 2, -2], False, False),  # contact 2 grazes
+    ([1, -1, 4, -4, 2, -2, 6, -6], False, False),
+])
+def test_a_normal_form_needs_the_sequence_as_far_as_its_derivatives_do(other: list[int], fold: bool, doubling: bool) -> None:
+    sequences = np.array([1, -1, 4, -4, 2, -2]), np.array(other)
+    for one, another in (sequences, sequences[::-1]):
+        assert same_sequence("fold", one, another) == fold
+        assert all(same_sequence(kind, one, another) == doubling for kind in ("period_doubling", "neimark_sacker"))
+    nothing = np.zeros(0)
+    assert same_sequence("fold", nothing, nothing) and not same_sequence("fold", nothing, sequences[1])
 
 
 def test_no_state_is_used_along_which_contacts_close_in_another_order(doubling: Branch) -> None:

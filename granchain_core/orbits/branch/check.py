@@ -14,7 +14,7 @@ from .walk import Arm
 #: Factor by which neighbours may be farther apart than the longest step, because the correction adds to it.
 _DISTANCE_FACTOR = 1.2
 #: Error of Liouville's sum that is allowed beyond the rounding of the multipliers. Motion, tangents and trace share
-#: their steps, so it was at most 2e-8 on branches of sec2, of the rig, with preload and with Tsuji's law.
+#: their steps, so it was at most 8e-7 on branches of sec2, of the rig, with preload and with Tsuji's law.
 _LIOUVILLE_ERROR = 1e-5
 
 

@@ -1,8 +1,9 @@
 """The criticality of a branch's special points: their normal forms (normal_forms.py) from the exact map.
 
 The map is smooth as long as the contacts close and open in the same sequence as along the orbit. Where the sequence
-changes, higher derivatives may not exist: at a grazing the map has terms of order 3/2, and where an event passes the
-strobe phase 0 its second derivative jumps (docs/orbits.md). So no state beyond such a change is used.
+changes, higher derivatives may not exist: at a grazing the map has terms of order 3/2, where an event passes the strobe
+phase 0 its second derivative jumps, and the third where events of neighbouring contacts change their order
+(docs/orbits.md). So no state beyond a change that matters to the coefficient is used.
 """
 
 from __future__ import annotations
@@ -47,22 +48,38 @@ def _normal_form(special: SpecialPoint, between: Between, amplitudes: Mapping[st
                  tolerance: float) -> NormalForm:
     before, after = special.before, special.after
     if not (np.array_equal(before.closings, after.closings)
-            and np.array_equal(between.contacts(before), between.contacts(after))):
+            and same_sequence(special.kind, between.contacts(before), between.contacts(after))):
         return NormalForm(NOT_DECIDED, reason=SEQUENCE_IN_INTERVAL)
     multiplier = 1.0 + 0.0j if special.multiplier is None else special.multiplier
-    sides = _map_near(between, before, tolerance), _map_near(between, after, tolerance)
+    sides = (_map_near(special.kind, between, before, tolerance), _map_near(special.kind, between, after, tolerance))
     return normal_form(special.kind, multiplier, sides, amplitudes)
 
 
-def _map_near(between: Between, point: BranchPoint, tolerance: float) -> MapNear:
-    """The exact map near an orbit, as far as contacts close and open in the same sequence as along the orbit."""
+def same_sequence(kind: str, one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether the derivatives that the normal form of this kind needs are continuous from one sequence to the other.
+
+    A sequence has contact + 1 for each closing, its negative for each opening. The events of each contact must be the
+    same, which no grazing and no event that passes phase 0 leaves; so must those of any two neighbouring contacts, but
+    for a fold, which needs no third derivative.
+    """
+    together = 1 if kind == "fold" else 2
+    last = int(max(abs(one).max(initial=0), abs(other).max(initial=0)))
+
+    def of(events: np.ndarray, first: int) -> np.ndarray:
+        return events[(abs(events) >= first) & (abs(events) < first + together)]
+
+    return all(np.array_equal(of(one, first), of(other, first)) for first in range(1, last + 1))
+
+
+def _map_near(kind: str, between: Between, point: BranchPoint, tolerance: float) -> MapNear:
+    """The exact map near an orbit, as far as contacts close and open in the same sequence (`same_sequence`)."""
 
     def product(x: np.ndarray, columns: np.ndarray) -> np.ndarray:
         try:
             flow = between.equations.reused_map(point.knob, tolerance)(x, directions=columns)
         except NumbersFailed:
             raise NotSmooth(NO_MAP) from None
-        if not np.array_equal(flow.changes[:, 0], between.contacts(point)):
+        if not same_sequence(kind, flow.changes[:, 0], between.contacts(point)):
             raise NotSmooth(SEQUENCE_NEAR)
         return flow.derivative
 
