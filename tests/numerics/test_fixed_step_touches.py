@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from touches import thrown_by_a_touch
+from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, scene
 from granchain_core.integrate import Engine, Setting

@@ -7,7 +7,7 @@ from math import gamma, pi, sqrt
 
 import numpy as np
 import pytest
-from touches import thrown_by_a_touch
+from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, scene
 from granchain_core.laws import LAWS
