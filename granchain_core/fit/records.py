@@ -10,11 +10,11 @@ import numpy as np
 from ..errors import BadInput
 from ..scene import Amplitude, Scene
 from ..stop import Stop
-from .targets import Evaluation, SeriesTarget
+from .targets import Compared, Evaluation, SeriesTarget
 
 
 @dataclass(frozen=True, eq=False)
-class RecordsTarget:
+class RecordsTarget(Compared):
     """Measured series at several drive frequencies; all parameters are common to them but an A0@f.
 
     `records` are series that have a `frequency` each. Either all of them have an error or none.
@@ -40,16 +40,6 @@ class RecordsTarget:
     def sigma_known(self) -> bool:
         """Whether the standard deviations were given."""
         return self.records[0].sigma_known
-
-    @property
-    def error_freedom(self) -> None:
-        """None: the standard deviation is given, or estimated from the fit; never from repeats."""
-        return None
-
-    @property
-    def smooth(self) -> bool:
-        """Whether residuals are smooth between regimes."""
-        return True
 
     @property
     def sizes(self) -> list[int]:

@@ -57,8 +57,22 @@ class Evaluation:
     curve: Curve | None = None
 
 
+class Compared:
+    """What most targets have in common: smooth residuals; errors that are given, or estimated from the fit."""
+
+    @property
+    def smooth(self) -> bool:
+        """Whether residuals are smooth between regimes."""
+        return True
+
+    @property
+    def error_freedom(self) -> int | None:
+        """Degrees of freedom with which repeats tell the standard deviation; None where they do not."""
+        return None
+
+
 @dataclass(frozen=True, eq=False)
-class CurveTarget:
+class CurveTarget(Compared):
     """A measured curve: largest output force over the frequency, `elastic` for its elastic part.
 
     `error` is a standard deviation as a part of each force, used where the measurement has none of its own.
@@ -89,7 +103,7 @@ class CurveTarget:
 
     @property
     def error_freedom(self) -> int | None:
-        """Degrees of freedom with which repeats tell the standard deviation; None where it is given."""
+        """Degrees of freedom of the repeats; None where the standard deviation is given or not known."""
         given = self.error is not None or self.measured.error is not None
         return None if given or not self.sigma_known else self._spare
 
@@ -115,11 +129,6 @@ class CurveTarget:
     def frequencies(self) -> np.ndarray:
         """Where it was measured (F,) [Hz]."""
         return self.measured.frequency
-
-    @property
-    def smooth(self) -> bool:
-        """Whether residuals are smooth between regimes."""
-        return True
 
     def where(self, datum: int) -> str:
         """Where a datum was measured, in words."""
@@ -147,7 +156,7 @@ class CurveTarget:
 
 
 @dataclass(frozen=True, eq=False)
-class SeriesTarget:
+class SeriesTarget(Compared):
     """A measured series: the forces over time, each the mean over its interval.
 
     `error` is the standard deviation of the forces [N], `frequency` that of the drive [Hz], by default the scene's. The
@@ -186,11 +195,6 @@ class SeriesTarget:
         return self.error is not None
 
     @property
-    def error_freedom(self) -> None:
-        """None: the standard deviation is given, or estimated from the fit; never from repeats."""
-        return None
-
-    @property
     def frequencies(self) -> np.ndarray:
         """Empty (0,): all samples of a series have one drive frequency."""
         return np.zeros(0)
@@ -204,11 +208,6 @@ class SeriesTarget:
         """The scene at the series' drive frequency, with that frequency's amplitude where each has its own."""
         scene = scene if self.frequency is None else scene.evolve(f=self.frequency)
         return scene if amplitude is None else scene.evolve(A0=amplitude.at(scene.f))
-
-    @property
-    def smooth(self) -> bool:
-        """Whether residuals are smooth between regimes."""
-        return True
 
     def evaluate(self, scene: Scene, amplitude: Amplitude | None, stop: Stop | None) -> Evaluation:
         """Residuals (C·T,) of every sample, one channel after another, in standard deviations; the model's forces [N].
@@ -242,7 +241,7 @@ class SeriesTarget:
 
 
 @dataclass(frozen=True, eq=False)
-class FeatureTarget:
+class FeatureTarget(Compared):
     """Frequencies of peaks and valleys, each with the same standard deviation [Hz], sought on a grid [Hz].
 
     A model's extremum counts where it stands out (`steady/curve/resonance.py`) and it and both its neighbours on the
@@ -268,11 +267,6 @@ class FeatureTarget:
     def smooth(self) -> bool:
         """Extrema come and go."""
         return False
-
-    @property
-    def error_freedom(self) -> None:
-        """None: the standard deviation is given."""
-        return None
 
     def where(self, datum: int) -> str:
         """Which extremum a datum is, in words."""
