@@ -1,11 +1,10 @@
 """A small picture of every scene for the gallery: its chain, the map of its kinetic energy, the force at its wall.
 
 Every scene of `assets/scenes` is settled from rest with the knobs of its preset, and drawn to its own largest values as
-`assets/gallery/NAME.svg`. Run it when a scene is new or changed, and write its question into
-`assets/gallery/questions.toml`:
+`assets/gallery/NAME.svg`, with a digest of the preset. `python -m tools.update` does it for the scenes that are new or
+changed. To draw any again, or without names all:
 
-    python -m tools.gallery              all scenes
-    python -m tools.gallery sec2 rig     these
+    python -m tools.gallery NAME …
 """
 
 from __future__ import annotations
@@ -14,6 +13,7 @@ import base64
 import struct
 import sys
 import zlib
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from app.frames import Frames, samples_for, settled_frames
 from app.pictures.energies import ENERGY_COLOURS
 from app.pictures.theme import THEMES
 from granchain_core import Scene, scene, scene_names, settle
+from tools.scales import digest_of
 
 #: Rows of a map; a browser smooths nothing.
 ROWS = 72
@@ -38,7 +39,7 @@ def drawn(chain: Scene) -> str:
     frames = settled_frames(settle(chain, samples=samples_for(chain)).run)
     picture = base64.b64encode(energy_png(frames.kinetic_energy)).decode()
     high = BOTTOM - TOP
-    return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 160 100">{bodies(chain)}'
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" {digest_in(chain)} viewBox="0 0 160 100">{bodies(chain)}'
             f'<image x="{LEFT:g}" y="{TOP:g}" width="{RIGHT - LEFT:g}" height="{high:g}" preserveAspectRatio="none" '
             f'style="image-rendering:pixelated" href="data:image/png;base64,{picture}"/>'
             f'<polyline points="{force_line(frames)}" fill="none" stroke="{THEMES["light"].output}" stroke-width="1.4"/>'
@@ -85,13 +86,25 @@ def _largest_of(values: np.ndarray, most: int) -> np.ndarray:
     return np.maximum.reduceat(values, edges, axis=0)
 
 
-def main() -> None:
-    """Write the pictures."""
-    for name in sys.argv[1:] or scene_names():
+def digest_in(chain: Scene) -> str:
+    """The attribute of a picture that says of which preset it is."""
+    return f'data-scene-digest="{digest_of(chain, with_f=True)}"'
+
+
+def changed() -> list[str]:
+    """The scenes without a picture, and those whose picture is of an earlier preset."""
+    paths = {name: FOLDER / f"{name}.svg" for name in scene_names()}
+    return [name for name, path in paths.items()
+            if not path.exists() or digest_in(scene(name)) not in path.read_text(encoding="utf-8")]
+
+
+def main(names: Sequence[str]) -> None:
+    """Write the pictures of these scenes, or of all."""
+    for name in names or scene_names():
         path = FOLDER / f"{name}.svg"
         path.write_text(drawn(scene(name)), encoding="utf-8")
         print(f"{path}: {path.stat().st_size / 1000:.1f} kB")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -2,8 +2,8 @@
 
 Every scene of `assets/scenes` is settled from rest at POINTS equally spaced frequencies of its slider, with the knobs
 of its preset, and at some more around each where a value is largest: a peak lies between them. The largest values over
-all become its table in `assets/scales.toml`, beside a digest of the preset. Run it when a scene is new or changed;
-without names all scenes are computed again:
+all become its table in `assets/scales.toml`, beside a digest of the preset. `python -m tools.update` does it for the scenes
+that are new or changed. To compute any again, or without names all:
 
     python -m tools.scales NAME …
 """
@@ -49,15 +49,15 @@ def over_frequencies(chain: Scene, points: int = POINTS) -> Extremes:
     return found
 
 
-def digest_of(chain: Scene) -> str:
-    """A digest of what a scene's largest values follow from: its physics and its range of f.
+def digest_of(chain: Scene, with_f: bool = False) -> str:
+    """A digest of what a scene's largest values follow from: its physics and its range of f; `with_f` with its own f.
 
     A field at its default is left out, so that a new effect, which is absent by default, changes no digest.
     """
     defaults = {field.name: field.default for field in fields(chain) if field.default is not MISSING}
     physics = {name: value for name, value in chain.to_json().items()
                if name not in _NO_PHYSICS and (name not in defaults or value != defaults[name])}
-    text = json.dumps([physics, slider_range(chain, "f")], sort_keys=True)
+    text = json.dumps([physics, chain.f if with_f else slider_range(chain, "f")], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
@@ -70,6 +70,12 @@ def table(name: str, digest: str, values: dict[str, float]) -> str:
 def _at(chain: Scene, frequency: float) -> Extremes:
     at = chain.evolve(f=frequency)
     return settled_frames(settle(at, samples=samples_for(at)).run).extremes
+
+
+def changed() -> list[str]:
+    """The scenes without a table, and those whose table belongs to an earlier preset."""
+    tables = tomllib.loads(Path(FILE).read_text(encoding="utf-8"))
+    return [name for name in scene_names() if tables.get(name, {}).get(DIGEST) != digest_of(scene(name))]
 
 
 def main(chosen: list[str]) -> None:

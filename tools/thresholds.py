@@ -1,4 +1,4 @@
-"""The tables of thresholds in docs/regimes.md and docs/orbits.md, written by `python -m tools.thresholds`.
+"""The tables of thresholds in docs/regimes.md and docs/orbits.md, which `python -m tools.update` writes.
 
 A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
 it decides, and `[response]` puts it into the table of docs/orbits.md. The comment's first sentence is its row; what
@@ -13,14 +13,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
 
-from tools.generated import with_part
-
-_ROOT = Path(__file__).resolve().parents[1]
-_CORE = _ROOT / "granchain_core"
+_CORE = Path(__file__).resolve().parents[1] / "granchain_core"
 #: A comment with a mark, and the name of the constant below it.
 _MARKED = re.compile(r"^#: \[([a-z, -]+)\] ((?:.*\n)(?:#: .*\n)*)(\w+)\b.*=", re.MULTILINE)
 _REGIMES = ("period n", "followed", "chaotic", "quasi-periodic", "unsettled", "all")
-_COMMAND = "python -m tools.thresholds"
 
 
 @dataclass(frozen=True)
@@ -74,16 +70,3 @@ def table_of_responses() -> str:
     rows.sort(key=lambda one: one.file, reverse=True)
     return "\n".join(["| what | threshold | constant and file |", "|---|---|---|",
                       *(f"| {one.cells}" for one in rows)])
-
-
-def pages() -> dict[Path, str]:
-    """The pages with a table of thresholds, and their text as it should be now."""
-    tables = {"regimes": table_of_regimes(), "orbits": table_of_responses()}
-    paths = {name: _ROOT / "docs" / f"{name}.md" for name in tables}
-    return {path: with_part(path.read_text(encoding="utf-8"), "thresholds", _COMMAND, tables[name])
-            for name, path in paths.items()}
-
-
-if __name__ == "__main__":
-    for page, text in pages().items():
-        page.write_text(text, encoding="utf-8")

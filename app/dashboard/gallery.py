@@ -6,12 +6,12 @@ visitor opens the gallery: nothing of it is part of the page's opening.
 
 from __future__ import annotations
 
-import tomllib
 from functools import cache
 from urllib.parse import quote
 
 from granchain_core import scene, scene_names
 from granchain_core.scene import ASSETS
+from granchain_core.scene.presets import question_of
 
 FOLDER = ASSETS / "gallery"
 
@@ -19,9 +19,8 @@ FOLDER = ASSETS / "gallery"
 @cache
 def cards() -> list[dict[str, str]]:
     """Name, title, sentence, question and picture of every scene; the picture is an address that holds it."""
-    questions = tomllib.loads((FOLDER / "questions.toml").read_text(encoding="utf-8"))
     return [{"name": name, "title": scene(name).title, "sentence": first_sentence(scene(name).look_at),
-             "ask": questions[name], "picture": picture_of(name)} for name in scene_names()]
+             "ask": question_of(name), "picture": picture_of(name)} for name in scene_names()]
 
 
 def first_sentence(text: str) -> str:

@@ -22,7 +22,7 @@ MOST_BYTES = 100_000
 TABLES = {"chain": ("pattern", "impurities", "start_velocity", "reference_overlap"), "knobs": tuple(QUANTITIES),
           "ranges": tuple(QUANTITIES)}
 #: What else a scene file may hold: texts, and its place in the list of scenes.
-WORDS = ("parent", "title", "look_at", "paper", "order")
+WORDS = ("parent", "title", "look_at", "question", "paper", "order")
 _BEAD = tuple(field.name for field in fields(Bead))
 
 

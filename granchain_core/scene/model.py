@@ -13,6 +13,7 @@ from ..input_checks import unknown_name
 from ..quantities import QUANTITIES
 from .checked import checked_fields, checked_values
 from .description import Description
+from .docstring import with_knobs
 from .effects import effects_of, latex
 from .validity import warnings
 
@@ -29,26 +30,6 @@ class Scene(Description):
         Name and title of the scene, what to observe in it, and the section of the paper.
     pattern : tuple of Bead
         Repeated to N beads: two entries make a dimer.
-    N : int
-        Number of beads.
-    f : float
-        Drive frequency [Hz].
-    A0 : float
-        Drive amplitude [m]: the driver is at A0 sin 2πft.
-    D : float
-        Damping coefficient of a contact [N s/m].
-    k : float
-        Stiffness of each bead's foundation spring [N/m].
-    F0 : float
-        Static preload [N].
-    wall : str or float
-        "bead", "same-material", "rigid", or the wall contact's stiffness over that of two beads like the last.
-    dissipation : str
-        "linear", "tsuji", "kuwabara-kono" or "none".
-    tension : str
-        "allowed", or "cut" where a contact must not pull.
-    accuracy : float
-        Requested relative error of the displacements.
     reference_overlap : float
         Overlap at which D is stated for the laws of Tsuji and of Kuwabara and Kono [m].
     impurities : tuple of (int, Bead)
@@ -59,22 +40,12 @@ class Scene(Description):
         Ranges of the sliders.
     preset : tuple
         The knobs of the preset it comes from.
-    dimer : float
-        Mass of beads 2, 4, … over that of the others; beads made heavier or lighter are of the same material.
-    taper : float
-        Radius of the last bead over that of the first; the radii form a geometric sequence.
-    striker : float
-        Factor on the mass of the chain's own first bead.
-    site, impurity : int, float
-        Number of the impurity bead from the chain's own first bead, and the factor on its mass.
-    drive : str
-        "harmonic", or "rest" for a driver that stands still; 1/f is then only the time that is shown.
-    strike : float
-        Velocity of the driver's neighbour at time 0 [m/s], towards the wall.
-    end : str
-        The end that the driver touches: "first", or "last" to drive a chain of unequal beads from its other end. That
-        turns the beads round, with all that `pattern`, `impurities`, `dimer`, `taper`, `striker` and `site` say of
-        them; `strike`, `start_velocity` and results count from the driver.
+
+    Notes
+    -----
+    Every knob of `QUANTITIES` is an attribute too, in SI; `help(Scene)` lists them. Knobs of masses count beads from the
+    chain's own first bead. `end="last"` turns the beads round, with all that `pattern`, `impurities`, `dimer`, `taper`,
+    `striker` and `site` say of them; `strike`, `start_velocity` and results count from the driver.
 
     Examples
     --------
@@ -148,3 +119,6 @@ class Scene(Description):
             k = float(kappa) * new.K * math.sqrt(new.A0)
             new = replace(new, k=QUANTITIES["k"].check(k))  # type: ignore[arg-type]
         return new
+
+
+Scene.__doc__ = with_knobs(Scene.__doc__)

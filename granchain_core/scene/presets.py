@@ -59,6 +59,11 @@ def scene_names() -> tuple[str, ...]:
     return tuple(sorted(names, key=lambda n: (_read(n).get("order", 1000), n)))
 
 
+def question_of(name: str) -> str:
+    """The question that the scene of this name puts to its viewer."""
+    return str(toml_of(ASSETS / "scenes" / f"{name}.toml").get("question", ""))
+
+
 def scene(name: str | os.PathLike[str]) -> Scene:
     """A preset by its name, or the scene in a file.
 

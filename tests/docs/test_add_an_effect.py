@@ -13,8 +13,8 @@ from granchain_core.kernels.compiling.jit import in_simd_kernels
 PAGE = ROOT / "docs" / "add-an-effect.md"
 #: The headings under which the effect is mentioned, and under which the force becomes one that is not linear in the
 #: velocity.
-MENTIONED = "## 5. Mention it: edit 6, and one that a tool writes"
-NONLINEAR = "## 6. A force that is not linear in the velocity: edit 10 of these files, write 1, delete 1"
+MENTIONED = "## 5. Mention it: edit 1, and let a tool write the rest"
+NONLINEAR = "## 6. A force that is not linear in the velocity: edit 6 of these files, write 1, delete 1"
 
 
 @pytest.fixture(scope="module")
@@ -26,12 +26,12 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_the_page_edits_and_writes_as_many_files_as_it_says() -> None:
     edits, new = files_of(PAGE, MENTIONED)
     mentions = files_of(PAGE, NONLINEAR)[0] - edits
-    assert (len(edits), len(new), len(mentions)) == (6, 3, 6)  # and the picture that tools.gallery writes
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 6 files, write 3, mention it in 7"
+    assert (len(edits), len(new), len(mentions)) == (6, 3, 1)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 6 files, write 3, mention it in 1"
     all_edits, all_new = files_of(PAGE)
     assert all_edits <= edits | mentions | new | all_new and len(all_new - new) == 1
     text = PAGE.read_text(encoding="utf-8").partition(NONLINEAR)[2]
-    assert text.count("```diff") == 10 and "Delete `tests/physics/test_drag.py`" in text
+    assert text.count("```diff") == 6 and "Delete `tests/physics/test_drag.py`" in text
 
 
 @pytest.fixture(scope="module")
@@ -55,14 +55,14 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("made", ["tree", "whole"])
 def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
-    """README, model page, share links, scales and the gallery, whose tests fail until step 5, or 6, is done."""
+    """README, model page, share links, scales and the gallery, whose tests fail until the tool was run."""
     tree = request.getfixturevalue(made)
     for part in ("tests/docs", "tests/session", "tests/dashboard", "tests/host.py", "tests/waiting.py", "docs", "tools", "CHANGELOG.md", "CONTRIBUTING.md"):
         copied(part, tree)
-    follow(tree, "-m", "tools.gallery", "drag")
+    written = follow(tree, "-m", "tools.update")
+    assert all(file in written for file in ("README.md", "docs/model.md", "links.json", "[drag]", "drag.svg"))
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/session/test_share.py", "tests/dashboard/test_scales.py::test_every_scene_has_a_scale",
-                     "tests/dashboard/test_scales.py::test_a_scale_is_that_of_the_present_preset",
-                     "tests/dashboard/test_gallery.py::test_every_scene_has_a_picture_and_a_question_and_there_are_no_others",
+                     "tests/dashboard/test_gallery.py::test_every_scene_has_a_picture_and_there_are_no_others",
                      "tests/dashboard/test_gallery.py::test_a_card_has_title_sentence_question_and_its_picture",
                      "tests/docs/test_pages.py::test_every_scene_is_in_the_readme_and_every_knob_in_the_model",
                      "tests/docs/test_knob_table.py")

@@ -1,0 +1,48 @@
+"""Writes again what follows from the code and the scenes: run it after a change of either.
+
+    python -m tools.update
+
+- tables in the docs: thresholds (docs/regimes.md, docs/orbits.md), knobs (docs/model.md), scenes (README.md);
+- a row for every new scene in the test of share links (tools/links.py);
+- for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
+  the gallery (tools/gallery.py).
+
+Tests compare all of them with what this program would write.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from tools import gallery, links, scales
+from tools.generated import with_part
+from tools.lists import table_of_knobs, table_of_scenes
+from tools.thresholds import table_of_regimes, table_of_responses
+
+_ROOT = Path(__file__).resolve().parents[1]
+_COMMAND = "python -m tools.update"
+
+
+def pages() -> dict[Path, str]:
+    """The pages with a table that follows from the code, and their text as it should be now."""
+    tables = {"docs/regimes.md": ("thresholds", table_of_regimes), "docs/orbits.md": ("thresholds", table_of_responses),
+              "docs/model.md": ("knobs", table_of_knobs), "README.md": ("scenes", table_of_scenes)}
+    return {path: with_part(path.read_text(encoding="utf-8"), name, _COMMAND, table())
+            for path, (name, table) in ((_ROOT / page, entry) for page, entry in tables.items())}
+
+
+def main() -> None:
+    """Write everything that is not as it should be, and say what was written."""
+    texts = {**pages(), links.FILE: links.with_new_scenes()}
+    for path, text in texts.items():
+        if path.read_text(encoding="utf-8") != text:
+            path.write_text(text, encoding="utf-8")
+            print(path.relative_to(_ROOT))
+    if names := scales.changed():
+        scales.main(names)
+    if names := gallery.changed():
+        gallery.main(names)
+
+
+if __name__ == "__main__":
+    main()
