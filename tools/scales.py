@@ -2,8 +2,8 @@
 
 Every scene of `assets/scenes` is settled from rest at POINTS equally spaced frequencies of its slider, with the knobs
 of its preset, and at some more around each where a value is largest: a peak lies between them. The largest values over
-all become its table in `assets/scales.toml`, beside a digest of the preset. `python -m tools.update` does it for the scenes
-that are new or changed. To compute any again, or without names all:
+all become its table in `assets/scales.toml`, beside a digest of the preset. `python -m tools.update` does it for the
+scenes that are new or changed. To compute any again, or without names all:
 
     python -m tools.scales NAME …
 """
