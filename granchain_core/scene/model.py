@@ -44,8 +44,8 @@ class Scene(Description):
     Notes
     -----
     Every knob of `QUANTITIES` is an attribute too, in SI; `help(Scene)` lists them. Knobs of masses count beads from
-    the chain's own first bead. `end="last"` turns the beads round, with all that `pattern`, `impurities`, `dimer`, `taper`,
-    `striker` and `site` say of them; `strike`, `start_velocity` and results count from the driver.
+    the chain's own first bead. `end="last"` turns the beads round, with all that `pattern`, `impurities`, `dimer`,
+    `taper`, `striker` and `site` say of them; `strike`, `start_velocity` and results count from the driver.
 
     Examples
     --------
