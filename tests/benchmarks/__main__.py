@@ -6,7 +6,7 @@ import argparse
 import sys
 import time
 
-from granchain_core.kernels import width
+from granchain_core.kernels import batch_size
 
 from . import curve, growth, machine, memory, orbits, startup, trajectory
 from .case import Case
@@ -31,7 +31,7 @@ def heading(core: int | None) -> str:
     """Processor, versions, core and how busy the machine is."""
     known = ", ".join(f"{name} {version}" for name, version in machine.versions().items())
     pinned = "not pinned" if core is None else f"pinned to core {core}"
-    return (f"{machine.processor()}, kernels for {width.machine()}, {pinned}, load {machine.load()}\n"
+    return (f"{machine.processor()}, kernels for {batch_size.machine()}, {pinned}, load {machine.load()}\n"
             f"granchain {machine.commit()}, {known}")
 
 

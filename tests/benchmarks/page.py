@@ -6,7 +6,7 @@ import datetime
 import os
 from pathlib import Path
 
-from granchain_core.kernels import width
+from granchain_core.kernels import batch_size
 
 from . import machine
 
@@ -15,7 +15,7 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
 
 def title() -> str:
     """The heading of this machine's section: processor, how many, and what the kernels are compiled for."""
-    return f"## {machine.processor()}, {os.cpu_count()} cores, kernels for {width.machine()}"
+    return f"## {machine.processor()}, {os.cpu_count()} cores, kernels for {batch_size.machine()}"
 
 
 def replaced(page: str, heading: str, section: str) -> str:

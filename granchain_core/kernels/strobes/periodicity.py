@@ -175,8 +175,10 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
         for q in range(1, n):
             nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
         now = change_between(strobes, scale, run, run - n)
-        if nearer or now > _LARGEST_EXTRAPOLATED_CHANGE:
+        if nearer:
             continue  # a shorter period is being approached, which is why the change over this one is small
+        if now > _LARGEST_EXTRAPOLATED_CHANGE:
+            continue  # still far from an orbit of n periods: how its changes decay says nothing
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
             q = shortest(strobes, scale, n, rounding, settled)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from granchain_core.kernels.width import has_avx512
+from granchain_core.kernels.batch_size import has_avx512
 
 from .. import machine, problem
 from ..case import Case, Peaks

@@ -12,7 +12,7 @@ from granchain_core import Scene, scene
 from granchain_core.errors import NumbersFailed
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.kernels.width import BATCH_SIZE
+from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.scaling import scale_chain
 from granchain_core.stop import Stop
 
