@@ -28,7 +28,7 @@ def check_range(what: str, value: float, low: float, high: float) -> None:
 
 
 def whole_number(what: str, value: object, low: int, high: float) -> int:
-    """`value` as an int, one of NumPy too; `BadInput` if it is no whole number or outside the range."""
+    """`value` as an int, one of NumPy too; `BadInput` if it is not a whole number or outside the range."""
     try:
         number = operator.index(value)  # type: ignore[arg-type]  # what has no index is refused
     except TypeError:
@@ -43,7 +43,7 @@ def whole_number(what: str, value: object, low: int, high: float) -> int:
 
 
 def seconds_allowed(budget: object) -> float:
-    """A budget of computing time [s] as a float; `BadInput` if it is no number from 0. It may be infinite."""
+    """A budget of computing time [s] as a float; `BadInput` if it is not a number from 0. It may be infinite."""
     if not isinstance(budget, numbers.Real) or isinstance(budget, bool) or not float(budget) >= 0.0:
         raise BadInput(f"budget = {str(budget)[:40]} must be a number of seconds, 0 or more; 86400 is a day.")
     return float(budget)
@@ -54,7 +54,7 @@ def series_in(what: str, values: object) -> list[Any]:
     try:
         if isinstance(values, (str, bytes)):
             raise TypeError
-        return list(values)  # type: ignore[call-overload]  # what is no series is refused
+        return list(values)  # type: ignore[call-overload]  # what is not a series is refused
     except TypeError:
         raise BadInput(f"{what} must be a list or an array, not {str(values)[:40]!r}; "
                        f"[{str(values)[:40]}] is a list of one.") from None

@@ -41,8 +41,8 @@ class State:
 def checked_start(scene: Scene, start: State) -> State:
     """`start` with arrays of floats, if a motion of the scene can begin there.
 
-    Raises `BadInput` for what is no state, another number of beads, numbers that are not finite, or a phase outside 0
-    to 1.
+    Raises `BadInput` for what is not a state, another number of beads, numbers that are not finite, or a phase outside
+    0 to 1.
     """
     if not isinstance(start, State):
         raise BadInput(f"A start must be a State, not {type(start).__name__}.")

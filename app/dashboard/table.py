@@ -98,7 +98,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     TabSpec("data", "", taller=True),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
-#: What the resonance curve, which is no page, is called in the message `visible`.
+#: What the resonance curve, which is not a page, is called in the message `visible`.
 CURVE_NAME = "curve"
 
 

@@ -33,7 +33,7 @@
     known = true;
     follow(acted);
   };
-  // A link that only makes the present address more precise is no step of its own.
+  // A link that only makes the present address more precise is not a step of its own.
   const linkRefined = (query) => {
     link = query;
     known = true;

@@ -106,7 +106,7 @@ class Header {
     focused?.focus();
   }
 
-  // The name of the page is no control: it is left out, not moved into the menu.
+  // The name of the page is not a control: it is left out, not moved into the menu.
   putAway(...controls) {
     for (const control of controls) {
       if (control === this.name) control.remove();
@@ -197,7 +197,7 @@ class Header {
   takeTheme(theme) {
     if (this.themed || !theme) return;
     this.themed = true;
-    window.granchain.setTheme(theme, false); // "auto" is no theme and changes nothing
+    window.granchain.setTheme(theme, false); // "auto" is not a theme and changes nothing
   }
 
   showChoices(state) {

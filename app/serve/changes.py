@@ -224,7 +224,7 @@ def is_gathered(model: Model) -> bool:
 def change(model: Model, **values: Any) -> None:
     """Change properties of a model to valid values: Bokeh neither checks nor converts them.
 
-    An equal value is no change. Where nothing is gathered, this is the model's own `update`.
+    An equal value is not a change. Where nothing is gathered, this is the model's own `update`.
     """
     document = _gathering(model)
     if document is None:

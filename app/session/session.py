@@ -151,7 +151,7 @@ def slider_range(current: Scene, name: str) -> tuple[float, float]:
 
 
 def clicked_frequency(current: Scene, frequency: object) -> object:
-    """The frequency of a click on the curve, inside the slider's range; the knob refuses what is no number."""
+    """The frequency of a click on the curve, inside the slider's range; the knob refuses what is not a number."""
     if not is_number(frequency):
         return frequency
     low, high = slider_range(current, "f")

@@ -12,7 +12,7 @@ from granchain_core.scene.effects import Effect
 
 from .message_checks import quoted
 
-#: The one effect that is no knob of the scene: it changes nothing in the motion.
+#: The one effect that is not a knob of the scene: it changes nothing in the motion.
 ACCOUNT_SWITCH = table.ACCOUNT.name
 
 #: The effects in the order in which the page lists them.

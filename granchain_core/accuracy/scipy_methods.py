@@ -112,7 +112,7 @@ def _period(motion: ScipyMotion, solver: Solver, tolerance: float, inner: np.nda
             located: bool) -> tuple[np.ndarray, np.ndarray]:
     """One drive period from the state `inner` (2N,): the state at its end, and the displacements (samples, N).
 
-    The start is no sample. Raises `NumbersFailed` and `Cancelled`.
+    The start is not a sample. Raises `NumbersFailed` and `Cancelled`.
     """
     from scipy import integrate
 

@@ -2,9 +2,9 @@
 
 Equation   F(t) = Σ_m A_m cos(2π m f t / n + φ_m) for a motion of period n: its Fourier series, without a window
            H_m = F̂_out,m / F̂_in,m at the lines at which the input force is not negligible
-Note       The spectrum of a motion without a period is no such series: quasi-periodic motion has lines at combinations
-           of its frequencies, chaotic motion a continuous part. Its record is weighted by a Hann window, and a peak's
-           height is that of a sine that stands alone; two peaks closer than 2 / duration are one.
+Note       The spectrum of a motion without a period is not such a series: quasi-periodic motion has lines at
+           combinations of its frequencies, chaotic motion a continuous part. Its record is weighted by a Hann window,
+           and a peak's height is that of a sine that stands alone; two peaks closer than 2 / duration are one.
            Frequencies above half the sampling frequency are folded back (aliased). `aliasing` estimates the error of
            this: twice the largest difference from the lines computed from every second sample, in the lower half of
            their frequencies.

@@ -45,7 +45,7 @@ def lines_of(states: np.ndarray) -> np.ndarray:
     """Frequencies per period (L,) of the lines of pairs of successive states, in [0, ½], the strongest first.
 
     `states` (P, 2D) are the pairs, without mean; the spectrum is that of the first of each.
-    Slower than a few turns in the record is no line: it is a drift, or what is left of the mean.
+    Slower than a few turns in the record is not a line: it is a drift, or what is left of the mean.
     """
     count = len(states)
     power = np.zeros(_PADDED * count // 2 + 1)
@@ -89,7 +89,7 @@ def basic_frequency(lines: np.ndarray, periods: int) -> Basic | None:
 
 
 def _multiples(lines: np.ndarray, frequency: float, periods: int) -> tuple[int, ...]:
-    """For every line the smallest m, |m| ≤ 15, with line = m · frequency modulo 1; empty if one is no multiple."""
+    """For every line the smallest m, |m| ≤ 15, with line = m · frequency modulo 1; empty if one is not a multiple."""
     candidates = np.array(sorted(range(-_LARGEST_MULTIPLE, _LARGEST_MULTIPLE + 1), key=abs)[1:])
     apart = lines[:, None] - candidates * frequency
     at = np.abs(apart - np.round(apart)) < AT_MULTIPLE / periods

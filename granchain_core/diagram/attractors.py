@@ -79,7 +79,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     Raises
     ------
     BadInput
-        `random_states` or `seed` is no whole number or out of range.
+        `random_states` or `seed` is not a whole number or out of range.
     NumbersFailed
         No start stays finite.
 

@@ -144,7 +144,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     Raises
     ------
     BadInput
-        It is no signal, or has too many knots for the chain, or needs too many steps.
+        It is not a signal, or has too many knots for the chain, or needs too many steps.
     NumbersFailed
         The motion is no longer finite.
     Cancelled

@@ -201,7 +201,7 @@ FORMULAS: dict[str, tuple[tuple[str, ...], int]] = {
 
 
 def formula_signal(text: str, amplitude: float) -> Signal | None:
-    """The signal that NAME=a:b:c describes, with the drive amplitude [m]; None for what is no formula, as a file is.
+    """The signal that NAME=a:b:c describes, with the drive amplitude [m]; None for anything else, such as a file.
 
     Raises `BadInput` where the numbers cannot be used.
     """

@@ -81,7 +81,7 @@ def _is_units(fields: list[str], width: int) -> bool:
 
 
 def _header(fields: list[str], width: int) -> list[str]:
-    """The titles of the columns; words that spaces divided are joined with their units; empty if it is no header."""
+    """The titles of the columns; words that spaces divided are joined with their units; empty if it is not a header."""
     if len(fields) != width:
         joined: list[str] = []
         for one in fields:

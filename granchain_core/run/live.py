@@ -45,7 +45,7 @@ class LiveChain:
     Raises
     ------
     BadInput
-        `samples` is no even whole number.
+        `samples` is not an even whole number.
 
     Examples
     --------
@@ -108,7 +108,7 @@ class LiveChain:
     def advance(self, count: int) -> Run:
         """Advance by `count` samples: count + 1 rows, the present state first; `time` continues from call to call.
 
-        The largest forces are those of this stretch. Raises `BadInput` for a `count` that is no whole number from 1,
+        The largest forces are those of this stretch. Raises `BadInput` for a `count` that is not a whole number from 1,
         `NumbersFailed`, `Cancelled`.
         """
         count = whole_number("count =", count, 1, MOST_RECORDED // self.scene.N)

@@ -97,7 +97,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     Raises
     ------
     BadInput
-        A number of periods or samples is no whole number or out of range, or there is no such method.
+        A number of periods or samples is not a whole number or out of range, or there is no such method.
     OverBudget
         The run would take longer than `budget` from the beginning; it is a `BadInput`.
     NumbersFailed
@@ -236,7 +236,7 @@ def _regime(scene: Scene, attempt: _Attempt, periods: int, stop: Stop) -> Regime
     """The regime shown by these periods; a slow motion is classified by multipliers or its Lyapunov exponent."""
     if not scene.is_driven:
         return Regime.undriven(periods)
-    noise = min(1e-6, 10.0 * scene.accuracy)  # strobes carry the error of the motion; ten times it is no change
+    noise = min(1e-6, 10.0 * scene.accuracy)  # strobes carry the error of the motion; ten times it is not a change
     regime = replace(find_period(attempt.strobes, rounding=noise), periods_run=periods)
     if periods < _FEWEST_PERIODS_CLASSIFIED or attempt.engine.grid_index != 0:
         return regime

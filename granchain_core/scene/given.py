@@ -1,4 +1,4 @@
-"""The refusal of what is no scene, where one was to be given."""
+"""The refusal of what is not a scene, where one was to be given."""
 
 from __future__ import annotations
 

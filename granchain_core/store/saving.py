@@ -35,7 +35,7 @@ def save(result: Labelled, path: str | Path, measured: Measured | Series | None 
     Raises
     ------
     BadInput
-        It is no result, or the file cannot be written.
+        It is not a result, or the file cannot be written.
 
     Examples
     --------

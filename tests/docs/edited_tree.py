@@ -24,7 +24,7 @@ def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:
 
 
 def _lasts(file: Path) -> bool:
-    """Whether a file is no unfinished one of Python's, nor one of pytest's, which knows where its source is."""
+    """Whether a file is not an unfinished one of Python's, nor one of pytest's, which knows where its source is."""
     return "__pycache__" not in file.parts or (file.suffix == ".pyc" and "-pytest-" not in file.name)
 
 

@@ -126,7 +126,7 @@ ASKED = [
     ("a series without units", series("time,velocity"), ("columns",), "no unit"),
     ("which force", series("time_s,force_N"), ("columns",), "series needs"),
     ("F or f", "F,Force (N)\n60,1.5\n", ("columns",), "'F'"),
-    ("V is no velocity", series("time_s,V"), ("columns",), "'V'"),
+    ("V is not a velocity", series("time_s,V"), ("columns",), "'V'"),
     ("a digitiser's project", project(("a", [[60, 1.5]])), ("columns",), "WebPlotDigitizer"),
     ("two datasets", project(("a", [[60, 1.5]]), ("b", [[1, 1]])), ("dataset", "columns"), "'a', 'b'"),
     ("a table of two datasets", "a,,b,\nX,Y,X,Y\n1,2,60,1.5\n3,4,,\n", ("dataset", "columns"), "2 datasets"),

@@ -1,4 +1,4 @@
-"""A long record is no chatter: what is counted against it begins anew each drive period."""
+"""A long record is not chatter: what is counted against it begins anew each drive period."""
 
 from __future__ import annotations
 

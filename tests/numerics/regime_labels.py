@@ -29,7 +29,8 @@ PLACES = (146.42, 233.52, 255.80, 511.94, 832.5, 889.0, 1235.6, 1304.9)
 PERIODS, PATIENCE, REFINE, REPEATS = 5000, 60_000, 4, 1e-9
 #: Longest period looked for.
 LONGEST = 60
-#: An exponent per period that is no chaos and no approach: errors of means over 2,000 periods of a torus are smaller.
+#: An exponent per period that shows neither chaos nor an approach: errors of means over 2,000 periods of a torus are
+#: smaller.
 ZERO = 2e-3
 
 

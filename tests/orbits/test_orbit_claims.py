@@ -16,7 +16,7 @@ pytestmark = pytest.mark.quick
 
 @pytest.mark.parametrize("place", [0, 3])
 def test_displacements_and_w_have_to_come_back(place: int) -> None:
-    """Each relative to its own largest: 1e-3 in one w is no orbit, however well the displacements close."""
+    """Each relative to its own largest: 1e-3 in one w is not an orbit, however well the displacements close."""
     state, change = np.array([1.0, -2.0, 0.1, 0.2]), np.zeros(4)
     change[place] = 1e-3
     assert relative_change(change, state) == pytest.approx(1e-3 / (2.0 if place < 2 else 0.2), rel=1e-14)

@@ -22,7 +22,7 @@ def place(at: float, output: float | None = None, transmission: float = 0.5) -> 
 
 
 def test_a_large_force_beside_a_peak_is_its_flank() -> None:
-    """951.5 Hz, at half a newton on the way up to the 1:3 peak, is no valley."""
+    """951.5 Hz, at half a newton on the way up to the 1:3 peak, is not a valley."""
     assert place(951.5) == Place("flank", 1130.0, 3)
     assert place_words((2, 3), place(951.5)) == "2:3 motion, flank of the 1:3 peak at 1130 Hz"
 
@@ -46,7 +46,7 @@ def test_nothing_is_claimed_while_there_is_no_curve_or_off_it() -> None:
     assert place_words((1, 1), None) == "1:1 motion (the curve is being computed)"
     assert place(1130.0, output=0.2) == Place("")
     assert place_of(F, FORCE, PERIODS, 4000.0, 0.05, 0.5) == Place("")
-    assert place(2900.0).kind != "valley", "a curve's end is no valley: nobody knows how it goes on"
+    assert place(2900.0).kind != "valley", "a curve's end is not a valley: nobody knows how it goes on"
     assert place_words(None, place(1130.0)) == ""
 
 

@@ -1,8 +1,8 @@
 """Hostile messages: a page is opened over a raw websocket and sends what no browser sends.
 
 Messages of our own parts with values that no part sends, changes of properties of all kinds of models, events and
-message types that do not exist, frames that are no messages. Beside it a second visitor moves a knob all the time: each
-of its moves must be answered. A connection that the server closes is opened anew.
+message types that do not exist, frames that are not messages. Beside it a second visitor moves a knob all the time:
+each of its moves must be answered. A connection that the server closes is opened anew.
 """
 
 from __future__ import annotations

@@ -121,7 +121,7 @@ def question_text(question: AnalysisQuestion, fields: Sequence[Field] = ()) -> s
 
 
 def read_question(text: str, chain: Scene) -> tuple[AnalysisQuestion, tuple[Field, ...]]:
-    """Question and fields of the text of a link. Raises `BadInput` for what is no question and no field of it."""
+    """Question and fields of the text of a link. Raises `BadInput` for anything else."""
     name, _, query = text.partition("?")
     question, values = question_of(name[:40]), dict(parse_qsl(query))
     known = tuple(field.name for field in question.fields(chain))
@@ -148,7 +148,7 @@ def _whole(label: str, text: str, low: int, high: int) -> int:
 def _span(label: str, low: str, high: str) -> tuple[float, float]:
     ends = _number(f"{label}, from", low), _number(f"{label}, to", high)
     if not ends[0] < ends[1]:
-        raise BadInput(f"{label}: from {low} to {high} is no range; the first number must be the smaller.")
+        raise BadInput(f"{label}: from {low} to {high} is not a range; the first number must be the smaller.")
     return ends
 
 

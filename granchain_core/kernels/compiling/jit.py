@@ -176,12 +176,12 @@ def by_type_inlined(declared):
 def in_simd_kernels(*folders):
     """Class decorator for slots that these SIMD kernels know, named by their folders; the other ones refuse them.
 
-    A TypeError names what is no such folder.
+    A TypeError names a folder that is not one of these.
     """
     for folder in folders:
         if folder not in _IN_SIMD_KERNELS:
-            raise TypeError(f"in_simd_kernels: {folder!r} is no folder of SIMD kernels; name those with terms of the "
-                            f"slot, of {', '.join(_IN_SIMD_KERNELS)}.")
+            raise TypeError(f"in_simd_kernels: {folder!r} is not a folder of SIMD kernels; name those with terms of "
+                            f"the slot, of {', '.join(_IN_SIMD_KERNELS)}.")
 
     def mark(slot_class):
         for folder in folders:

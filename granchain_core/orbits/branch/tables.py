@@ -17,7 +17,7 @@ from .walk import Arm
 
 #: What is told of a special point without a normal form.
 _NO_NORMAL_FORM = NormalForm("")
-#: The contact of a special point that is no grazing.
+#: The contact of a special point that is not a grazing.
 NO_CONTACT = -1
 
 

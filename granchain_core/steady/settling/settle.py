@@ -46,7 +46,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     Raises
     ------
     BadInput
-        `samples` is no whole number from 1.
+        `samples` is not a whole number from 1.
     NumbersFailed
         The motion is no longer finite.
     Cancelled
@@ -101,7 +101,7 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
     Raises
     ------
     BadInput
-        `samples` is no whole number from 1.
+        `samples` is not a whole number from 1.
     NumbersFailed
         The motion is no longer finite.
     Cancelled

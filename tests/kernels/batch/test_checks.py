@@ -49,7 +49,7 @@ def test_an_orbit_found_by_extrapolation_is_disturbed_before_it_is_believed() ->
     ((checks._PART_LEFT - 0.01) ** (1 / checks._TEST_ORBITS), True),
     ((checks._PART_LEFT + 0.01) ** (1 / checks._TEST_ORBITS), False)])
 def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: bool) -> None:
-    """Sixteen periods after a disturbance of 1e-4: smaller, and the chain is put back; larger, and it was no orbit.
+    """Sixteen periods after a disturbance of 1e-4: smaller, and the chain is put back; larger, and it was not an orbit.
 
     The scale of displacements and velocities is the member's own: others have used the workspace meanwhile.
     """
@@ -59,7 +59,7 @@ def test_an_orbit_is_believed_where_its_disturbance_decays(rate: float, stable: 
     assert checks.judge_disturbance.py_func(state, MEMBER) == stable
     assert state.tested_period[MEMBER] == 0 and (state.slowest_decay[MEMBER] > 0.0) == stable
     assert (state.y[1, MEMBER] == 1.0) == stable
-    assert (state.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was no orbit has no period"
+    assert (state.last_check[MEMBER, checks.CHECK_PERIOD] == 1.0) == stable, "what was not an orbit has no period"
     assert state.scale == pytest.approx(1.0, rel=1e-2)
 
 

@@ -34,5 +34,5 @@ def test_absent_effects_are_known(slots: dict[str, object]) -> None:
 @pytest.mark.parametrize("folders", [("rk5",), (Slot,)], ids=str)
 def test_a_mark_without_folders_of_kernels_is_refused(folders: tuple[object, ...]) -> None:
     """The second is the mark without brackets, which would say that all of them know the slot."""
-    with pytest.raises(TypeError, match="is no folder of SIMD kernels; name those with terms of the slot, of rk4, batch"):
+    with pytest.raises(TypeError, match="is not a folder of SIMD kernels; name those with terms of the slot, of rk4, batch"):
         jit.in_simd_kernels(*folders)
