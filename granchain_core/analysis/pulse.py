@@ -60,10 +60,11 @@ class Pulse(Labelled):
     force : numpy.ndarray, shape (N - 1,)
         That force [N]. A dimer chain's pulse can have two maxima in a contact; this is the larger one.
     speed : numpy.ndarray, shape (N - 1,)
-        Speed of the maximum from the previous contact to the next one [beads/s]; NaN at both ends.
+        Speed of the maximum from the previous contact to the next one [beads/s]; NaN at both ends, and where the
+        maxima of these three contacts do not follow one another: then they are not those of one hump.
     width : numpy.ndarray, shape (N - 1,)
-        Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN at
-        both ends.
+        Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN
+        where the speed is.
     velocity : numpy.ndarray, shape (N,)
         Largest velocity of every bead until the pulse has passed it [m/s].
     sampling_error : float
@@ -105,9 +106,9 @@ class Pulse(Labelled):
         columns = {
             "time": Column(self.time, at, "s", "when the contact's force is largest while the pulse passes"),
             "force": Column(self.force, at, "N", "largest force of the pulse"),
-            "speed": Column(self.speed, at, "1/s", "speed of the maximum in beads per second, NaN at both ends"),
-            "speed_in_metres": Column(self.speed_in_metres, at, "m/s", "speed of the maximum, NaN at both ends"),
-            "width": Column(self.width, at, "1", "width at half height in beads, NaN at both ends")}
+            "speed": Column(self.speed, at, "1/s", "speed of the maximum in beads per second, NaN where it has none"),
+            "speed_in_metres": Column(self.speed_in_metres, at, "m/s", "speed of the maximum, NaN where it has none"),
+            "width": Column(self.width, at, "1", "width at half height in beads, NaN where there is no speed")}
         fastest = {"velocity": Column(self.velocity, ("bead",), "m/s", "largest velocity until the pulse has passed")}
         return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
 
@@ -159,7 +160,8 @@ def pulse(run: Run) -> Pulse:
     found = np.array([_passing(run, int(c)) for c in contacts])
     time, force, half, coarse = found.T
     speed = np.full(scene.N - 1, np.nan)
-    speed[1:-1] = 2.0 / (time[2:] - time[:-2])
+    in_order = (time[:-2] < time[1:-1]) & (time[1:-1] < time[2:])
+    speed[1:-1][in_order] = 2.0 / (time[2:] - time[:-2])[in_order]
     passed = np.searchsorted(run.time, [*time, 2.0 * time[-1] - time[-2]]) + 1  # a bead is fastest before this contact
     velocity = np.array([run.velocity[: passed[i], i].max() for i in range(scene.N)])
     return Pulse(run, contacts, time, force, speed, speed * half, velocity,

@@ -143,6 +143,17 @@ def test_a_pulse_with_two_maxima_in_a_contact_has_the_force_of_the_larger_one() 
     assert two >= 5
 
 
+def test_maxima_that_do_not_follow_one_another_have_no_speed() -> None:
+    """Beads of a tenth of the mass rattle: in some contacts the second hump is the larger one, and comes later than the
+    first hump of the next contact. Such times gave a pulse that ran backwards."""
+    found = pulse(run(scene("impact-dimer").evolve(N=12, dimer=0.1), periods=0, record=1, samples=SAMPLES))
+    steps = np.diff(found.time)
+    in_order = np.array([False, *((steps[:-1] > 0.0) & (steps[1:] > 0.0)), False])
+    assert 0 < in_order.sum() < in_order.size - 2
+    assert np.array_equal(np.isfinite(found.speed), in_order) and np.array_equal(np.isfinite(found.width), in_order)
+    assert found.speed[in_order].min() > 0.0
+
+
 def test_coarse_samples_are_told_by_the_error() -> None:
     """The stated error of the force by sampling bounds the difference from a fine record."""
     fine = pulse(recorded("impact"))
