@@ -247,7 +247,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
         """A server that ends at once."""
 
         io_loop = SimpleNamespace(start=lambda: None, add_callback=lambda _: None)
-        _tornado = SimpleNamespace(wildcard_router=SimpleNamespace(rules=[]))
+        _tornado = SimpleNamespace(wildcard_router=SimpleNamespace(rules=[]), websocket_origins=set())
 
         def start(self) -> None:
             """Nothing to serve."""
