@@ -147,6 +147,24 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
         assert (state["origin"], state["start"]) == (picture.start, "rest")
 
 
+def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever changes on the page between the request and the thread that takes it."""
+    asked, changed = threading.Event(), threading.Event()
+    monkeypatch.setattr(main_picture, "check_first_picture", lambda _: (asked.set(), changed.wait(60)))
+    session = dashboard.session
+    session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    session.set_start("previous")
+    session.picture = before = settle(chain, samples=8)
+    session.energy_account = True
+    dashboard.pictures.compute()
+    assert asked.wait(60)
+    session.picture, session.energy_account, session.insisted = None, False, chain
+    changed.set()
+    dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
+    assert session.picture is not None and session.picture.run.start == GIVEN_STATE
+    assert session.started_from is before.state and session.picture.run.energy_residual is not None
+
+
 def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,
                                                                               monkeypatch: pytest.MonkeyPatch) -> None:
     """Settling would compile what the other process has not finished, inside the server."""
