@@ -93,7 +93,7 @@ class Controller:
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.choose({"value": message.get("theme")})
         self.pinned.show()
-        self._scenes.opened(self._first_start)
+        self._scenes.opened(self._first_start, self.session.curves)
 
     def _visible(self, message: dict[str, Any]) -> None:
         name, visible = message.get("name"), message.get("value")

@@ -202,6 +202,17 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
     assert {one["name"]: one["slot"] for one in panel["effects"]}["dashpot"] == "dissipation"
 
 
+def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashboard) -> None:
+    """Without `curves` an address means those of its scene. A scene from the menu keeps the directions of a sweep."""
+    dashboard.received({"do": "go", "query": "v=1&scene=sec2&curves=rest.up"})
+    assert dashboard.session.curves == "rest.up"
+    dashboard.received({"do": "scene", "name": "rig"})
+    assert dashboard.session.curves == "rest.up.features"
+    dashboard.received({"do": "go", "query": "v=1&scene=sec2"})  # two steps back
+    bar = dashboard.views.curvebar.state
+    assert dashboard.session.curves == "auto" and (bar["rest"], bar["up"], bar["features"]) == (True, False, False)
+
+
 def test_each_page_and_the_curve_hear_whether_somebody_looks(dashboard: Dashboard) -> None:
     told: list[tuple[str, bool]] = []
     for row, page in zip(PAGES, dashboard.pages, strict=True):
