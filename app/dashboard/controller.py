@@ -34,7 +34,10 @@ from .table import CURVE_NAME, PAGES, overlay_names
 
 
 class Controller:
-    """One visitor's dashboard, and the `Host` of its pages. Everything here runs with the document locked."""
+    """One visitor's dashboard, and the `Host` of its pages.
+
+    Everything runs with the document locked, except `next_tick` and the three flags that any thread may read.
+    """
 
     def __init__(self, document: Document, session: Session, start: State | None = None) -> None:
         self._document = document
