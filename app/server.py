@@ -7,7 +7,7 @@ import gc
 import ipaddress
 import secrets
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -35,7 +35,8 @@ from .session.session import Session
 #: The largest message a page sends is an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: How long a thread may keep the interpreter from the event loop [s]; Python's default is 5 ms. The answer to a moved
-#: knob needs it some ten times. Measured with 60 visitors: 95 % answered within 0.84 s, and within 1.55 s with 5 ms.
+#: knob needs it some ten times. Measured with 60 visitors when answers took longer than now (docs/reliability.md): 95 %
+#: came within 0.84 s, and within 1.55 s with 5 ms.
 SWITCH_INTERVAL = 5e-4
 #: Time until a connection that sends nothing is closed [s]; a request's head must have come by then.
 IDLE_TIME = 60
@@ -55,9 +56,9 @@ SESSION_CHECK_MS = 1000
 class Access:
     """Who may use the server; docs/security.md has the meaning of each. By default a visitor on this machine.
 
-    `secret` signs sessions, `origins` are the names under which browsers reach the server (`HOST` or `HOST:PORT`),
-    `sign_in` the keyword arguments of Panel's `serve` for basic authentication or OAuth. Behind a `proxy` the visitor's
-    address is in a header.
+    `secret` signs sessions; without one a server makes a random one. `origins` are the names under which browsers reach
+    the server (`HOST` or `HOST:PORT`), `sign_in` the keyword arguments of Panel's `serve` for basic authentication or
+    OAuth. Behind a `proxy` the visitor's address is in a header.
     """
 
     origins: tuple[str, ...] = ()
@@ -78,16 +79,16 @@ def is_loopback(address: str) -> bool:
         return False
 
 
-def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] | None = None,
-          access: Access | None = None, log_level: str = "warning", before: Callable[[], None] = lambda: None) -> None:
+def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = None, log_level: str = "warning",
+          before: Callable[[], None] = lambda: None) -> None:
     """Serve the page until interrupted; `/liveness` answers health checks. Raises `OSError` for a taken port.
 
     `before` is called when the server is about to listen.
     """
     logs.configure(log_level)
     before()
-    server = server_at(port, address, origins, access)
-    shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else address
+    server = server_at(port, address, access)
+    shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else _in_url(address)
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
     COMPILER.prepare(Session().scene)
     settings.perform_document_validation.set_value(False)  # takes 40 ms of every opening, and tests find what it would
@@ -103,25 +104,24 @@ def serve(port: int = 5006, address: str = "127.0.0.1", origins: Sequence[str] |
     server.io_loop.start()  # until a signal ends the process (app/cli/ending.py); Bokeh's own waits for its threads
 
 
-def server_at(port: int, address: str, origins: Sequence[str] | None = None, access: Access | None = None) -> Server:
+def server_at(port: int, address: str, access: Access | None = None) -> Server:
     """The server, which listens and does not run yet."""
-    access = access or Access(tuple(origins or ()))
-    names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", address))]
-    secret = access.secret or (None if is_loopback(address) else secrets.token_bytes(32))
-    signed: dict[str, Any] = {"sign_sessions": True, "secret_key": secret} if secret else {}
+    access = access or Access()
+    names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
     hosts = frozenset(_name_of(origin) for origin in names)
     rules = Rules(hosts, access.most_visitors, access.embedding)
     server = pn.serve(
         {"/": page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
-        verbose=False, websocket_origin=names, websocket_max_message_size=LARGEST_MESSAGE,
+        verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
+        websocket_max_message_size=LARGEST_MESSAGE,
         extra_patterns=[(r"/liveness", Liveness), (r"/metrics", Metrics)],
         http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
                             "max_body_size": LARGEST_BODY, "xheaders": access.proxy},
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
         unused_session_lifetime_milliseconds=UNCONNECTED_MS, check_unused_sessions_milliseconds=SESSION_CHECK_MS,
         default_handler_class=guarded(ErrorHandler, rules), default_handler_args={"status_code": 404},
-        **signed, **dict(access.sign_in))
-    guard_handlers(server, rules)
+        sign_sessions=True, secret_key=access.secret or secrets.token_bytes(32), **dict(access.sign_in))
+    guard_handlers(server, rules, filter(_is_ipv6, names))
     _count_what_is_shared()
     return server
 
@@ -138,7 +138,16 @@ def _count_what_is_shared() -> None:
                               f"{name}_cache_bytes": partial(getattr, cache, "used")})
 
 
+def _in_url(address: str) -> str:
+    """The address as a URL has it: IPv6 in brackets."""
+    return f"[{address}]" if ":" in address else address
+
+
+def _is_ipv6(origin: str) -> bool:
+    return origin.startswith("[")
+
+
 def _name_of(origin: str) -> str:
-    """The host of HOST, HOST:PORT or [IPv6]:PORT, as Tornado gives it."""
+    """The host of HOST, HOST:PORT or [IPv6]:PORT, without brackets."""
     name = origin.lower().rpartition("://")[2]
     return name[1:].partition("]")[0] if name.startswith("[") else name.partition(":")[0]

@@ -65,9 +65,11 @@ def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
     from ..server import serve as serve_page
 
     secret, sign_in = _secret(arguments), _sign_in(arguments)
-    if not is_loopback(arguments.address) and not (arguments.allow_websocket_origin and secret):
+    exposed = arguments.behind_proxy or not is_loopback(arguments.address)
+    if exposed and not (arguments.allow_websocket_origin and secret):
+        reached = "A server behind a proxy" if arguments.behind_proxy else f"The address {arguments.address}"
         raise BadInput(
-            f"The address {arguments.address} can be reached from other machines, so the server needs the names under "
+            f"{reached} can be reached from other machines, so the server needs the names under "
             "which browsers reach it, and a secret that signs sessions: add --allow-websocket-origin "
             "HOST:PORT, and --generate-secret or --secret-file FILE (docs/security.md).")
     access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.most_visitors,

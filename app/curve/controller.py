@@ -71,16 +71,15 @@ class CurveController:
     def open(self, scene: Scene, selected: str) -> str:
         """Show an empty figure over the frequencies of another scene, with the curves of a link; return which.
 
-        "auto" leaves the curves as they are, and shows the stated features of the paper's rig.
+        An empty text leaves the directions as they are, and shows the stated features of the paper's rig.
         """
         self._computed.clear()
         self._chapters.forget()
         self._figure.clear()
         self._figure.range(*slider_range(scene, "f"))
-        if selected == "auto":
-            self._wanted["features"] = scene.pattern == rig_beads()
-        else:
-            self._wanted = {name: name in selected.split(".") for name in self._wanted}
+        if selected:
+            return self.select(scene, selected)
+        self._wanted["features"] = scene.pattern == rig_beads()
         self._show_features(scene)
         self.changed(scene)
         return self.selection(scene)

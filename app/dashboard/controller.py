@@ -34,7 +34,10 @@ from .table import CURVE_NAME, PAGES, overlay_names
 
 
 class Controller:
-    """One visitor's dashboard, and the `Host` of its pages. Everything here runs with the document locked."""
+    """One visitor's dashboard, and the `Host` of its pages.
+
+    Everything runs with the document locked, except `next_tick` and the three flags that any thread may read.
+    """
 
     def __init__(self, document: Document, session: Session, start: State | None = None) -> None:
         self._document = document
@@ -93,7 +96,7 @@ class Controller:
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.choose({"value": message.get("theme")})
         self.pinned.show()
-        self._scenes.opened(self._first_start)
+        self._scenes.opened(self._first_start, self.session.curves)
 
     def _visible(self, message: dict[str, Any]) -> None:
         name, visible = message.get("name"), message.get("value")

@@ -8,6 +8,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -53,6 +54,19 @@ def _computed(scene: Scene, start: State | None, most: float, stop: TurnFlag) ->
         yield picture
         if time.thread_time() - began > most and not picture.final:
             raise TooLong
+
+
+@dataclass(frozen=True)
+class _Request:
+    """A settled picture as it was asked for: with the document locked, since a worker reads nothing of the session."""
+
+    scene: Scene
+    #: Where the motion begins; None is rest.
+    origin: State | None
+    #: Whether it is computed however long it takes.
+    insisted: bool
+    #: Whether its energy residual is computed, too.
+    account: bool
 
 
 @contextmanager
@@ -122,19 +136,21 @@ class MainPicture:
     def compute(self, start: State | None = None) -> None:
         """Compute a picture for the knobs as they are now, from `start` or from where the visitor chose."""
         self._requested_at = self._requested_at or time.monotonic()
-        if self._session.mode == "live":
+        session, scene = self._session, self._session.scene
+        if session.mode == "live":
             if self.live is not None:
-                self.live.change(self._session.scene)
-            if self._session.playing:
+                self.live.change(scene)
+            if session.playing:
                 self.idle()
             else:
                 self.advance(1)  # a paused chain shows the new knobs, too
         else:
-            self._jobs.submit(partial(self._settled_pictures, self._session.scene, start))
+            self._jobs.submit(partial(self._settled_pictures, _Request(
+                scene, start or session.previous_state(scene), scene == session.insisted, session.energy_account)))
 
     def advance(self, samples: int | None = None) -> None:
         """Take the next step of the live run: `samples`, or as many as the viewing time asks for."""
-        self._jobs.submit(partial(self._live_step, samples))
+        self._jobs.submit(partial(self._live_step, samples, self._session.speed, self._session.insisted))
 
     def run(self) -> Run | None:
         """The motion on the screen as a run."""
@@ -144,25 +160,24 @@ class MainPicture:
 
     # In a worker thread
 
-    def _settled_pictures(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
+    def _settled_pictures(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
         """Pictures on the way to the steady state, once the kernels are compiled."""
-        with _refusing(scene):
-            yield from self._pictures_of(scene, start, stop)
+        with _refusing(request.scene):
+            yield from self._pictures_of(request, stop)
 
-    def _pictures_of(self, scene: Scene, start: State | None, stop: TurnFlag) -> Iterator[Settled]:
-        if scene != self._session.insisted:
+    def _pictures_of(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
+        scene, origin, insisted = request.scene, request.origin, request.insisted
+        if not insisted:
             check_first_picture(scene)
         self._await_first_kernels(scene, stop)
-        origin = start or self._session.previous_state(scene)
-        if origin is not self._session.started_from:
-            self._host.next_tick(self._begun_from, origin)
-        key = None if origin is not None or scene == self._session.insisted else scene
-        most = math.inf if scene == self._session.insisted else WHOLE_PICTURE
+        self._host.next_tick(self._begun_from, origin)
+        key = None if origin is not None or insisted else scene
+        most = math.inf if insisted else WHOLE_PICTURE
         with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, origin, most), stop,
-                                            self._session.cpu_time)) as pictures:
+                                            self._jobs.cpu_time)) as pictures:
             for picture in pictures:
                 yield picture
-        if self._session.energy_account:
+        if request.account:
             with stop.held():
                 picture = with_account(picture, stop)
             yield picture
@@ -187,16 +202,19 @@ class MainPicture:
             if not all(COMPILER.await_piece(scene, piece, stop) for piece in needed):
                 raise Cancelled
 
-    def _live_step(self, samples: int | None, stop: TurnFlag) -> Iterator[LivePicture]:
-        live, scene = self.live, self._session.scene
-        if live is not None:
-            with _refusing(scene):
-                if scene != self._session.insisted:
-                    check_first_picture(scene)
-            self._await_first_kernels(scene, stop)
-            with live.flag.held(anew=True):
-                picture = live.advance(samples) if samples else live.step(self._session.speed)
-            yield picture
+    def _live_step(self, samples: int | None, speed: float, insisted: Scene | None,
+                   stop: TurnFlag) -> Iterator[LivePicture]:
+        live = self.live  # the newest run, should another have begun while this step waited
+        if live is None:
+            return
+        scene = live.scene
+        with _refusing(scene):
+            if scene != insisted:
+                check_first_picture(scene)
+        self._await_first_kernels(scene, stop)
+        with live.flag.held(anew=True):
+            picture = live.advance(samples) if samples else live.step(speed)
+        yield picture
 
     def _keep_newest(self, picture: object) -> None:
         """Keep a new picture for the event loop; it replaces an older picture that a busy loop has not fetched yet."""

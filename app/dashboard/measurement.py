@@ -90,11 +90,14 @@ class MeasurementActions:
             self._tabs.update_state(misfit=None)
 
     def _read(self, message: dict[str, Any]) -> None:
-        self._name, self._answers = str(message.get("name", "data"))[:60], Answers()
-        self._content = _content(message)
+        self._take(str(message.get("name", "data"))[:60], _content(message))
+        self._task.start(partial(self._read_in_thread, self._content, self._name, self._answers))
+
+    def _take(self, name: str, content: bytes) -> None:
+        """Other data: a question about the data before is no longer asked."""
+        self._name, self._content, self._answers = name, content, Answers()
         if self._tabs.state.get("question"):
             self._tabs.update_state(question=None)
-        self._task.start(partial(self._in_thread, self._content, self._answers))
 
     def _answer(self, message: dict[str, Any]) -> None:
         """What the visitor chose: columns as [quantity, number, unit], and words."""
@@ -103,15 +106,17 @@ class MeasurementActions:
             raise BadInput("The choice of columns could not be read; choose the file again.")
         words = [f"{str(quantity)[:20]}={str(number)[:6]}:{str(unit)[:30]}" for quantity, number, unit in columns]
         given = answers_of(words, _word(message, "decimal"), None, _word(message, "dataset"))
+        if not self._tabs.state.get("question"):
+            return  # it was asked about data that have been replaced or removed meanwhile
         before = self._answers
         self._answers = replace(before, columns=given.columns or before.columns,
                                 decimal=given.decimal or before.decimal, dataset=given.dataset or before.dataset)
-        self._task.start(partial(self._in_thread, self._content, self._answers))
+        self._task.start(partial(self._read_in_thread, self._content, self._name, self._answers))
 
-    def _in_thread(self, content: bytes, answers: Answers, job: Job) -> None:
+    def _read_in_thread(self, content: bytes, name: str, answers: Answers, job: Job) -> None:
         """In a worker thread: read the file. A `BadInput` names the line that cannot be read."""
         try:
-            found = _found(content, answers, self._name)
+            found = _found(content, answers, name)
         except Unclear as unclear:
             job.next_tick(self._ask, unclear.question)
             return
@@ -159,7 +164,7 @@ class MeasurementActions:
     def _virtual(self, _: dict[str, Any]) -> None:
         """Make a series of the present scene with simulated sensors, in place of a file."""
         refuse_undriven(self._host.session.scene)
-        self._name, self._answers = VIRTUAL_FILE, Answers()
+        self._take(VIRTUAL_FILE, b"")
         self._task.start(partial(self._record_in_thread, self._host.session.scene))
 
     def _record_in_thread(self, scene: Scene, job: Job) -> None:
@@ -172,8 +177,9 @@ class MeasurementActions:
         rate = _VIRTUAL_RATE * scene.f
         sensors = Sensors(noise=_VIRTUAL_NOISE * largest, velocity_noise=_VIRTUAL_NOISE * scene.A0 * scene.f,
                           bandwidth=0.1 * rate, rate=rate)
-        self._content = virtual_series_csv(scene, _VIRTUAL_PERIODS, sensors, stop=job.stop).encode()
-        self._in_thread(self._content, self._answers, job)
+        content = virtual_series_csv(scene, _VIRTUAL_PERIODS, sensors, stop=job.stop).encode()
+        job.next_tick(self._take, VIRTUAL_FILE, content)
+        self._read_in_thread(content, VIRTUAL_FILE, Answers(), job)
 
     def _too_large(self, _: dict[str, Any]) -> None:
         raise BadInput(_TOO_LARGE)

@@ -14,6 +14,7 @@ from ..curve.sweep import Progress, Sweep
 from ..frames import samples_for
 from ..parts.pinned_trains import SIGNS
 from ..serve.compiler import PICTURE_PIECES
+from ..serve.cpu_time import CpuTime
 from ..serve.queues import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
 from ..session.hooks import Actions
@@ -56,7 +57,7 @@ class Pinned:
         others = self._other_curves()
         missing = [key for key in others if key and key not in self._curves and curve_affordable(key)]
         if missing:
-            self._curve_task.start(partial(self._sweep, missing))
+            self._curve_task.start(partial(self._sweep, missing, self._session.cpu_time))
         elif self._session.pins:
             self._curve_task.cancel()
         with unlocked():
@@ -111,13 +112,13 @@ class Pinned:
             found = settle(pin.scene, start=pin.start, samples=samples_for(pin.scene), stop=job.stop)
             job.next_tick(self._settled, pin, found.run)
 
-    def _sweep(self, missing: Sequence[Scene], job: Job) -> None:
+    def _sweep(self, missing: Sequence[Scene], cpu_time: CpuTime, job: Job) -> None:
         """Compute the curves of pins after the present curve."""
         for key in missing:
             job.compile(key, *PICTURE_PIECES)
             job.give_way(lambda: self._host.busy or self._host.curve_computing)
             found: list[Progress] = []
-            Sweep(key, ["rest"], found.append, lambda: self._host.busy, self._session.cpu_time)(job)
+            Sweep(key, ["rest"], found.append, lambda: self._host.busy, cpu_time)(job)
             job.next_tick(self._swept, key, [point for progress in found for point in progress.points])
 
     # To the browser

@@ -46,21 +46,23 @@ class SceneChanges:
         self._pictures.end_live()
         self._say("")
         if another:
-            session.curves = curves or "auto"
-            self.opened(state)
+            self.opened(state, curves)
             return
         if curves:
             session.curves = self._curves.select(scene, curves)
         self._knobs_turned(state)
 
-    def opened(self, start: State | None = None) -> None:
-        """Another preset is the session's scene: the whole dashboard shows it, its motion from `start`."""
+    def opened(self, start: State | None, curves: str) -> None:
+        """Another preset is the session's scene: the whole dashboard shows it, its motion from `start`.
+
+        `curves` are those of a link; an empty text leaves them as they are.
+        """
         scene = self._session.scene
         self._views.scales.forget()
         self._views.knobs.state = knob_state(scene)
         self._views.tabs.update_state(look_at=scene.look_at, paper=scene.paper)
         self._tell_pages()
-        self._session.curves = self._curves.open(scene, self._session.curves)
+        self._session.curves = self._curves.open(scene, curves)
         self._views.header.show_session(self._session)
         if self._session.mode == "live":
             self._pictures.begin_live()
@@ -94,9 +96,8 @@ class SceneChanges:
 
     def _scene(self, message: dict[str, Any]) -> None:
         self._session.choose(message.get("name"))
-        self._session.curves = "auto"
         self._say("")
-        self.opened()
+        self.opened(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
         """A step back or forward: the session becomes what the address says, its picture to the last digit."""
@@ -107,7 +108,7 @@ class SceneChanges:
             page.address_taken()
         self._pinned.show()
         if session.scene.name != name:
-            self.opened(start)
+            self.opened(start, session.curves)
         else:
             if session.curves != curves:
                 session.curves = self._curves.select(session.scene, session.curves)

@@ -40,7 +40,7 @@ _PEAK_FIGURES = 3
 _SHOWN_PULL = 0.01
 #: Smallest pressure of an always pressed contact that is shown beside the largest force, over that force.
 _SHOWN_PRESSURE = 0.2
-#: Widest titles of the axes. The browser measures them and says whether there is room for them (`ForceTrains.fit`).
+#: Widest titles of the axes. The browser measures them and says whether there is room for them (`set_compact`).
 WIDEST_TITLES = {"left": INPUT.label("mN"), "right": OUTPUT.label("mN")}
 
 

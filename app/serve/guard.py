@@ -9,7 +9,7 @@ from __future__ import annotations
 import logging
 import secrets
 import time
-from collections.abc import Awaitable
+from collections.abc import Awaitable, Iterable
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import Any
@@ -17,7 +17,7 @@ from typing import Any
 from bokeh.server.server import Server
 from bokeh.server.views.session_handler import SessionHandler
 from bokeh.server.views.ws import WSHandler
-from bokeh.util.token import get_session_id
+from bokeh.util.token import check_token_signature, get_session_id
 from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 
 from .compressed import CompressedFiles
@@ -68,7 +68,8 @@ class Rules:
 
     def serves(self, host: str) -> bool:
         """Whether requests for this host are answered; the names may have Bokeh's wildcards, such as *.example.org."""
-        return not self.hosts or any(fnmatchcase(host.lower(), name) for name in self.hosts)
+        plain = host.lower().strip("[]")  # Tornado leaves the brackets of IPv6, which are a set of letters in a pattern
+        return not self.hosts or any(fnmatchcase(plain, name) for name in self.hosts)
 
     def connects(self, session: str) -> bool:
         """Remember that this session has its connection; False if it had one before."""
@@ -142,13 +143,19 @@ class GuardedSocket(Guard):
     _left = False
 
     def check(self) -> None:
-        """Also refuse a connection without a token of this server, or with one that was used before."""
+        """Also refuse a connection without a token of this server, or with one that was used before.
+
+        Bokeh looks at the signature again, but only after the handshake.
+        """
         super().check()
         offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
         try:
-            session = get_session_id(offered[1])
+            token, secret = offered[1], self.application.secret_key  # type: ignore[attr-defined]
+            session = get_session_id(token) if check_token_signature(token, secret, signed=True) else None
         except Exception:  # a stranger may have written anything there
-            raise HTTPError(403, "no token of ours") from None
+            session = None
+        if session is None:
+            raise HTTPError(403, "no token of ours")
         if not self.rules.connects(session):
             raise HTTPError(403, "a second connection to one session")
 
@@ -216,13 +223,14 @@ def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]
     return type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})
 
 
-def guard_handlers(server: Server, rules: Rules) -> None:
-    """Put a guard before every handler of the server.
+def guard_handlers(server: Server, rules: Rules, origins: Iterable[str] = ()) -> None:
+    """Put a guard before every handler of the server, and allow `origins` that Bokeh's own option refuses: IPv6.
 
     Bokeh's handlers are not public. If a release keeps them elsewhere, this raises `AttributeError`, and the server
     does not start: it must not run without guards.
     """
     application = server._tornado
+    application.websocket_origins.update(origins)
     for rule in application.wildcard_router.rules:
         if isinstance(rule.target, type) and issubclass(rule.target, RequestHandler):
             rule.target = guarded(rule.target, rules)

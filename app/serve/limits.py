@@ -1,4 +1,4 @@
-"""Limits that the command line reads too; docs/security.md has all.
+"""Limits of the number of visitors and of uploads; docs/security.md has all.
 
 The module imports nothing, because the command line reads it before it loads the server.
 """

@@ -135,13 +135,17 @@ class Liveness(RequestHandler):
         self.write({"/liveness": True})
 
 
+#: Tornado's address of somebody whose address it does not know; it counts as private.
+_UNKNOWN = "0.0.0.0"
+
+
 class Metrics(RequestHandler):
     """`/metrics`."""
 
     def get(self) -> None:
         """Answer with the counts as text, to this machine and private networks only."""
-        asking = ipaddress.ip_address(self.request.remote_ip or "0.0.0.0")
-        if not (asking.is_loopback or asking.is_private):
+        asking = ipaddress.ip_address(self.request.remote_ip or _UNKNOWN)
+        if asking.is_unspecified or not asking.is_private:
             raise HTTPError(403, "metrics are for private addresses")
         self.set_header("Content-Type", "text/plain; version=0.0.4; charset=utf-8")
         self.write(METERS.text())

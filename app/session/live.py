@@ -33,11 +33,12 @@ class LivePicture:
 class LiveRun:
     """One chain that keeps running, from rest or from `start`.
 
-    `step` and `advance` are called in a worker thread, everything else by the page. The run holds its `flag` while it
-    computes.
+    `step` and `advance` are called in a worker thread, which reads `scene`, the knobs that the next sample will have;
+    everything else is used by the page. The run holds its `flag` while it computes.
     """
 
     def __init__(self, scene: Scene, cpu_time: CpuTime, start: State | None = None) -> None:
+        self.scene = scene
         self.samples = samples_for(scene)
         self.flag = TurnFlag(cpu_time)
         begin = None if start is None else at_phase_0(scene, start, self.flag)
@@ -55,7 +56,7 @@ class LiveRun:
     def change(self, scene: Scene) -> None:
         """Take over new knobs before the next sample."""
         with self._lock:
-            self._new_scene = scene
+            self.scene = self._new_scene = scene
 
     def reset(self) -> None:
         """Return to rest before the next sample."""

@@ -147,6 +147,24 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
         assert (state["origin"], state["start"]) == (picture.start, "rest")
 
 
+def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever changes on the page between the request and the thread that takes it."""
+    asked, changed = threading.Event(), threading.Event()
+    monkeypatch.setattr(main_picture, "check_first_picture", lambda _: (asked.set(), changed.wait(60)))
+    session = dashboard.session
+    session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    session.set_start("previous")
+    session.picture = before = settle(chain, samples=8)
+    session.energy_account = True
+    dashboard.pictures.compute()
+    assert asked.wait(60)
+    session.picture, session.energy_account, session.insisted = None, False, chain
+    changed.set()
+    dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
+    assert session.picture is not None and session.picture.run.start == GIVEN_STATE
+    assert session.started_from is before.state and session.picture.run.energy_residual is not None
+
+
 def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,
                                                                               monkeypatch: pytest.MonkeyPatch) -> None:
     """Settling would compile what the other process has not finished, inside the server."""
@@ -182,6 +200,17 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
     assert sorted([*(one["slot"] for one in panel["effects"]), *panel["always"]]) == sorted(
         one["slot"] for one in panel["slots"])
     assert {one["name"]: one["slot"] for one in panel["effects"]}["dashpot"] == "dissipation"
+
+
+def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashboard) -> None:
+    """Without `curves` an address means those of its scene. A scene from the menu keeps the directions of a sweep."""
+    dashboard.received({"do": "go", "query": "v=1&scene=sec2&curves=rest.up"})
+    assert dashboard.session.curves == "rest.up"
+    dashboard.received({"do": "scene", "name": "rig"})
+    assert dashboard.session.curves == "rest.up.features"
+    dashboard.received({"do": "go", "query": "v=1&scene=sec2"})  # two steps back
+    bar = dashboard.views.curvebar.state
+    assert dashboard.session.curves == "auto" and (bar["rest"], bar["up"], bar["features"]) == (True, False, False)
 
 
 def test_each_page_and_the_curve_hear_whether_somebody_looks(dashboard: Dashboard) -> None:
@@ -247,7 +276,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
         """A server that ends at once."""
 
         io_loop = SimpleNamespace(start=lambda: None, add_callback=lambda _: None)
-        _tornado = SimpleNamespace(wildcard_router=SimpleNamespace(rules=[]))
+        _tornado = SimpleNamespace(wildcard_router=SimpleNamespace(rules=[]), websocket_origins=set())
 
         def start(self) -> None:
             """Nothing to serve."""

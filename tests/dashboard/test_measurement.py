@@ -217,6 +217,28 @@ def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashb
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
 
 
+def test_a_question_about_other_data_is_not_answered(dashboard: Dashboard) -> None:
+    """The bytes of the file asked about would be read under the name of the virtual experiment."""
+    assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
+    show(dashboard)
+    dashboard.received({"do": "csv-virtual"})
+    assert dashboard.views.tabs.state["question"] is None
+    answer = {"do": "csv-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"}
+    assert "virtual experiment, nothing measured" in after(dashboard, answer, "understood")
+    dashboard.received({"do": "csv-remove"})
+    dashboard.received(answer)
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert not dashboard.views.tabs.state["understood"] and not dashboard.session.sentence
+
+
+def test_a_file_that_is_refused_leaves_the_one_that_is_asked_about(dashboard: Dashboard) -> None:
+    assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
+    dashboard.received({"do": "csv", "name": "other.csv", "content": "???"})
+    dashboard.received({"do": "csv-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"})
+    dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("understood")))
+    assert dashboard.views.tabs.state["understood"].startswith("mine.csv: ")
+
+
 def test_a_series_without_a_force_is_refused(dashboard: Dashboard) -> None:
     rows = "".join(f"{1e-3 * i},{0.1 * i}\n" for i in range(12)).encode()
     assert "without a force" in after(dashboard, sent(b"time_s,velocity_m_s\n" + rows), "misfit")

@@ -16,9 +16,10 @@ from app.server import Access, server_at
 
 
 class Listening:
-    """A signed dashboard in a thread, reached as 127.0.0.1."""
+    """A dashboard in a thread, reached at an address of this machine."""
 
-    def __init__(self, access: Access) -> None:
+    def __init__(self, access: Access, address: str = "127.0.0.1") -> None:
+        self.address = address
         started = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(access, started), daemon=True)
         self._thread.start()
@@ -27,7 +28,7 @@ class Listening:
     def _run(self, access: Access, started: threading.Event) -> None:
         asyncio.set_event_loop(asyncio.new_event_loop())
         self.loop = IOLoop.current()
-        one = server_at(0, "127.0.0.1", access=access)
+        one = server_at(0, self.address, access)
         self.port = one.port
         one.start()
         self.loop.add_callback(started.set)
@@ -45,7 +46,7 @@ class Listening:
 
     def ask(self, path: str = "/", **headers: str) -> tuple[int, dict[str, str], str]:
         """Status, headers and text of an answer."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        connection = http.client.HTTPConnection(self.address, self.port, timeout=60)
         connection.request("GET", path, headers={name.replace("_", "-"): value for name, value in headers.items()})
         answer = connection.getresponse()
         found = answer.status, dict(answer.getheaders()), answer.read().decode(errors="replace")

@@ -3,17 +3,28 @@
 from __future__ import annotations
 
 import json
+import socket
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from listening import Listening
 
 from app import server
 from app.cli import main
 from app.serve.guard import Rules, guard_handlers
-from app.server import is_loopback
+from app.server import Access, is_loopback
 
 _SECRET = b"a secret of this test alone, long enough"
+
+
+def _has_ipv6() -> bool:
+    try:
+        with socket.socket(socket.AF_INET6) as probe:
+            probe.bind(("::1", 0))
+    except OSError:
+        return False
+    return True
 
 
 @pytest.mark.parametrize(("address", "only_here"), [
@@ -23,14 +34,26 @@ def test_which_addresses_are_public(address: str, only_here: bool) -> None:
     assert is_loopback(address) is only_here
 
 
+@pytest.mark.parametrize("public", [["--address", "0.0.0.0"], ["--behind-proxy"]])
 @pytest.mark.parametrize("words", [
     [], ["--allow-websocket-origin", "granchain.example.org"], ["--generate-secret"]])
-def test_a_public_address_needs_origins_and_a_secret(words: list[str], capsys: pytest.CaptureFixture[str],
-                                                     monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_public_server_needs_origins_and_a_secret(public: list[str], words: list[str], capsys: pytest.CaptureFixture[str],
+                                                    monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("BOKEH_SECRET_KEY", raising=False)
-    assert main(["serve", "--address", "0.0.0.0", "--port", "6199", *words]) == 2
+    assert main(["serve", *public, "--port", "6199", *words]) == 2
     said = capsys.readouterr().err
     assert "--allow-websocket-origin" in said and "--generate-secret" in said and "docs/security.md" in said
+
+
+@pytest.mark.skipif(not _has_ipv6(), reason="this machine has no ::1")
+def test_an_address_of_ipv6_is_served_under_its_own_name() -> None:
+    one = Listening(Access(origins=("[2001:db8::7]:443",)), "::1")
+    try:
+        assert one.ask("/")[0] == 200
+        hosts = {"[::1]:5006": 200, "[2001:db8::7]": 200, "[::2]:5006": 421}
+        assert {host: one.ask("/liveness", Host=host)[0] for host in hosts} == hosts
+    finally:
+        one.stop()
 
 
 def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:

@@ -16,6 +16,7 @@ import pytest
 from bokeh.util.token import generate_jwt_token, generate_session_id
 from event_loop import run_async
 from listening import Listening
+from tornado.web import HTTPError
 
 from app import server
 from app.curve.sweep import CURVES_SHARED
@@ -24,6 +25,7 @@ from app.pages.analysis import questions
 from app.serve import guard
 from app.serve.compiler import Compiler
 from app.serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
+from app.serve.meters import Metrics
 from app.serve.queues import LONG
 from app.server import Access
 from app.session import starts
@@ -119,19 +121,26 @@ def test_a_session_has_one_connection(dashboard: Listening) -> None:
     assert dashboard.connect(token) == 403, "a second one, or a replayed token"
 
 
-def test_a_token_of_another_secret_gets_no_session(dashboard: Listening) -> None:
-    for secret in (b"another secret, of a stranger", None):
-        session = generate_session_id(secret_key=secret, signed=secret is not None)
-        token = generate_jwt_token(session, secret_key=secret, signed=secret is not None)
-        status, one = dashboard.open(token)
-        assert status in (101, 403)
-        if status == 101:  # Bokeh looks at the signature after the handshake, and closes
-            one.settimeout(20)
-            rest = b""
-            while more := one.recv(4096):
-                rest += more
-            assert b"ACK" not in rest
-        one.close()
+def strangers_token(secret: bytes | None) -> str:
+    """A token that this server has not made: signed with another secret, or not at all."""
+    session = generate_session_id(secret_key=secret, signed=secret is not None)
+    return generate_jwt_token(session, secret_key=secret, signed=secret is not None)
+
+
+@pytest.mark.parametrize("secret", [b"another secret, of a stranger", None])
+def test_a_token_of_another_secret_gets_no_connection(secret: bytes | None, dashboard: Listening) -> None:
+    """Nor is its session's id remembered: anybody could fill the memory with them."""
+    assert dashboard.connect(strangers_token(secret)) == 403
+
+
+def test_tokens_are_signed_also_where_no_secret_is_given() -> None:
+    """Otherwise anybody who reaches the port could open sessions without a page, and so more than are allowed."""
+    one = Listening(Access())
+    try:
+        assert [one.connect(strangers_token(secret)) for secret in (b"another secret, of a stranger", None)] == [403, 403]
+        assert one.connect(one.token()) == 101
+    finally:
+        one.stop()
 
 
 @pytest.mark.parametrize("token", ["", "nonsense", "a.b", "é", "A" * 5000])
@@ -199,6 +208,19 @@ def test_a_websocket_that_answers_no_ping_is_closed(monkeypatch: pytest.MonkeyPa
         silent.close()
     finally:
         one.stop()
+
+
+@pytest.mark.parametrize(("remote_ip", "allowed"), [
+    ("127.0.0.1", True), ("::1", True), ("10.1.2.3", True), ("fd00::7", True), ("8.8.8.8", False), ("2001:4860::1", False),
+    ("0.0.0.0", False), (None, False)])
+def test_metrics_are_for_known_private_addresses(remote_ip: str | None, allowed: bool) -> None:
+    """Tornado says 0.0.0.0 where it does not know the address."""
+    asked = SimpleNamespace(request=SimpleNamespace(remote_ip=remote_ip), set_header=lambda *_: None, write=lambda _: None)
+    if allowed:
+        Metrics.get(asked)  # type: ignore[arg-type]
+    else:
+        with pytest.raises(HTTPError, match="403"):
+            Metrics.get(asked)  # type: ignore[arg-type]
 
 
 def test_too_large_a_body_is_refused(dashboard: Listening) -> None:

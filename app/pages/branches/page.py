@@ -52,7 +52,6 @@ class BranchesPage(Page):
         self._drawn: list[_Drawn] = []
         self._special: list[tuple[Branch, Any]] = []
         self._rows = BranchRows()
-        self._sent = 0.0
         self._scene: Scene | None = None
         self._begun = self._waits = False
         self.status: Status = "none"
@@ -157,24 +156,22 @@ class BranchesPage(Page):
         self._scene = scene
         self._draw_curve()
         self._say("waiting")
-        self._task.start(lambda job: self._follow(begin, scene, job))
+        self._task.start(lambda job: self._follow_in_thread(begin, scene, job))
 
-    def _follow(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
+    def _follow_in_thread(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
+        """In a worker thread: follow the branches, update the page every `BRANCH_EVERY`, and let pictures go first."""
+        sent = 0.0
         job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, BRANCH_KERNELS)
         job.say("settling")
         for branch in begin(job.stop):
             continuation = Continuation(branch, job.stop)
             job.next_tick(self._add, continuation)
             for _ in continuation:
-                self._grown(job)
+                if time.monotonic() - sent > BRANCH_EVERY:
+                    sent = time.monotonic()
+                    job.next_tick(self._draw)
+                job.give_way()
         job.next_tick(self._draw)
-
-    def _grown(self, job: Job) -> None:
-        """After each orbit: update the page if `BRANCH_EVERY` has passed, and wait while a picture is computed."""
-        if time.monotonic() - self._sent > BRANCH_EVERY:
-            self._sent = time.monotonic()
-            job.next_tick(self._draw)
-        job.give_way()
 
     # With the document locked
 

@@ -61,7 +61,8 @@ class ObserverPage(Page):
             return
         self._asked = False
         session = self._host.session
-        self._task.start(partial(self._work, session.scene, session.picture))
+        wishes, self._wishes = self._wishes, []
+        self._task.start(partial(self._next_in_thread, session.scene, session.picture, self._run, wishes))
 
     def _said(self, status: Status, sentence: str) -> None:
         if status == "compiling":
@@ -71,12 +72,12 @@ class ObserverPage(Page):
         elif self._asked:
             self._more()
 
-    def _work(self, scene: Scene, picture: Settled | None, job: Job) -> None:
-        """In a worker thread: compute one more period of this scene's run."""
+    def _next_in_thread(self, scene: Scene, picture: Settled | None, run: ObserverRun | None, wishes: list[str],
+                        job: Job) -> None:
+        """In a worker thread: compute one more period of this scene's run; `run` is the one so far."""
         job.compile(scene, ADAPTIVE_KERNELS, OBSERVER_KERNELS)
         mine = picture if picture is not None and picture.run.scene.digest == scene.digest else None
-        run, began = self._run, False
-        wishes, self._wishes = self._wishes, []
+        began = False
         if run is None or run.scene.digest != scene.digest or "again" in wishes:
             run, began = ObserverRun(scene, mine, job.stop, None if "again" in wishes else run), True
         run.pair.engine.stop = job.stop
@@ -87,12 +88,11 @@ class ObserverPage(Page):
             if wish != "again":
                 began = True
                 (run.nudge if wish == "nudge" else run.from_rest)()
-        self._run = run
         if not run.in_step or began:
             job.next_tick(self._show, _Moved(run, run.step(), began))
 
     def _show(self, moved: _Moved) -> None:
-        run = moved.run
+        self._run = run = moved.run
         self._view.update_state(**WORDS.of("done"), sentence=run.sentence, predicted=run.predicted,
                                 measured=run.measured)
         self._view.step(moved.step, run.scene, moved.began, run.since, run.predicted)
