@@ -25,8 +25,11 @@ from ..tables.provenance import Attribute
 DISCRETE = 0.9055158
 #: The same of the continuum.
 CONTINUUM = 2.0 / math.sqrt(5.0)
-#: Part of a contact's largest force below which there is no pulse.
+#: Part of a pulse's first maximum in a contact below which the pulse has passed.
 _PART = 0.02
+#: A pulse has passed a contact at the latest so many times later than it takes from there over two contacts, by its
+#: first maxima. The wave from the wall reaches the last two contacts after 2 such times.
+_PASSED = 1.5
 #: Stated error by sampling over the change of the force with every second sample. With F = F₀ − a x² + b x⁴ and the
 #: maximum a distance s from a sample, the parabola is wrong by b s² (h² − s²), so that of the spacing 2h changes it by
 #: 3 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated.
@@ -60,11 +63,10 @@ class Pulse(Labelled):
     force : numpy.ndarray, shape (N - 1,)
         That force [N]. A dimer chain's pulse can have two maxima in a contact; this is the larger one.
     speed : numpy.ndarray, shape (N - 1,)
-        Speed of the maximum from the previous contact to the next one [beads/s]; NaN at both ends, and where the
-        maxima of these three contacts do not follow one another: then they are not those of one hump.
+        Speed of the contacts' first maximum from the previous contact to the next one [beads/s]; NaN at both ends.
     width : numpy.ndarray, shape (N - 1,)
-        Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN
-        where the speed is.
+        Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN at
+        both ends.
     velocity : numpy.ndarray, shape (N,)
         Largest velocity of every bead until the pulse has passed it [m/s].
     sampling_error : float
@@ -106,9 +108,9 @@ class Pulse(Labelled):
         columns = {
             "time": Column(self.time, at, "s", "when the contact's force is largest while the pulse passes"),
             "force": Column(self.force, at, "N", "largest force of the pulse"),
-            "speed": Column(self.speed, at, "1/s", "speed of the maximum in beads per second, NaN where it has none"),
-            "speed_in_metres": Column(self.speed_in_metres, at, "m/s", "speed of the maximum, NaN where it has none"),
-            "width": Column(self.width, at, "1", "width at half height in beads, NaN where there is no speed")}
+            "speed": Column(self.speed, at, "1/s", "speed of the first maximum in beads per second, NaN at both ends"),
+            "speed_in_metres": Column(self.speed_in_metres, at, "m/s", "speed of the first maximum, NaN at both ends"),
+            "width": Column(self.width, at, "1", "width at half height in beads, NaN at both ends")}
         fastest = {"velocity": Column(self.velocity, ("bead",), "m/s", "largest velocity until the pulse has passed")}
         return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
 
@@ -137,8 +139,9 @@ def pulse(run: Run) -> Pulse:
     -------
     Pulse
         Times and largest forces, from a parabola through the largest sample and its neighbours. In a contact the pulse
-        lasts until the force has fallen below 2 % of its largest value; where it never does, as in a precompressed
-        chain, the first maximum counts.
+        lasts until the force has fallen below 2 % of its first maximum, and at most 1.5 times as long as the first
+        maximum takes over the next two contacts, so that the wave from the wall does not count. Where the force never
+        falls so far, as in a precompressed chain, the first maximum counts.
 
     Raises
     ------
@@ -157,35 +160,56 @@ def pulse(run: Run) -> Pulse:
     if scene.N < 3:
         raise BadInput(f"A pulse is followed over at least three beads, and the chain has {scene.N}.")
     contacts = np.arange(1, scene.N)
-    found = np.array([_passing(run, int(c)) for c in contacts])
-    time, force, half, coarse = found.T
+    firsts = [_first_maximum(run, c) for c in range(1, scene.N + 1)]
+    found = np.array([_passing(run, int(c), firsts) for c in contacts])
+    time, force, half, coarse, arrived = found.T
     speed = np.full(scene.N - 1, np.nan)
-    in_order = (time[:-2] < time[1:-1]) & (time[1:-1] < time[2:])
-    speed[1:-1][in_order] = 2.0 / (time[2:] - time[:-2])[in_order]
+    speed[1:-1] = 2.0 / np.where(arrived[2:] > arrived[:-2], arrived[2:] - arrived[:-2], np.nan)
     passed = np.searchsorted(run.time, [*time, 2.0 * time[-1] - time[-2]]) + 1  # a bead is fastest before this contact
     velocity = np.array([run.velocity[: passed[i], i].max() for i in range(scene.N)])
     return Pulse(run, contacts, time, force, speed, speed * half, velocity,
                  _OF_THE_CHANGE * float((np.abs(force - coarse) / force).max()))
 
 
-def _passing(run: Run, contact: int) -> tuple[float, float, float, float]:
+def _first_maximum(run: Run, contact: int) -> int | None:
+    """The sample at which the force of a contact first has a maximum, None if it has none.
+
+    A contact without preload has no force until the pulse arrives. Under a preload a ripple runs ahead of the pulse: a
+    maximum below 2 % of the largest one is not counted.
+    """
+    added = run.force[:, contact] - run.scene.F0
+    maxima = _maxima(added)
+    if run.scene.F0 > 0.0:
+        maxima = maxima[added[maxima] > _PART * added.max()]
+    return int(maxima[0]) if len(maxima) else None
+
+
+def _maxima(force: np.ndarray) -> np.ndarray:
+    """The samples at which a force > 0 has a maximum."""
+    inner = force[1:-1]
+    return 1 + np.flatnonzero((inner > 0.0) & (inner >= force[:-2]) & (inner > force[2:]))
+
+
+def _passing(run: Run, contact: int, firsts: list[int | None]) -> tuple[float, float, float, float, float]:
     """The pulse in a contact: time [s] and height [N] of its maximum, how long the force is above half of it [s].
 
-    The fourth number is the height from every second sample.
+    `firsts` are the samples of the first maxima of contacts 1 to N. The fourth number is the height from every second
+    sample, the fifth the time of the first maximum [s].
     """
-    force, time = run.force[:, contact], run.time
-    least = _PART * float(force.max())
-    inner = force[1:-1]
-    peaks = 1 + np.flatnonzero((inner > least) & (inner >= force[:-2]) & (inner > force[2:]))
-    if not len(peaks):
+    force, time, first = run.force[:, contact], run.time, firsts[contact - 1]
+    if first is None:
         raise BadInput(f"No pulse reaches contact {contact} in this record; record longer.")
-    gone = np.flatnonzero(force[peaks[0] :] < least)
-    passing = peaks[peaks < peaks[0] + gone[0]] if len(gone) else peaks[:1]
+    end = first + max(1, _PASSED * ((firsts[min(contact + 2, run.scene.N) - 1] or len(force)) - first))
+    gone = np.flatnonzero(force[first:] < _PART * force[first])
+    maxima = _maxima(force)
+    passing = maxima[(maxima >= first) & (maxima < min(end, first + gone[0]))] if len(gone) else np.array([first])
     i = int(passing[np.argmax(force[passing])])
     shift, height = _vertex(*force[i - 1 : i + 2])
     near = max(0, i - 2), min(len(force) - 1, i + 2)
     coarse = _vertex(force[near[0]], force[i], force[near[1]])[1]
-    return float(time[i] + shift * (time[1] - time[0])), height, _above_half(time, force, i, 0.5 * height), coarse
+    arrived, spacing = first + _vertex(*force[first - 1 : first + 2])[0], time[1] - time[0]
+    return (float(time[0] + (i + shift) * spacing), height, _above_half(time, force, i, 0.5 * height), coarse,
+            float(time[0] + arrived * spacing))
 
 
 def _vertex(before: float, best: float, after: float) -> tuple[float, float]:
