@@ -39,8 +39,8 @@ FORCE_FREE_ENERGY = ("tests/numerics/test_force_free.py", "tests/physics/test_en
 CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.
-SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-light or tsuji-pressed)")
-SIMD_LAWS = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-pressed or kuwabara-rigid)")
+SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-rigid or tsuji-pressed)")
+SIMD_LAWS = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-pressed or kuwabara-kono-rigid)")
 SIMD_PLAIN = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and plain")
 SIMD_LONG = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and hundred")
 SIMD_LONG_FOUNDED = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and long-founded")
