@@ -104,7 +104,7 @@ OBSERVED = (
            "between samples a measured force is above both, or below 0", k.SAMPLING),
     Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observe/observation.py", "=IRREGULAR * relative_difference(", "=1e-3 * IRREGULAR * relative_difference(",
+    Mutant("loss-between-samples", "observe/observation.py", "= IRREGULAR * np.maximum(", "= 1e-3 * IRREGULAR * np.maximum(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 
