@@ -54,7 +54,7 @@ print(explanation(one, None, 96))
 """)
     first, choices, *explained = printed.splitlines()
     name, equation, kernels = first.split("|")
-    assert name == "damping with δ^(3/4)" and r"D\,(\delta_j/\delta_r)_+^{3/4}\,\dot\delta_j" in equation
+    assert name == "damping with δ^(3/4)" and r"D\,(\delta_c/\delta_r)_+^{3/4}\,\dot\delta_c" in equation
     assert kernels == "three-quarters, vector of 16" and "'three-quarters'" in choices
     assert "contact damping (ThreeQuarters)" in explained[0]
 

@@ -29,6 +29,16 @@ def test_a_table_of_thresholds_is_that_of_the_code(page: Path) -> None:
     assert page.read_text(encoding="utf-8") == pages()[page]  # else run: python -m tools.thresholds
 
 
+def test_the_thresholds_of_rotation_numbers_have_the_values_of_the_code() -> None:
+    """Their table is written by hand."""
+    page = (ROOT / "docs" / "regimes.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| [^|]*(?:\\\|[^|]*)* \| ([\de.-]+) \| `(\w+)` in `(analysis/\w+)\.py` \|$", page, re.MULTILINE)
+    assert len(rows) > 20
+    for value, name, file in rows:
+        module = importlib.import_module("granchain_core." + file.replace("/", "."))
+        assert float(value) == pytest.approx(getattr(module, name), rel=1e-12), name
+
+
 def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:
     """Names given together, `A, B = range(2)`, are columns."""
     marked = {(one.file, one.name) for one in marked_constants()}

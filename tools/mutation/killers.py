@@ -5,7 +5,8 @@ from __future__ import annotations
 #: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where
 #: beads are not alike; NaN in every member; what is not finite.
 MOTION = ("tests/kernels/equations/test_motion.py",)
-UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py",)
+UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py", "tests/kernels/effects/test_given_force.py",
+          "tests/kernels/dop853/test_force_kinks.py")
 VECTORS = ("tests/kernels/simd/test_vector_nan.py",)
 FAILURES_W = ("tests/integrate/test_not_finite.py", "-k", "first_bead")
 FASTMATH = ("tests/integrate/test_not_finite.py", "tests/kernels/equations/test_motion.py", "-k",
