@@ -3,7 +3,7 @@
 A chain of equal beads without precompression carries a solitary wave whose shape does not depend on its strength. With
 K = m = 1 and the distance of two beads as the unit of length its speed is V = c F^{1/6} for the largest force F, in
 Nesterenko's continuum c = 2/√5 (J. Appl. Mech. Tech. Phys. 24, 733, 1983), for the discrete chain c = 0.9055158. The
-discrete constant follows from the traveling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
+discrete constant follows from the travelling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
 V² δ(ξ) = ∫ Λ(ξ − s) δ(s)^{3/2} ds with Λ(s) = max(0, 1 − |s|), δ being the overlap; tests solve that equation.
 """
 
@@ -28,8 +28,8 @@ CONTINUUM = 2.0 / math.sqrt(5.0)
 #: Part of a contact's largest force below which there is no pulse.
 _PART = 0.02
 #: Stated error by sampling over the change of the force with every second sample. With F = F₀ − a x² + b x⁴ and the
-#: maximum a distance s from a sample, the parabola is wrong by b s² (h² − s²), so that of the spacing 2h changes it by
-#: 3 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated.
+#: maximum a distance s from a sample, the parabola is wrong by 3 b s² (h² − s²), so that of the spacing 2h changes it
+#: by 9 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated.
 _OF_THE_CHANGE = 2.0 / 3.0
 
 

@@ -55,7 +55,7 @@ class Orbit(Labelled):
     state : State
         Where the orbit is at drive phase 0.
     residual : float
-        Change of the state by the map, over the state's largest entry.
+        Change of the state by the map, relative to the largest displacement and the largest w.
     newton_residuals : tuple of float
         The residuals of all iterations.
     multipliers : numpy.ndarray of complex, shape (2N,)
@@ -161,7 +161,7 @@ class Orbit(Labelled):
             columns |= multiplier_columns(self.observer_multipliers, ("rank",), errors, "observer_")
         ranks = axis("rank", np.arange(len(self.multipliers)), "1", "place by modulus, 0 is the largest")
         residuals = Column(np.array(self.newton_residuals), ("iteration",), "1",
-                           "change of the state by the map, over the state's largest entry")
+                           "change of the state by the map, relative to the largest displacement and the largest w")
         return (Table("multipliers", ranks, columns),
                 Table("state", bead_axis(self.scene.N),
                       state_columns(self.state.displacement, self.state.velocity, ("bead",))),
@@ -182,7 +182,7 @@ class Orbit(Labelled):
         return [f"period {self.period}, {self.stability_words()}{observer}",
                 f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}"
                 + ("" if self.multiplier_errors is None else f" ± {self.multiplier_errors[0]:.0e}"),
-                f"closes to {self.residual:.1e} of its largest entry"]
+                f"closes to {self.residual:.1e} of its largest displacement and w"]
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,

@@ -55,7 +55,7 @@ def nonnegative_root(value, power):
 
 @internal
 def time_from(kind, event, start, power):
-    """The time map of a step from `start`, next to `event`."""
+    """The time substitution of a step from `start`, next to `event`."""
     return Time(kind, event, start, nonnegative_root(kind * (start - event), power), power)
 
 

@@ -42,7 +42,7 @@ _SETTLED_OVER_DIVISOR = 3.0
 #: [period n] Changes over q periods that decay more slowly than this, per q periods, may be those of a longer orbit.
 #: Faster ones go to zero.
 _SLOWEST_APPROACH = 0.97
-#: [period n] A batch: an approach is extrapolated once its change is below this (kernels/strobes/extrapolation.py).
+#: [period n] A period is looked for, and in a batch extrapolated to, once its change is below this.
 _LARGEST_EXTRAPOLATED_CHANGE = 1e-2
 
 
@@ -176,7 +176,9 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
             nearer = nearer or (approaching >> q & 1 == 1 and n % q == 0)
         now = change_between(strobes, scale, run, run - n)
         if nearer or now > _LARGEST_EXTRAPOLATED_CHANGE:
-            continue  # a shorter period is being approached, which is why the change over this one is small
+            # a shorter period is being approached, which is why the change over this one is small; or the change is
+            # still too large to read a decay from it
+            continue
         changes_before(strobes, scale, n, run, change[:count])
         if largest_change(change, 0, count) <= rounding:
             q = shortest(strobes, scale, n, rounding, settled)

@@ -61,7 +61,7 @@ class BranchPoint:
 
     @property
     def residual(self) -> float:
-        """Change of the orbit's state after its period, relative to the largest entry."""
+        """Change of the orbit's state after its period, relative to the largest displacement and the largest w."""
         return self.residuals[-1]
 
     @property
