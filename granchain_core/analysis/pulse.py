@@ -29,8 +29,13 @@ CONTINUUM = 2.0 / math.sqrt(5.0)
 _PART = 0.02
 #: Stated error by sampling over the change of the force with every second sample. With F = F₀ − a x² + b x⁴ and the
 #: maximum a distance s from a sample, the parabola is wrong by 3 b s² (h² − s²), so that of the spacing 2h changes it
-#: by 9 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated.
+#: by 9 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated. The same holds
+#: for the place of the maximum, which is wrong by (b/a) s (4s² − h²) and changes by 3 (b/a) s h².
 _OF_THE_CHANGE = 2.0 / 3.0
+#: The same for the time above half height. A straight line between samples places a crossing at the part θ of its
+#: interval wrongly by a multiple of θ(1 − θ), and twice the spacing changes that by the same multiple of θ or 1 − θ: by
+#: the error itself, or more.
+_OF_THE_CHANGE_OF_WIDTH = 2.0
 
 
 def solitary_speed(scene: Scene, force: float, constant: float = DISCRETE) -> float:
@@ -69,6 +74,10 @@ class Pulse(Labelled):
     sampling_error : float
         Relative error of the forces because the motion is sampled: a parabola through three samples stands for the
         maximum.
+    sampling_error_time : float
+        The same of the times, absolute [s].
+    sampling_error_speed, sampling_error_width : float
+        The same of speeds and widths, relative; NaN where there are none.
 
     Examples
     --------
@@ -86,6 +95,9 @@ class Pulse(Labelled):
     width: np.ndarray
     velocity: np.ndarray
     sampling_error: float
+    sampling_error_time: float
+    sampling_error_speed: float
+    sampling_error_width: float
 
     @property
     def speed_in_metres(self) -> np.ndarray:
@@ -112,9 +124,10 @@ class Pulse(Labelled):
         return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Where it comes from, and the error by sampling."""
+        """Where it comes from, and the errors by sampling."""
         return {**provenance(self.scene, self.run.cost.method, self.run.displacement_error),
-                "sampling_error": self.sampling_error}
+                "sampling_error": self.sampling_error, "sampling_error_time": self.sampling_error_time,
+                "sampling_error_speed": self.sampling_error_speed, "sampling_error_width": self.sampling_error_width}
 
     def summary(self) -> list[str]:
         """Force, speed and width in the middle of the chain."""
@@ -157,19 +170,30 @@ def pulse(run: Run) -> Pulse:
         raise BadInput(f"A pulse is followed over at least three beads, and the chain has {scene.N}.")
     contacts = np.arange(1, scene.N)
     found = np.array([_passing(run, int(c)) for c in contacts])
-    time, force, half, coarse = found.T
+    time, force, half = found[:, 0].T
+    time_change, force_change, half_change = np.abs(found[:, 1] - found[:, 0]).T
+    late = _OF_THE_CHANGE * time_change
     speed = np.full(scene.N - 1, np.nan)
     speed[1:-1] = 2.0 / (time[2:] - time[:-2])
     passed = np.searchsorted(run.time, [*time, 2.0 * time[-1] - time[-2]]) + 1  # a bead is fastest before this contact
     velocity = np.array([run.velocity[: passed[i], i].max() for i in range(scene.N)])
+    speed_error = 0.5 * speed[1:-1] * (late[2:] + late[:-2])
+    width_error = speed_error + _OF_THE_CHANGE_OF_WIDTH * (half_change / half)[1:-1]
     return Pulse(run, contacts, time, force, speed, speed * half, velocity,
-                 _OF_THE_CHANGE * float((np.abs(force - coarse) / force).max()))
+                 _OF_THE_CHANGE * float((force_change / force).max()), float(late.max()), _largest(speed_error),
+                 _largest(width_error))
 
 
-def _passing(run: Run, contact: int) -> tuple[float, float, float, float]:
+def _largest(errors: np.ndarray) -> float:
+    """The largest of the errors that are known, NaN if none is."""
+    known = errors[np.isfinite(errors)]
+    return float(known.max()) if len(known) else math.nan
+
+
+def _passing(run: Run, contact: int) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """The pulse in a contact: time [s] and height [N] of its maximum, how long the force is above half of it [s].
 
-    The fourth number is the height from every second sample.
+    The same once more from every second sample.
     """
     force, time = run.force[:, contact], run.time
     least = _PART * float(force.max())
@@ -180,10 +204,14 @@ def _passing(run: Run, contact: int) -> tuple[float, float, float, float]:
     gone = np.flatnonzero(force[peaks[0] :] < least)
     passing = peaks[peaks < peaks[0] + gone[0]] if len(gone) else peaks[:1]
     i = int(passing[np.argmax(force[passing])])
-    shift, height = _vertex(*force[i - 1 : i + 2])
-    near = max(0, i - 2), min(len(force) - 1, i + 2)
-    coarse = _vertex(force[near[0]], force[i], force[near[1]])[1]
-    return float(time[i] + shift * (time[1] - time[0])), height, _above_half(time, force, i, 0.5 * height), coarse
+    second = slice(i % 2, None, 2)
+    return _maximum(time, force, i), _maximum(time[second], force[second], i // 2)
+
+
+def _maximum(time: np.ndarray, force: np.ndarray, i: int) -> tuple[float, float, float]:
+    """Time and height of the maximum beside sample i, and how long the force is above half of it."""
+    shift, height = _vertex(force[max(0, i - 1)], force[i], force[min(len(force) - 1, i + 1)])
+    return float(time[i] + shift * (time[1] - time[0])), height, _above_half(time, force, i, 0.5 * height)
 
 
 def _vertex(before: float, best: float, after: float) -> tuple[float, float]:
