@@ -16,10 +16,10 @@ import numpy as np
 
 from .errors import BadInput
 from .kernels.compiling.entry import Entries, types_of
-from .kernels.effects.balance import Balance
 from .kernels.effects.contact import Chain
 from .kernels.effects.dissipation import exponent
 from .kernels.effects.driver import Harmonic
+from .kernels.effects.energy_account import EnergyAccount
 from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import new_tension_cut
@@ -94,7 +94,7 @@ class ScaledChain:
     @property
     def size(self) -> int:
         """Length of the whole state array."""
-        return 2 * self.bodies + (2 if self.slots.balance is not None else 0)
+        return 2 * self.bodies + (2 if self.slots.account is not None else 0)
 
     def own(self) -> ScaledChain:
         """A copy with its own flags of force-free contacts, if there are any: an engine writes into them."""
@@ -226,8 +226,8 @@ for _effect in EFFECTS:
         raise TypeError(f"effect {_effect.name!r}: Slots (kernels/equations/motion.py) has no field {_effect.slot!r}.")
 
 
-def scale_chain(scene: Scene, balance: bool = False) -> ScaledChain:
-    """Scaled arrays and slots of `scene`; `balance` adds the energy account to the equations."""
+def scale_chain(scene: Scene, account: bool = False) -> ScaledChain:
+    """Scaled arrays and slots of `scene`; `account` adds the energy account to the equations."""
     scales = scales_of(scene)
     beta = 2 * math.pi * scene.f / scales.phi
     inverse_mass = np.zeros(scene.N + 2)
@@ -236,7 +236,7 @@ def scale_chain(scene: Scene, balance: bool = False) -> ScaledChain:
     slots = Slots(
         chain=Chain(inverse_mass, scene.contact_stiffness() / scene.K),
         driver=Harmonic(1.0 if scene.is_driven else 0.0, beta),
-        balance=Balance(1) if balance else None,
+        account=EnergyAccount(1) if account else None,
         **filled,
     )
     return ScaledChain(scene, scales, slots, beta)
@@ -244,7 +244,7 @@ def scale_chain(scene: Scene, balance: bool = False) -> ScaledChain:
 
 def scale_like(known: ScaledChain, scene: Scene) -> ScaledChain:
     """`scale_chain(scene)`; if it differs from the known one only by its frequency, both share their arrays."""
-    if known.slots.balance is not None or vars(known.scene) | {"f": scene.f} != vars(scene):
+    if known.slots.account is not None or vars(known.scene) | {"f": scene.f} != vars(scene):
         return scale_chain(scene)
     beta = 2 * math.pi * scene.f / known.scales.phi
     driver = known.slots.driver._replace(beta=beta)
@@ -254,8 +254,8 @@ def scale_like(known: ScaledChain, scene: Scene) -> ScaledChain:
 _TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}
 
 
-def slots_of(scene: Scene, balance: bool) -> list[tuple[str, str, str | None]]:
+def slots_of(scene: Scene, account: bool) -> list[tuple[str, str, str | None]]:
     """Every slot of the scene's kernel: name, title, and the type compiled into it or None where it is absent."""
-    slots = scale_chain(scene, balance=balance).slots
+    slots = scale_chain(scene, account=account).slots
     found = zip(slots._fields, slots, strict=True)
     return [(name, _TITLES[name], None if slot is None else type(slot).__name__) for name, slot in found]

@@ -24,7 +24,7 @@ from .child_processes import pool, starting
 from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting, following_setting
 from .integrate.batch import Batch, can_share_batch, is_uniform
 from .kernels.compiling.cache import CACHE_FOLDER, MARK
-from .kernels.rk4.short_chain import WIDTHS
+from .kernels.rk4.short_chain import CHAIN_WIDTHS
 from .observe.pair import Pair
 from .orbits.branch.axis import KnobAxis
 from .orbits.branch.equations import BranchEquations
@@ -56,7 +56,7 @@ from .stop import Stop
 
 def structure(shown: Scene) -> str:
     """Name of a scene's structure."""
-    width = next((f"vector of {width}" for width in WIDTHS if width >= shown.N + 2), "long")
+    width = next((f"vector of {width}" for width in CHAIN_WIDTHS if width >= shown.N + 2), "long")
     effects = [effect.key(shown) for effect in effects_of(shown)]
     law = [] if shown.has_dissipation else ["none"]
     beads = [] if is_uniform(scale_chain(shown)) else ["unequal beads"]
@@ -125,12 +125,12 @@ def _observer(short: Scene) -> None:
         StroboscopicMap(short, 1)(np.zeros(2 * short.N), observer=True)
 
 
-def _cost(balance: bool) -> Callable[[Scene], None]:
+def _cost(account: bool) -> Callable[[Scene], None]:
     """A piece: the kernels that are timed for the cost of an effect, with the energy account or without."""
 
     def compile_cost(short: Scene) -> None:
         for name in (CODE, MOTION):
-            Engine(short, Setting(name), 1, balance=balance).periods(1)
+            Engine(short, Setting(name), 1, account=account).periods(1)
 
     return compile_cost
 
@@ -140,7 +140,7 @@ PIECES: dict[str, Callable[[Scene], None]] = {
     REGIME_KERNELS: _regime, CHECK_KERNELS: _checks, CURVE_KERNELS: _curve,
     ADAPTIVE_KERNELS: _engine(adaptive_setting(1e-3)), FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
     ORBIT_KERNELS: _orbit, BRANCH_KERNELS: _branch, OBSERVER_KERNELS: _observer,
-    ACCURACY_KERNELS: compile_methods, COST_KERNELS: _cost(balance=False), COST_ACCOUNT_KERNELS: _cost(balance=True),
+    ACCURACY_KERNELS: compile_methods, COST_KERNELS: _cost(account=False), COST_ACCOUNT_KERNELS: _cost(account=True),
 }
 
 

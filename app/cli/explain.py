@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from granchain_core.integrate.methods import METHODS, method_for, setting_of
-from granchain_core.kernels.width import machine
+from granchain_core.kernels.batch_size import machine
 from granchain_core.scaling import scale_chain, slots_of
 from granchain_core.scene import Scene
 from granchain_core.warm import structure
@@ -12,7 +12,7 @@ from granchain_core.warm import structure
 def explanation(scene: Scene, method: str | None, samples: int) -> str:
     """The slots of the kernel that `run` uses, its method and the machine; `samples` a period may set its steps."""
     scaled = scale_chain(scene)
-    slots = slots_of(scene, balance=True)
+    slots = slots_of(scene, account=True)
     present = [f"{title} ({kind})" for _, title, kind in slots if kind is not None]
     absent = [title for _, title, kind in slots if kind is None]
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)

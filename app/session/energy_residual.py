@@ -17,7 +17,7 @@ def with_account(picture: Settled, stop: Stop) -> Settled:
     """The picture with its energy residual over the periods shown. Raises `Cancelled`."""
     run = picture.run
     setting = adaptive_setting(max(1e-13, _TOLERANCE_PART * run.scene.accuracy))
-    engine = Engine(run.scene, setting, 1, balance=True, stop=stop)
+    engine = Engine(run.scene, setting, 1, account=True, stop=stop)
     engine.start(picture.state)
     samples = engine.record(max(1, round((len(run.time) - 1) / run.samples)))
     return replace(picture, run=replace(run, energy_residual=residual(samples.energy)))

@@ -51,7 +51,7 @@ def changes(name: str, on: bool, shown: Scene, remembered: Mapping[str, Any]) ->
 def variants(name: str, shown: Scene) -> tuple[Variant, Variant] | None:
     """The scene with the effect and without it, everything else the same; None where it cannot be switched."""
     if name == ACCOUNT_SWITCH:
-        return Variant(shown, balance=True), Variant(shown)
+        return Variant(shown, account=True), Variant(shown)
     if refusal(name, shown):
         return None
     on = present(name, shown, account=False)

@@ -39,7 +39,7 @@ class Variant:
     """A kernel to be timed: a scene, with the energy account in its equations or without."""
 
     scene: Scene
-    balance: bool = False
+    account: bool = False
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class _Stepper:
     """A chain in motion that can be timed for a short while."""
 
     def __init__(self, variant: Variant, method: str, stop: Stop) -> None:
-        self._engine = Engine(variant.scene, Setting(method), 1, balance=variant.balance, stop=stop)
+        self._engine = Engine(variant.scene, Setting(method), 1, account=variant.account, stop=stop)
         self._engine.periods(_BEFORE)
         self._periods = 1
         self._periods = max(1, int(_RUN / max(self._seconds(), 1e-7)))

@@ -18,7 +18,7 @@ class MovedChain(ChainInPieces):
     """A scene's chain whose driver moves as a signal says, with the energy account."""
 
     def __init__(self, scene: Scene, signal: Signal, stop: Stop) -> None:
-        driven = scale_chain(scene, balance=True)
+        driven = scale_chain(scene, account=True)
         scaled = replace(driven, slots=driven.slots._replace(driver=Moved(np.zeros(3))))
         pieces = signal.quadratics() / driven.scales.length / driven.scales.phi ** np.arange(3)
         overlap = float(np.ptp(signal.displacement)) / driven.scales.length

@@ -74,7 +74,7 @@ def undamped(frequency: float = 340.0, beads: int = 11) -> Scene:
 
 def driven_chaos(quick: bool) -> list[Measurement]:
     """Energy account, Lyapunov exponent by two methods, and no periodic verdict."""
-    engine = Engine(undamped(), adaptive_setting(1e-14), 1, balance=True)
+    engine = Engine(undamped(), adaptive_setting(1e-14), 1, account=True)
     energy = engine.record(20 if quick else 100).energy
     stored, work, lost = (energy - energy[0]).T
     largest = max(np.abs(work).max(), np.abs(energy[:, 0]).max())

@@ -12,6 +12,7 @@ from ..kernels.batch import run as kernels
 from ..kernels.batch.checks import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, check_member
 from ..kernels.batch.record import STROBES_KEPT
 from ..kernels.batch.unequal import Unequal
+from ..kernels.batch_size import BATCH_SIZE
 from ..kernels.compiling.by_address import address_of
 from ..kernels.compiling.entry import entry
 from ..kernels.compiling.jit import unknown_slots
@@ -21,7 +22,6 @@ from ..kernels.simd.vector import aligned
 from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
-from ..kernels.width import BATCH_SIZE
 from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop

@@ -77,7 +77,7 @@ def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:
                        f"go on with the scene it was taken from.")
     row = scene.N + 2
     engine = Engine(scene, Setting(kept.method, kept.refine, kept.tolerance), kept.samples,
-                    balance=len(kept.y) > 2 * row, stop=stop)
+                    account=len(kept.y) > 2 * row, stop=stop)
     engine.y[:], engine.stepper.work.k[0] = kept.y, kept.slope
     if len(kept.control):
         engine.stepper.work.next_step[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]

@@ -34,10 +34,10 @@ class Engine:
     given where more than the scene's own chain moves. What depends on the method is in `stepper`.
     """
 
-    def __init__(self, scene: Scene, setting: Setting, samples: int = 1, balance: bool = False,
+    def __init__(self, scene: Scene, setting: Setting, samples: int = 1, account: bool = False,
                  stop: Stop | None = None, scaled: ScaledChain | None = None) -> None:
         method = METHODS[setting.method]
-        ready = (scale_chain(scene, balance and method.has_account) if scaled is None else scaled).own()
+        ready = (scale_chain(scene, account and method.has_account) if scaled is None else scaled).own()
         self.setting = setting
         self.samples = samples
         self.counts = Counts()
@@ -165,7 +165,7 @@ class Engine:
         The account of a long run before would round away that of a record with little energy: their sums cancel.
         """
         self.reset_peaks()
-        if self.scaled.slots.balance is not None:
+        if self.scaled.slots.account is not None:
             self.y[-2:] = 0.0
 
     @property

@@ -24,7 +24,7 @@ from ..kernels.forces.largest import new_log
 from ..kernels.naive import naive_motion
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import RunRecord, run_steps
-from ..kernels.rk4.short_chain import STATE_ROWS, STEPS_IN_BLOCK, WIDTHS, ShortChain
+from ..kernels.rk4.short_chain import CHAIN_WIDTHS, STATE_ROWS, STEPS_IN_BLOCK, ShortChain
 from ..kernels.rk4.step import DriveTable, Rk4Workspace
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
@@ -85,7 +85,7 @@ class FixedStep:
         scaled, slots = self.scaled, self.scaled.slots
         if not self._simd or unknown_slots(slots, "rk4") or slots.driver is None:
             return None
-        width = next((lanes for lanes in WIDTHS if scaled.bodies <= lanes), 0)
+        width = next((lanes for lanes in CHAIN_WIDTHS if scaled.bodies <= lanes), 0)
         return short_chain_workspace(scaled, width) if width else _long_chain(scaled)
 
     def use(self, scaled: ScaledChain) -> None:
@@ -209,7 +209,7 @@ def short_chain_workspace(scaled: ScaledChain, width: int) -> ShortChain:
         return row
 
     preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
-    return ShortChain(WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
+    return ShortChain(CHAIN_WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
                       aligned(2 * STATE_ROWS, width), aligned(ENDS, width), np.zeros((3, STEPS_IN_BLOCK)))
 
 

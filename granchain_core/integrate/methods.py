@@ -14,8 +14,8 @@ from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
 from ..scaling import ScaledChain
 from .adaptive import Dop853Stepper
+from .dop853_root import Dop853RootStepper
 from .fixed import FixedStep, FixedStepInVelocity
-from .regularised import Regularised
 from .stepper import Stepper
 
 #: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.
@@ -208,7 +208,7 @@ METHODS: dict[str, Method] = {
             restrictions="accuracy to about 1e-12; no energy account; chains of up to 30 beads with a driver that is "
                          "harmonic or at rest, without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/method.md",
-            stepper=_adaptive(Regularised), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
+            stepper=_adaptive(Dop853RootStepper), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
             usual_error=1.0, has_account=False),
     )
 }

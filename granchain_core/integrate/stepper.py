@@ -55,5 +55,5 @@ class Stepper(Protocol):
 def empty_samples(scaled: ScaledChain, rows: int) -> Samples:
     """Arrays for `rows` samples in scaled units."""
     n = scaled.beads
-    energy = np.zeros((rows, 3)) if scaled.slots.balance is not None else None
+    energy = np.zeros((rows, 3)) if scaled.slots.account is not None else None
     return Samples(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, n + 1)), energy)

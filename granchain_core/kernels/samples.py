@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .compiling.jit import by_slot, internal, kernel
-from .effects.balance import Balance, account_ends
+from .effects.energy_account import EnergyAccount, account_ends
 from .equations.motion import contact_force, stored_energy
 from .forces.largest import ForceLog
 
@@ -41,16 +41,16 @@ def keep(slots, row, y, dy, e, samples):
         samples.velocity[row, i] = dy[i + 1]
     for c in range(n + 1):
         samples.force[row, c] = contact_force(slots, y, dy, e, c)
-    keep_account(slots.balance, slots, row, y, dy, samples)
+    keep_account(slots.account, slots, row, y, dy, samples)
 
 
 @by_slot
-def keep_account(balance, slots, row, y, dy, samples):
+def keep_account(account, slots, row, y, dy, samples):
     """Write stored energy, work and loss of one sample. Absent: there is no account and no array for it."""
 
 
-@keep_account.of(Balance)
-def _(balance, slots, row, y, dy, samples):
+@keep_account.of(EnergyAccount)
+def _(account, slots, row, y, dy, samples):
     samples.energy[row, 0] = stored_energy(slots, y, dy)
     work, lost = account_ends(slots, y, dy)
     samples.energy[row, 1] = y[y.size - 2] + work

@@ -129,7 +129,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     number = itertools.count(1)
 
     def attempt(finer: Setting) -> _Attempt:
-        engine = Engine(scene, finer, samples, balance=True, stop=stop)
+        engine = Engine(scene, finer, samples, account=True, stop=stop)
         engine.start(begin)
         reached = kept.begin(next(number), engine) if kept is not None else None
         if reached is None:

@@ -101,7 +101,7 @@ EFFECTS = (
            lambda scene: scene.F0 > 0.0, _pressed, ("F0",), {"F0": 0.0}, {"F0": 1.0}),
 )
 #: The one effect that is not a knob of a scene: it does not change the motion.
-ACCOUNT = Effect("account", "balance", "energy account",
+ACCOUNT = Effect("account", "account", "energy account",
                  "Work, loss and stored energy are integrated alongside; the status line shows how well they balance.",
                  lambda scene: False)
 #: Slots that every scene fills, with what they hold.

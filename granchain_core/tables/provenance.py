@@ -9,7 +9,7 @@ from importlib.metadata import version
 
 import numpy as np
 
-from ..kernels.width import machine
+from ..kernels.batch_size import machine
 from ..quantities import QUANTITIES
 from ..scene import Amplitude, Scene
 from ..version import __version__

@@ -65,7 +65,7 @@ def test_switches_change_equation_slots_and_cost(visit: Visit) -> None:
     # the energy account is told in the status line
     expect(activity(tab, "energy account")).to_contain_text("switched off")
     page.get_by_role("switch", name="energy account").click()
-    expect(effect(tab, "account")).to_contain_text("Balance")
+    expect(effect(tab, "account")).to_contain_text("EnergyAccount")
     expect(page.locator("#foot")).to_contain_text("energy residual ", timeout=COMPILED)
     expect(activity(tab, "energy account")).to_contain_text("closes to")
 

@@ -16,7 +16,7 @@ from app.cli import main
 from app.session.share import decode
 from granchain_core import BadInput, NumbersFailed, run, scene
 from granchain_core.hdf5 import seal
-from granchain_core.kernels.width import machine
+from granchain_core.kernels.batch_size import machine
 from granchain_core.run import to_accuracy
 from granchain_core.store import load, save
 

@@ -99,7 +99,7 @@ def test_vectors_that_do_not_know_the_new_effect_refuse_it(tree: Path) -> None:
     """Unmarked, and marked for other kernels than those of dop853-root: a motion without the drag would be wrong."""
     file = tree / "granchain_core" / "kernels" / "effects" / "drag.py"
     text = file.read_text(encoding="utf-8")
-    mark = '@in_simd_kernels("rk4", "batch", "regularised")\n'
+    mark = '@in_simd_kernels("rk4", "batch", "dop853_root")\n'
     assert text.count(mark) == 1
     try:
         for less, shares in (("", "False"), ('@in_simd_kernels("rk4", "batch")\n', "True")):
@@ -118,7 +118,7 @@ except BadInput as problem:
 
 
 def test_a_mark_names_folders_of_vectors() -> None:
-    with pytest.raises(TypeError, match="name those with terms of the slot, of rk4, batch, regularised"):
+    with pytest.raises(TypeError, match="name those with terms of the slot, of rk4, batch, dop853_root"):
         in_simd_kernels("effects")
 
 

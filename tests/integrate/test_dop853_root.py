@@ -19,7 +19,7 @@ SCENES = {"events": {"f": 340.0}, "fourth root": {"f": 900.0, "dissipation": "ts
 
 def recorded(name: str, tolerance: float, **knobs):
     """An engine of `sec2` after three periods, and its samples; dop853 with the energy account, as in other tests."""
-    engine = Engine(scene("sec2").evolve(**knobs), Setting(name, tolerance=tolerance), 16, balance=True)
+    engine = Engine(scene("sec2").evolve(**knobs), Setting(name, tolerance=tolerance), 16, account=True)
     return engine, engine.record(48)
 
 

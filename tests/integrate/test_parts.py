@@ -14,7 +14,7 @@ LONG = scene("sec2").evolve(N=200)
 
 def motion(chain: Scene, samples: int) -> dict[str, np.ndarray]:
     """Three periods and four samples of one chain."""
-    engine = Engine(chain, fixed_step_setting(), samples, balance=True)
+    engine = Engine(chain, fixed_step_setting(), samples, account=True)
     strobes, maxima = engine.periods(3)
     recorded = engine.record(2 * samples + 1)
     return {"strobes": strobes, "maxima": maxima, "displacement": recorded.displacement, "force": recorded.force,

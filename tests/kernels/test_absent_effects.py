@@ -12,7 +12,7 @@ from granchain_core.scaling import scale_chain
 pytestmark = pytest.mark.quick
 
 
-@pytest.mark.parametrize("absent", ["dissipation", "tension", "foundation", "preload", "balance"])
+@pytest.mark.parametrize("absent", ["dissipation", "tension", "foundation", "preload", "account"])
 def test_absent_effect_has_an_empty_slot(absent):
     """The slot of an effect that a scene does not have is None, not zero."""
     bare = scene("sec2").evolve(dissipation="none", k=0.0, F0=0.0)
@@ -30,7 +30,7 @@ def test_no_damping_means_no_dissipation_slot_no_cut_and_no_array(knobs):
 
 def test_an_effect_switched_on_has_its_slot_and_its_array():
     """The opposite of the above, so that it is no accident."""
-    full = scale_chain(scene("sec2").evolve(k=1e4, F0=1.0, tension="cut"), balance=True)
+    full = scale_chain(scene("sec2").evolve(k=1e4, F0=1.0, tension="cut"), account=True)
     assert None not in full.slots
     assert full.forces().G is not None
 
@@ -38,7 +38,7 @@ def test_an_effect_switched_on_has_its_slot_and_its_array():
 @pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853"])
 def test_without_an_energy_account_there_is_no_array_for_it(method):
     """The account's two integrals and three columns exist only where they were asked for."""
-    with_account, without = (Engine(scene("sec2"), Setting(method, tolerance=1e-6), 4, balance=b) for b in (True, False))
+    with_account, without = (Engine(scene("sec2"), Setting(method, tolerance=1e-6), 4, account=b) for b in (True, False))
     assert len(with_account.y) == len(without.y) + 2
     assert without.empty_samples(3).energy is None
     assert with_account.empty_samples(3).energy.shape == (3, 3)

@@ -75,7 +75,7 @@ def random_scene(rng: np.random.Generator, structures: list) -> Scene:
 
 def reference(chosen: Scene, tolerance: float) -> np.ndarray:
     """Displacements (T, N) in m."""
-    engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, balance=True)
+    engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, account=True)
     engine.start(rest(chosen))
     return engine.record(PERIODS * SAMPLES).displacement * engine.scaled.scales.length
 

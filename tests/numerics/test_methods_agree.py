@@ -13,8 +13,8 @@ from chains import LAWS
 from granchain_core import BadInput, Scene, scene
 from granchain_core.integrate import METHODS, Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch, can_share_batch
+from granchain_core.integrate.dop853_root import Dop853RootStepper
 from granchain_core.integrate.methods import FIXED_STEP
-from granchain_core.integrate.regularised import Regularised
 from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.effects.driver import Moved
 from granchain_core.kernels.rk4.long_chain import LongChain
@@ -58,7 +58,7 @@ def chain(name: str, beads: int = BEADS) -> Scene:
 @functools.cache
 def motion(name: str, setting: Setting, beads: int = BEADS) -> np.ndarray:
     """The samples of the first periods from rest, in scaled units."""
-    engine = Engine(chain(name, beads), setting, _SAMPLES, balance=METHODS[setting.method].adaptive)
+    engine = Engine(chain(name, beads), setting, _SAMPLES, account=METHODS[setting.method].adaptive)
     return engine.record(_PERIODS * _SAMPLES).displacement
 
 
@@ -125,4 +125,4 @@ def test_dop853_root_refuses_other_drives(driver: Moved | None) -> None:
     """One with a given motion, and none at all, which pieces of chains have."""
     scaled = scale_chain(scene("sec2"))
     with pytest.raises(BadInput, match="with a driver that is harmonic or at rest"):
-        Regularised(1e-8, replace(scaled, slots=scaled.slots._replace(driver=driver)), 8)
+        Dop853RootStepper(1e-8, replace(scaled, slots=scaled.slots._replace(driver=driver)), 8)

@@ -56,7 +56,7 @@ def motion(regime: str, f: float, setting: Setting) -> tuple[np.ndarray, int]:
 
     The adaptive method carries the energy account along, as in a run: these kernels are compiled for other tests too.
     """
-    engine = Engine(scene("sec2").evolve(f=f, **REGIMES[regime]), setting, 8, balance=METHODS[setting.method].adaptive)
+    engine = Engine(scene("sec2").evolve(f=f, **REGIMES[regime]), setting, 8, account=METHODS[setting.method].adaptive)
     return engine.record(8 * PERIODS).displacement, engine.counts.steps
 
 

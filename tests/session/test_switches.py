@@ -70,18 +70,18 @@ def test_the_two_kernels_differ_in_that_effect_only(name: str) -> None:
     shown = scene("sec2").evolve(F0=0.5, k=1000.0)
     pair = variants(name, shown)
     assert pair is not None
-    slots = [{slot: kind for slot, _, kind in slots_of(one.scene, one.balance)} for one in pair]
+    slots = [{slot: kind for slot, _, kind in slots_of(one.scene, one.account)} for one in pair]
     differing = {slot for slot in slots[0] if slots[0][slot] != slots[1][slot]}
     assert len(differing) == 1
     assert slots[1][differing.pop()] is None
 
 
 def test_slots_name_types_and_absences() -> None:
-    found = {name: kind for name, _, kind in slots_of(scene("sec2"), balance=False)}
+    found = {name: kind for name, _, kind in slots_of(scene("sec2"), account=False)}
     assert {name: kind for name, kind in found.items() if kind is not None} == {
         "chain": "Chain", "dissipation": "LinearDashpot", "driver": "Harmonic"}
-    assert {"tension", "foundation", "preload", "balance"} <= set(found)
-    assert {name: kind for name, _, kind in slots_of(scene("rig"), balance=True)}["balance"] == "Balance"
+    assert {"tension", "foundation", "preload", "account"} <= set(found)
+    assert {name: kind for name, _, kind in slots_of(scene("rig"), account=True)}["account"] == "EnergyAccount"
 
 
 def test_the_account_of_a_picture_closes() -> None:

@@ -9,7 +9,7 @@ import pytest
 from granchain_core import Scene, State, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
-from granchain_core.kernels.width import BATCH_SIZE
+from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scaling import ScaledChain, scale_chain
 from granchain_core.steady.lyapunov import MeasuredExponents, exponents, exponents_of, put_with_shadow

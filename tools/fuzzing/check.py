@@ -159,7 +159,7 @@ def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
     """Compare the run with the adaptive method at its finest, check its energy; returns the true displacements [m]."""
     chosen, kept = found.scene, []
     for tolerance in (3e-14, 3e-15):
-        engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, balance=True, stop=stop)
+        engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, account=True, stop=stop)
         engine.start(rest(chosen))
         kept.append(engine.record(PERIODS * SAMPLES))
         verdict.steps = engine.counts.steps

@@ -54,14 +54,14 @@ def scaling(scene: Scene, power: int, stop: Stop) -> float:
 
 
 def _period(scene: Scene, start: State, stop: Stop) -> np.ndarray:
-    engine = Engine(scene, _FIXED, SAMPLES, balance=True, stop=stop)
+    engine = Engine(scene, _FIXED, SAMPLES, account=True, stop=stop)
     engine.start(start)
     return engine.record(SAMPLES).displacement
 
 
 def shifted(scene: Scene, stop: Stop) -> float:
     """The second period of a run, against a run started from the state after the first."""
-    engine = Engine(scene, _FIXED, SAMPLES, balance=True, stop=stop)
+    engine = Engine(scene, _FIXED, SAMPLES, account=True, stop=stop)
     engine.start(rest(scene))
     engine.record(SAMPLES)
     again = engine.state
@@ -79,7 +79,7 @@ def mirrored(scene: Scene, rng: np.random.Generator, stop: Stop) -> tuple[float,
 
 
 def _symmetric(scene: Scene) -> ScaledChain:
-    scaled = scale_chain(scene, balance=True)
+    scaled = scale_chain(scene, account=True)
     slots = scaled.slots
 
     def both(values: np.ndarray) -> np.ndarray:

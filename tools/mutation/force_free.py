@@ -29,7 +29,7 @@ FORCE_FREE = (
            "of two mirrored contacts on the wrong side one changes before the other", k.CUT_SYMMETRY),
     Mutant("w-stays-force-free", _KINKS, "        write_w(slots, y, dy, workspace.forces)", "        pass",
            "w keeps the straight G where the law's own is meant", k.FORCE_FREE),
-    Mutant("account-stays-force-free", _KINKS, "add_to_account(slots.balance, y, energy_in - own_energy_in, lost - own_lost)", "pass",
+    Mutant("account-stays-force-free", _KINKS, "add_to_account(slots.account, y, energy_in - own_energy_in, lost - own_lost)", "pass",
            "the account keeps the straight G where the law's own is meant", k.FORCE_FREE_ENERGY),
     Mutant("force-free-slope-stays", _DOP853_RUN, "if changed or end == period:", "if end == period:",
            "the slope with the straight G begins the next step", k.FORCE_FREE),

@@ -8,7 +8,7 @@ from .mutant import Mutant
 _CONTACT, _LOSS = "kernels/effects/contact.py", "kernels/effects/dissipation.py"
 _DRIVER, _GROUND, _PRELOAD = "kernels/effects/driver.py", "kernels/effects/foundation.py", "kernels/effects/preload.py"
 _PUSHED, _CUT, _UNEQUAL = "kernels/effects/given_force.py", "kernels/effects/tension.py", "kernels/batch/unequal.py"
-_BALANCE = "kernels/effects/balance.py"
+_BALANCE = "kernels/effects/energy_account.py"
 
 EFFECTS = (
     Mutant("hertz-exponent", _CONTACT, "return stiffness * d * root(d)", "return stiffness * d * d",

@@ -6,15 +6,15 @@ docs/mutation.md says how they were chosen.
 from __future__ import annotations
 
 from .claims import CLAIMS
+from .dop853_root import DOP853_ROOT
 from .force_free import FORCE_FREE
 from .laws import LAWS
 from .mutant import Mutant
-from .regularised import REGULARISED
 from .steps import STEPS
 from .tangents import TANGENT_FLOW
 from .vectors import VECTORS
 
-MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + FORCE_FREE + TANGENT_FLOW + VECTORS + REGULARISED + CLAIMS
+MUTANTS: tuple[Mutant, ...] = LAWS + STEPS + FORCE_FREE + TANGENT_FLOW + VECTORS + DOP853_ROOT + CLAIMS
 
 #: The eight kinds of mistake that must always be noticed (docs/mutation.md), and the mutants of each.
 DEMANDED: dict[str, tuple[str, ...]] = {

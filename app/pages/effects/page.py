@@ -115,7 +115,7 @@ class EffectsPage(Page):
     def _compiled(self, name: str, pair: tuple[Variant, Variant]) -> bool:
         """Whether both kernels are compiled; if one is not, another process begins to compile it."""
         for variant in pair:
-            piece = COST_ACCOUNT_KERNELS if variant.balance else COST_KERNELS
+            piece = COST_ACCOUNT_KERNELS if variant.account else COST_KERNELS
             if COMPILER.has(variant.scene, piece):
                 continue
             self._compiling = name

@@ -55,7 +55,7 @@ _PART_LEFT = 0.97
 _PAUSE_AFTER_FAILED_TEST = 400
 #: [period n] A batch: slowest decay per orbit that is reported for a disturbance that shrank. Multipliers are then
 #: computed.
-_SLOWEST_DECAY = 0.9999
+_SLOWEST_REPORTED_DECAY = 0.9999
 #: [period n] A batch: slowest decay per drive period that is assumed after an extrapolation. Slower ones are not
 #: measured well enough.
 _SLOWEST_ASSUMED_DECAY = 0.98
@@ -174,7 +174,8 @@ def judge_disturbance(state, member):
     if last <= _PART_LEFT * first:
         move_member(state, member, state.state_before[member])
         decay = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
-        state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], min(decay, _SLOWEST_DECAY))
+        decay = min(decay, _SLOWEST_REPORTED_DECAY)
+        state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], decay)
         return True
     state.slowest_decay[member], state.change_before_extrapolation[member] = 0.0, 0.0
     state.last_check[member, CHECK_PERIOD] = 0.0  # this member does not stay on the orbit that was found

@@ -12,13 +12,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..batch_size import BATCH_SIZE
 from ..compiling.jit import inline_llvm, inline_numba, kernel
 from ..effects.preload import batch_overlap
 from ..equations.motion import batch_slots
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import load_batch, store
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
-from ..width import BATCH_SIZE
 from .contact_correction import correct_contacts
 from .period_end import end_period
 from .step import Values, batch_step, watch_batch_ends

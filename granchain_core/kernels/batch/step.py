@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..compiling.jit import by_slot, by_type_inlined, inline_llvm
-from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, shape
+from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, unit_primitive
 from ..effects.preload import batch_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.crossings import Approach, brief_touch, closing_rate
@@ -30,13 +30,13 @@ class Values(NamedTuple):
 
 
 class LeftNeighbour(NamedTuple):
-    """What a sweep knows of a bead when it arrives there, in all members: its displacement, and elastic force and shape
-    G/λ of the contact on its left.
+    """What a sweep knows of a bead when it arrives there, in all members: its displacement, and elastic force and G/λ
+    of the contact on its left.
     """
 
     u: Any
     e: Any
-    shape: Any
+    primitive: Any
 
 
 @inline_llvm
@@ -53,15 +53,16 @@ def by_multipliers(d):
 
 @inline_llvm
 def contact(values, root_of, left, right, c, is_wall):
-    """Elastic force and shape G/λ of contact c; `root_of` computes the root."""
+    """Elastic force and primitive G/λ of contact c; `root_of` computes the root."""
     d = above_zero(batch_overlap(values.slots.preload, left, right, c))
     r = root_of(d)
-    return times_stiffness(values.unequal, values.wall, c, is_wall, d * r), shape(values.slots.dissipation, d, r)
+    e = times_stiffness(values.unequal, values.wall, c, is_wall, d * r)
+    return e, unit_primitive(values.slots.dissipation, d, r)
 
 
 @by_slot
 def batch_velocity(law, unequal, i, w, difference):
-    """v = w + (G_{i-1} − G_i)/m of bead i in all members, from the difference of the shapes G/λ."""
+    """v = w + (G_{i-1} − G_i)/m of bead i in all members, from the difference of the primitives G/λ."""
     return w
 
 
@@ -112,21 +113,21 @@ def bead(values, root_of, stage, source, i, left, is_last):
     """Bead i of a stage whose state is `source`; returns its velocity and the next bead's `LeftNeighbour`."""
     bodies = values.last + 2
     right = load_batch(source, i + 1)
-    e, shape_right = contact(values, root_of, left.u, right, i, is_last)
+    e, right_primitive = contact(values, root_of, left.u, right, i, is_last)
     w, law = load_batch(source, bodies + i), values.slots.dissipation
-    velocity = batch_velocity(law, values.unequal, i, w, left.shape - shape_right)
+    velocity = batch_velocity(law, values.unequal, i, w, left.primitive - right_primitive)
     use_slope(stage, i, velocity)
     force = force_on_bead(values.slots, i, left.e - e, left.u, velocity)
     use_slope(stage, bodies + i, over_mass(values.unequal, i, force))
-    return velocity, LeftNeighbour(right, e, shape_right)
+    return velocity, LeftNeighbour(right, e, right_primitive)
 
 
 class Ends(NamedTuple):
     """The chain's two ends in a stage: elastic forces and the beads' velocities."""
 
-    pushed: Any
+    first_elastic: Any
     v_first: Any
-    passed: Any
+    last_elastic: Any
     v_last: Any
 
 
@@ -134,8 +135,8 @@ class Ends(NamedTuple):
 def run_stage(values, stage, source, driver):
     """One stage at the state `source` with the driver at `driver`; returns its `Ends`."""
     last, u = values.last, load_batch(source, 1)
-    pushed, shape_first = contact(values, by_multipliers, driver, u, 0, False)
-    left, v_first = LeftNeighbour(u, pushed, shape_first), u
+    e_first, first_primitive = contact(values, by_multipliers, driver, u, 0, False)
+    left, v_first = LeftNeighbour(u, e_first, first_primitive), u
     if last > 1:
         v_first, left = bead(values, by_multipliers, stage, source, 1, left, False)
     for i in range(2, last - 2, 3):
@@ -145,7 +146,7 @@ def run_stage(values, stage, source, driver):
     for i in range(max(2, last - (last - 2) % 3), last):
         _, left = bead(values, by_divider, stage, source, i, left, False)
     v_last, left = bead(values, by_divider, stage, source, last, left, True)
-    return Ends(pushed, v_first if last > 1 else v_last, left.e, v_last)
+    return Ends(e_first, v_first if last > 1 else v_last, left.e, v_last)
 
 
 @inline_llvm
@@ -167,9 +168,9 @@ def watch_batch_ends(values, h, first_overlap, last_overlap, v0, ends, before, p
     """Follow input force, output force and its elastic part in all members, where a step began."""
     law = values.slots.dissipation
     first, last = Approach(first_overlap, v0 - ends.v_first), Approach(last_overlap, ends.v_last)
-    watch_batch(peaks, INPUT, ends.pushed + dashpot_force(law, first.overlap, first.rate))
-    watch_batch(peaks, OUTPUT, ends.passed + dashpot_force(law, last.overlap, last.rate))
-    watch_batch(peaks, OUTPUT_ELASTIC, ends.passed)
+    watch_batch(peaks, INPUT, ends.first_elastic + dashpot_force(law, first.overlap, first.rate))
+    watch_batch(peaks, OUTPUT, ends.last_elastic + dashpot_force(law, last.overlap, last.rate))
+    watch_batch(peaks, OUTPUT_ELASTIC, ends.last_elastic)
     watch_jumps(law, values, h, first, last, before, peaks)
 
 

@@ -104,7 +104,7 @@ def inline_numba(function):
 #: The terms of effects: every function made by `by_slot`, with the code it has for each slot class.
 _TERMS: list[Any] = []
 #: The folders with kernels in vectors, which repeat the equations, and the slot classes for which each has code.
-_IN_SIMD_KERNELS: dict[str, set[type]] = {"rk4": set(), "batch": set(), "regularised": set()}
+_IN_SIMD_KERNELS: dict[str, set[type]] = {"rk4": set(), "batch": set(), "dop853_root": set()}
 
 
 def by_slot(absent, forceinline=False):

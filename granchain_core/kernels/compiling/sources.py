@@ -16,7 +16,7 @@ from types import CodeType, FunctionType
 import llvmlite
 import numba
 
-from ..width import BATCH_SIZE, processor
+from ..batch_size import BATCH_SIZE, processor
 
 #: Sources that decide where compiled code is stored but do not change it.
 _KEEPERS = ("compiling/cache.py", "compiling/compile_lock.py", "compiling/entry.py", "compiling/sources.py")

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import by_slot
-from ..effects.balance import add_to_account, ends_of
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, power
+from ..effects.energy_account import add_to_account, ends_of
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut, hold_force_free
 from ..equations.motion import write_w
@@ -94,12 +94,12 @@ def _(tension, trajectory):
     for c in range(tension.force_free.size):
         found = found or tension.force_free[c] != 0
     if found:
-        energy_in, lost = ends_of(slots.balance, slots, y, dy)
+        energy_in, lost = ends_of(slots.account, slots, y, dy)
         for c in range(tension.force_free.size):
             tension.force_free[c] = 0
         write_w(slots, y, dy, workspace.forces)
-        own_energy_in, own_lost = ends_of(slots.balance, slots, y, dy)
-        add_to_account(slots.balance, y, energy_in - own_energy_in, lost - own_lost)
+        own_energy_in, own_lost = ends_of(slots.account, slots, y, dy)
+        add_to_account(slots.account, y, energy_in - own_energy_in, lost - own_lost)
     return found
 
 

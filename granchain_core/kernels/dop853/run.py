@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import by_slot, inline_numba, internal, kernel
-from ..effects.balance import add_to_account, force_free_loss
+from ..effects.energy_account import add_to_account, force_free_loss
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut
 from ..equations.motion import copy
@@ -227,8 +227,8 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
                 ready = True
             at = point * spacing
             interpolate(y, workspace, min(1.0, (at - t) / h))
-            lost = force_free_loss(slots.balance, slots, y, workspace.probe)
-            add_to_account(slots.balance, workspace.probe, 0.0, lost)
+            lost = force_free_loss(slots.account, slots, y, workspace.probe)
+            add_to_account(slots.account, workspace.probe, 0.0, lost)
             evaluate(slots, drive.beta, at, workspace.probe, workspace.slope, workspace.forces)
             keep(slots, row, workspace.probe, workspace.slope, workspace.forces.e, samples)
             row += 1
@@ -242,10 +242,10 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
 def accept(trajectory):
     """Make the step's end the state; returns whether its slope must be evaluated anew."""
     slots, _, y, workspace = trajectory
-    lost = force_free_loss(slots.balance, slots, y, workspace.end)
+    lost = force_free_loss(slots.account, slots, y, workspace.end)
     copy(workspace.end, y)
     copy(workspace.k[STAGES], workspace.k[0])
-    add_to_account(slots.balance, y, 0.0, lost)
+    add_to_account(slots.account, y, 0.0, lost)
     changed = leave_force_free(slots.tension, trajectory)
     new_scale(y, workspace, slots.chain.inverse_mass.size)
     return changed

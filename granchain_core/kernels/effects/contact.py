@@ -17,7 +17,7 @@ from ..compiling.jit import by_slot, in_simd_kernels, inline_llvm, internal
 from ..simd.functions import clip, root
 
 
-@in_simd_kernels("rk4", "batch", "regularised")
+@in_simd_kernels("rk4", "batch", "dop853_root")
 class Chain(NamedTuple):
     """Slot of the chain itself."""
 

@@ -6,9 +6,9 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
              KuwabaraKono    a = 1/2   Kuwabara & Kono 1987
 Values     coefficient: λ = D (A₀/δ_r)^a/(mφ), at an overlap of one length unit where a > 0
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
-Terms      damping, damping_slope, dashpot_force, onset_force, dashpot_slope, primitive, times_primitive, shape = G/λ,
-           velocity and its inverse shifted (absent: v = w); keep_primitive, put_primitive and put_prescribed_primitive
-           write into the array of G
+Terms      damping, damping_slope, dashpot_force, onset_force, dashpot_slope, primitive, times_primitive,
+           unit_primitive = G/λ, velocity and its inverse shifted (absent: v = w); keep_primitive, put_primitive and
+           put_prescribed_primitive write into the array of G
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from ..compiling.jit import by_slot, by_slot_inlined, in_simd_kernels, inline_ll
 from ..contact_cubic import TINY
 from ..simd.functions import clip, gate, root
 from ..simd.vector import load_batch
-from .members import batch_values
+from .batch_values import batch_values
 
 
 @by_slot_inlined
@@ -95,7 +95,7 @@ def checked(*laws):
                             f"(flow/event_time.py) takes 0, 1/4, 1/2, … 5/4.")
         if any(not math.isclose(power(law(1.0), d, math.sqrt(d)), d**a) for d in (0.3, 1.0, 2.0)):
             raise TypeError(f"damping law {law.__name__}: `power` is not δ^{a}, which its `exponent` says.")
-        in_simd_kernels("rk4", "batch", "regularised")(law)  # these kernels use the same two terms
+        in_simd_kernels("rk4", "batch", "dop853_root")(law)  # these kernels use the same two terms
     return laws
 
 
@@ -204,12 +204,12 @@ def _(law, G, rate):
 
 
 @by_slot
-def shape(law, d, r):
-    """The shape of G: G over its coefficient, from d and r = √d."""
+def unit_primitive(law, d, r):
+    """G/λ: the primitive G over its coefficient, from d and r = √d."""
     return 0.0
 
 
-@shape.of(*LAWS)
+@unit_primitive.of(*LAWS)
 def _(law, d, r):
     return primitive_factor(law) * d * power(law, d, r)
 

@@ -22,7 +22,7 @@ from ..compiling.jit import by_slot, in_simd_kernels
 BODY_FAR_AWAY = 1e30
 
 
-@in_simd_kernels("rk4", "batch", "regularised")
+@in_simd_kernels("rk4", "batch", "dop853_root")
 class Harmonic(NamedTuple):
     """Slot of the harmonic driver."""
 

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 from ..compiling.jit import by_slot, in_simd_kernels
 from ..simd.vector import load_batch
-from .members import batch_values
+from .batch_values import batch_values
 
 
-@in_simd_kernels("rk4", "batch", "regularised")
+@in_simd_kernels("rk4", "batch", "dop853_root")
 class Foundation(NamedTuple):
     """Slot of the foundation spring."""
 

@@ -12,10 +12,10 @@ import numpy as np
 
 from ..compiling.jit import by_slot, in_simd_kernels
 from ..simd.vector import load_like
-from .members import batch_values
+from .batch_values import batch_values
 
 
-@in_simd_kernels("rk4", "batch", "regularised")
+@in_simd_kernels("rk4", "batch", "dop853_root")
 class Preload(NamedTuple):
     """Slot of the static overlaps."""
 

@@ -11,7 +11,7 @@ Each term is given the bead's number i, 1 to N, for values that differ from bead
 from __future__ import annotations
 
 from ..compiling.jit import by_slot, inline_llvm, internal
-from ..effects.balance import Balance
+from ..effects.energy_account import EnergyAccount
 from ..effects.foundation import add_foundation_force, add_foundation_slope, foundation_energy
 
 
@@ -54,13 +54,13 @@ def add_force_trace(slots, i, trace, u, v, weight):
 
 
 @by_slot
-def account_for_bodies(balance, slots, dy):
+def account_for_bodies(account, slots, dy):
     """Add the power lost by all beads to the integrand of Q; needs the velocities in dy. Absent: nothing is
     integrated."""
 
 
-@account_for_bodies.of(Balance)
-def _(balance, slots, dy):
+@account_for_bodies.of(EnergyAccount)
+def _(account, slots, dy):
     lost = 0.0
     for i in range(1, slots.chain.inverse_mass.size - 1):
         lost += power_lost_on_bead(slots, i, dy[i])

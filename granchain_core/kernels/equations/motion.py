@@ -1,6 +1,6 @@
 """The equations of motion in w-variables, assembled from the effects that are present: the reference form.
 
-rk4/short_chain.py, rk4/long_chain.py, regularised/chain.py and batch/step.py repeat them in vectors, naive.py states
+rk4/short_chain.py, rk4/long_chain.py, dop853_root/chain.py and batch/step.py repeat them in vectors, naive.py states
 them in (u, v), and flow/tangent.py and flow/saltation.py linearise them. tests/kernels/equations/test_motion.py
 compares this file with the paper's equations; tests/kernels, tests/numerics/test_methods_agree.py and
 tests/orbits/test_tangents.py compare the others with it.
@@ -10,7 +10,7 @@ tests/orbits/test_tangents.py compare the others with it.
     m_i ẇ_i = F^el_{i-1} − F^el_i + P_i       continuous: no Heaviside function, no velocity differences;
                                               P_i, such as −k u_i, from body_forces.py
 
-One flat array y holds u_0..u_{N+1}, then w_0..w_{N+1}, then (with a balance) work and loss; driver and wall are
+One flat array y holds u_0..u_{N+1}, then w_0..w_{N+1}, then (with an energy account) work and loss; driver and wall are
 the ends of both rows, so that every loop runs over all contacts without special cases.
 """
 
@@ -21,12 +21,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.jit import check_effects, inline_llvm, internal, kernel
-from ..effects.balance import account
+from ..effects.batch_values import batch_values
 from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
 from ..effects.dissipation import dashpot_force, keep_primitive, shifted, velocity
 from ..effects.driver import driver_displacement, driver_velocity
+from ..effects.energy_account import account_rates
 from ..effects.given_force import prescribe_force, prescribe_primitive
-from ..effects.members import batch_values
 from ..effects.preload import overlap
 from ..effects.tension import cut_tension, keep_force_free_primitive, unless_force_free
 from .body_forces import account_for_bodies, force_on_bead, stored_on_bead
@@ -41,7 +41,7 @@ class Slots(NamedTuple):
     foundation: Any = None
     preload: Any = None
     driver: Any = None
-    balance: Any = None
+    account: Any = None
 
 
 @inline_llvm
@@ -54,7 +54,7 @@ def batch_slots(slots):
         batch_values(slots.foundation),
         batch_values(slots.preload),
         slots.driver,
-        slots.balance,
+        slots.account,
     )
 
 
@@ -73,7 +73,7 @@ class Trajectory(NamedTuple):
     """What is integrated: the chain's slots, the drive, state y (M,) and the method's workspace.
 
     `drive` is a `Cycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py). M is twice
-    the number of bodies N + 2, and two more with a balance.
+    the number of bodies N + 2, and two more with an energy account.
     """
 
     slots: Slots
@@ -106,8 +106,8 @@ def motion(slots, u0, v0, y, dy, forces):
     prescribe_force(slots.driver, dy, e)
     for i in range(1, bodies - 1):
         dy[bodies + i] = inverse_mass[i] * force_on_bead(slots, i, e[i - 1] - e[i], y[i], dy[i])
-    account(slots.balance, slots, y, dy, e)
-    account_for_bodies(slots.balance, slots, dy)
+    account_rates(slots.account, slots, y, dy, e)
+    account_for_bodies(slots.account, slots, dy)
 
 
 @internal

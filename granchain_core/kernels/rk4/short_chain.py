@@ -14,7 +14,7 @@ import numpy as np
 from ..compiling.jit import by_slot, by_type, inline_llvm
 from ..contact_cubic import OVERLAP, RATE
 from ..effects.contact import positive_part
-from ..effects.dissipation import LAWS, shape
+from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.preload import row_overlap, row_values
 from ..equations.body_forces import force_on_bead
 from ..simd.functions import root
@@ -40,7 +40,7 @@ class Width32(NamedTuple):
 
 
 #: The widths there are, by their number of bodies.
-WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
+CHAIN_WIDTHS: dict[int, Any] = {8: Width8(), 16: Width16(), 32: Width32()}
 
 #: The chain at a step's beginning and at its end in the workspace; the vectors of each, one a row, and their number.
 BEGIN, END = 0, 1
@@ -109,7 +109,7 @@ def _(width, array, row):
 
 @by_slot
 def over_masses(law, inverse_mass):
-    """The damping coefficient over the masses, by which differences of shapes of G are multiplied. Absent: None."""
+    """The damping coefficient over the masses, by which differences of G/λ are multiplied. Absent: None."""
     return None
 
 
@@ -119,14 +119,14 @@ def _(law, inverse_mass):
 
 
 @by_slot
-def chain_velocity(law, w, damping_over_mass, shapes):
-    """v = w + (G_{i-1} − G_i)/m of all beads, from the shapes of G."""
+def chain_velocity(law, w, damping_over_mass, primitives):
+    """v = w + (G_{i-1} − G_i)/m of all beads, from G/λ of all contacts."""
     return w
 
 
 @chain_velocity.of(*LAWS)
-def _(law, w, damping_over_mass, shapes):
-    return w + damping_over_mass * (from_left(blank(shapes), shapes) - shapes)
+def _(law, w, damping_over_mass, primitives):
+    return w + damping_over_mass * (from_left(blank(primitives), primitives) - primitives)
 
 
 @inline_llvm
@@ -146,7 +146,7 @@ def chain_slope(values, u0, u, w):
     d = positive_part(overlap)
     r = root(d)
     e = values.stiffness * d * r
-    du = chain_velocity(law, w, values.damping_over_mass, shape(law, d, r))
+    du = chain_velocity(law, w, values.damping_over_mass, unit_primitive(law, d, r))
     return overlap, e, du, force_on_bead(values.slots, None, from_left(blank(e), e) - e, here, du)
 
 

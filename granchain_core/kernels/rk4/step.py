@@ -13,8 +13,8 @@ import numpy as np
 
 from ..compiling.jit import by_slot, by_type_inlined, inline_numba, internal
 from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END
-from ..effects.balance import Balance
 from ..effects.driver import driver_displacement, driver_velocity
+from ..effects.energy_account import EnergyAccount
 from ..effects.preload import overlap
 from ..equations.motion import copy, motion
 from ..forces.crossings import end_overlaps, watch_crossings
@@ -104,7 +104,7 @@ def may_change(slots, y, slope, end, end_slope):
 
     An overlap that moves towards zero at the start and away from it at the end may have crossed it in between. The same
     test stands in five other places, in the form that each needs: short_chain_steps.py `run_short_chain`, long_chain.py
-    `comes_nearer`, contact_cubic.py `contact_root`, dop853/bracket.py `may_turn` and regularised/changes.py
+    `comes_nearer`, contact_cubic.py `contact_root`, dop853/bracket.py `may_turn` and dop853_root/changes.py
     `changes_in` with `may_touch`.
     """
     changed = 0
@@ -131,16 +131,16 @@ def correct_state(slots, ends, v0, y):
     for i in range(1, bodies - 1):
         y[i] += inverse_mass[i] * (ends[DISPLACEMENT_ERROR, i] - ends[DISPLACEMENT_ERROR, i - 1])
         y[bodies + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR, i] - ends[MOMENTUM_ERROR, i - 1])
-    correct_work(slots.balance, ends[MOMENTUM_ERROR, 0] * v0, y)
+    correct_work(slots.account, ends[MOMENTUM_ERROR, 0] * v0, y)
 
 
 @by_slot
-def correct_work(balance, excess, y):
+def correct_work(account, excess, y):
     """Subtract the error of contact 0's impulse, times v_0, from the driver's work. Absent: no work is recorded."""
 
 
-@correct_work.of(Balance)
-def _(balance, excess, y):
+@correct_work.of(EnergyAccount)
+def _(account, excess, y):
     y[y.size - 2] -= excess
 
 

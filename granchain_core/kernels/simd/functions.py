@@ -14,8 +14,8 @@ from llvmlite import ir
 from numba.core import cgutils
 from numba.extending import intrinsic, overload
 
+from ..batch_size import has_avx512
 from ..compiling.jit import FAST_MATH
-from ..width import has_avx512
 from .vector import VECTOR_WIDTH, VectorType, as_vector, vector
 
 #: Whether the processor has `vrsqrt14pd` for eight doubles.

@@ -21,8 +21,8 @@ from numba.extending import (
     register_model,
 )
 
+from ..batch_size import BATCH_SIZE
 from ..compiling.jit import FAST_MATH
-from ..width import BATCH_SIZE
 
 #: Doubles in a vector along a chain or of tangents.
 VECTOR_WIDTH = 8

@@ -21,8 +21,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...integrate.batch import Batch
+from ...kernels.batch_size import BATCH_SIZE
 from ...kernels.strobes.periodicity import LONGEST_PERIOD, SETTLED_DISTANCE
-from ...kernels.width import BATCH_SIZE
 from ...regime import Regime
 from ...scaling import scale_chain, scale_like
 from ...scene import Scene

@@ -26,9 +26,9 @@ def checked(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     yield
 
 
-def advance(method: str, changes: dict, balance: bool = False) -> None:
+def advance(method: str, changes: dict, account: bool = False) -> None:
     chain = scene("sec2").evolve(f=2000.0, **changes)
-    engine = Engine(chain, Setting(method), 4, balance)
+    engine = Engine(chain, Setting(method), 4, account)
     engine.start(State(np.zeros(chain.N), np.full(chain.N, 0.01)))
     engine.record(6)
     engine.record(2)
@@ -44,7 +44,7 @@ def test_every_method(method: str) -> None:
 @pytest.mark.parametrize("changes", CHAINS, ids=str)
 def test_every_kind_of_chain(changes: dict) -> None:
     advance(FIXED_STEP, changes)
-    advance(FIXED_STEP, changes, balance=True)
+    advance(FIXED_STEP, changes, account=True)
 
 
 def test_a_workspace_of_another_type_has_a_version_of_its_own() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.kernels.effects.balance import Balance
+from granchain_core.kernels.effects.energy_account import EnergyAccount
 from granchain_core.kernels.equations import body_forces
 from granchain_core.scaling import ScaledChain, scale_chain
 
@@ -36,7 +36,7 @@ def numbers(monkeypatch: pytest.MonkeyPatch, module: Any, name: str, answer: int
 
 
 def test_every_term_is_asked_for_each_bead(monkeypatch: pytest.MonkeyPatch, chain: ScaledChain) -> None:
-    y, dy, slots = np.zeros(14), np.zeros(14), chain.slots._replace(balance=Balance(1))
+    y, dy, slots = np.zeros(14), np.zeros(14), chain.slots._replace(account=EnergyAccount(1))
     forces = chain.forces()
     of_forces = numbers(monkeypatch, MOTION, "force_on_bead", 0)
     of_powers = numbers(monkeypatch, body_forces, "power_lost_on_bead", 0)

@@ -17,8 +17,8 @@ from granchain_core.kernels.contact_cubic import (
     RATE_END,
 )
 from granchain_core.kernels.dop853 import run as dop853
-from granchain_core.kernels.effects.balance import Balance
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from granchain_core.kernels.effects.energy_account import EnergyAccount
 from granchain_core.kernels.rk4 import contact_events as events
 from granchain_core.kernels.rk4 import step as fixed_step
 
@@ -113,7 +113,7 @@ def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None
     """
     inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((contact_cubic.ENDS, 3))
     ends[MOMENTUM_ERROR], ends[DISPLACEMENT_ERROR] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)
-    slots = SimpleNamespace(chain=SimpleNamespace(inverse_mass=inverse), balance=Balance(1))
+    slots = SimpleNamespace(chain=SimpleNamespace(inverse_mass=inverse), account=EnergyAccount(1))
     y = np.zeros(10)
     fixed_step.correct_state.py_func(slots, ends, 0.25, y)
     # bead i is pushed forward by contact i − 1 and back by contact i

@@ -22,13 +22,13 @@ def test_kernels_that_the_mark_leaves_out_do_not_know_the_slot(monkeypatch: pyte
         monkeypatch.setitem(jit._IN_SIMD_KERNELS, folder, set(known))
     slots = scale_chain(scene("sec2")).slots._replace(foundation=Slot(1.0))
     assert jit.in_simd_kernels("rk4", "batch")(Slot) is Slot
-    assert [jit.unknown_slots(slots, folder) for folder in ("rk4", "batch", "regularised")] == [[], [], ["foundation"]]
+    assert [jit.unknown_slots(slots, folder) for folder in ("rk4", "batch", "dop853_root")] == [[], [], ["foundation"]]
 
 
 @pytest.mark.parametrize("slots", [{"kappa": 0.01, "F0": 1.0}, {"dissipation": "none"}], ids=str)
 def test_absent_effects_are_known(slots: dict[str, object]) -> None:
     present = scale_chain(scene("sec2").evolve(**slots)).slots  # type: ignore[arg-type]
-    assert jit.unknown_slots(present, "regularised") == []
+    assert jit.unknown_slots(present, "dop853_root") == []
 
 
 @pytest.mark.parametrize("folders", [("rk5",), (Slot,)], ids=str)

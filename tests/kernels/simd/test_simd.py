@@ -12,7 +12,7 @@ from granchain_core import Scene, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch, can_share_batch
 from granchain_core.kernels.compiling.jit import unknown_slots
-from granchain_core.kernels.rk4.short_chain import WIDTHS
+from granchain_core.kernels.rk4.short_chain import CHAIN_WIDTHS
 from granchain_core.scaling import scale_chain
 from granchain_core.scene.effects import EFFECTS
 from granchain_core.state import rest
@@ -54,7 +54,7 @@ ROUNDING = 1e-12
 
 def test_every_two_values_stand_together_in_a_chain() -> None:
     shown = [scene("sec2").evolve(**changes) for changes in CHAINS.values()]
-    rows = [(one.dissipation, next((width for width in WIDTHS if width >= one.N + 2), "long"), one.F0 > 0.0,
+    rows = [(one.dissipation, next((width for width in CHAIN_WIDTHS if width >= one.N + 2), "long"), one.F0 > 0.0,
              one.kappa > 0.0, one.dimer != 1.0 or one.taper != 1.0) for one in shown]
     assert {row[0] for row in rows} == set(LAWS)
     for first, second in itertools.combinations(zip(*rows, strict=True), 2):
@@ -65,7 +65,7 @@ def test_every_two_values_stand_together_in_a_chain() -> None:
 def test_steps_along_the_chain_are_the_scalar_steps(changes: dict[str, object]) -> None:
     shown = scene("sec2").evolve(**changes)
     # there are no vectors with the energy account, which changes nothing in the motion
-    fast, slow = (Engine(shown, Setting("rk4-split"), 8, balance) for balance in (False, True))
+    fast, slow = (Engine(shown, Setting("rk4-split"), 8, account) for account in (False, True))
     assert fast.stepper.work.simd is not None and slow.stepper.work.simd is None
     samples = 24 if shown.has_dissipation else 16  # without damping, rounding grows tenfold in half a period
     a, b = fast.record(samples), slow.record(samples)

@@ -12,7 +12,7 @@ import numba
 import pytest
 
 from granchain_core import BadInput, resonance_curve, scene
-from granchain_core.kernels import width
+from granchain_core.kernels import batch_size
 
 FREQUENCIES = [130.0, 255.0, 340.0, 470.0, 850.0, 1130.0, 1576.0, 2000.0, 2500.0]
 #: In a process of its own, because kernels are compiled for one number of members.
@@ -25,9 +25,9 @@ print(json.dumps([[p.regime.name, p.regime.period, p.max_output_force, p.force_e
 
 
 def test_both_sizes_of_a_batch_give_the_same_curve() -> None:
-    other, = set(width.CHOICES) - {width.BATCH_SIZE}
+    other, = set(batch_size.CHOICES) - {batch_size.BATCH_SIZE}
     printed = subprocess.run([sys.executable, "-c", OTHER, json.dumps(FREQUENCIES)], capture_output=True, text=True,
-                             check=True, env={**os.environ, width.VARIABLE: str(other)}).stdout
+                             check=True, env={**os.environ, batch_size.VARIABLE: str(other)}).stdout
     here = resonance_curve(scene("sec2"), FREQUENCIES, workers=1).points
     compared = 0
     for mine, (regime, period, force, error) in zip(here, json.loads(printed), strict=True):
@@ -59,25 +59,25 @@ def test_avx512_is_that_of_the_machine_the_kernels_are_compiled_for(
     monkeypatch.setattr(numba.config, "CPU_FEATURES", features)
     monkeypatch.setattr(numba.config, "CPU_NAME", name)
     monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", lambda: host)
-    assert width.has_avx512() == wide
-    assert width.batch_size(None) == (8 if wide else 4)
+    assert batch_size.has_avx512() == wide
+    assert batch_size.size_from(None) == (8 if wide else 4)
 
 
 @pytest.mark.quick
 def test_the_size_of_a_batch_is_the_one_chosen() -> None:
-    assert width.batch_size("4") == 4 and width.batch_size("8") == 8
+    assert batch_size.size_from("4") == 4 and batch_size.size_from("8") == 8
     with pytest.raises(BadInput, match="GRANCHAIN_BATCH_SIZE is '7'; it may be 4 or 8"):
-        width.batch_size("7")
+        batch_size.size_from("7")
 
 
 @pytest.mark.quick
 def test_the_older_name_of_the_variable_still_works(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(width.VARIABLE, raising=False)
-    for size in width.CHOICES:
-        monkeypatch.setenv(width.OLDER_VARIABLE, str(size))
-        assert width._batch_size_here() == size
-    monkeypatch.setenv(width.OLDER_VARIABLE, "7")
+    monkeypatch.delenv(batch_size.VARIABLE, raising=False)
+    for size in batch_size.CHOICES:
+        monkeypatch.setenv(batch_size.OLDER_VARIABLE, str(size))
+        assert batch_size._batch_size_here() == size
+    monkeypatch.setenv(batch_size.OLDER_VARIABLE, "7")
     with pytest.raises(BadInput, match="GRANCHAIN_LANES is '7'"):
-        width._batch_size_here()
-    monkeypatch.setenv(width.VARIABLE, "4")
-    assert width._batch_size_here() == 4
+        batch_size._batch_size_here()
+    monkeypatch.setenv(batch_size.VARIABLE, "4")
+    assert batch_size._batch_size_here() == 4

@@ -34,7 +34,7 @@ def processor() -> str:
     return numba.config.CPU_NAME or llvmlite.binding.get_host_cpu_name()
 
 
-def batch_size(chosen: str | None, variable: str = VARIABLE) -> int:
+def size_from(chosen: str | None, variable: str = VARIABLE) -> int:
     """Scenes in one vector: `chosen`, the value of an environment variable, or if it is empty what suits the machine.
 
     Raises
@@ -53,7 +53,7 @@ def batch_size(chosen: str | None, variable: str = VARIABLE) -> int:
 def _batch_size_here() -> int:
     """The size that the environment sets, or what suits the machine."""
     variable = VARIABLE if os.environ.get(VARIABLE) else OLDER_VARIABLE
-    return batch_size(os.environ.get(variable), variable)
+    return size_from(os.environ.get(variable), variable)
 
 
 BATCH_SIZE = _batch_size_here()

@@ -8,10 +8,10 @@ from ..errors import BadInput
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.dop853.run import Stretch
 from ..kernels.dop853.step import ALL_STAGES
+from ..kernels.dop853_root.chain import STATE_ROWS, Dop853RootWorkspace, Stages
+from ..kernels.dop853_root.run import run_dop853_root
 from ..kernels.forces.largest import new_log
-from ..kernels.regularised.chain import STATE_ROWS, RegularisedWorkspace, Stages
-from ..kernels.regularised.run import run_regularised
-from ..kernels.rk4.short_chain import WIDTHS
+from ..kernels.rk4.short_chain import CHAIN_WIDTHS
 from ..kernels.samples import Output, Samples
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
@@ -21,7 +21,7 @@ from .fixed import short_chain_workspace
 from .stepper import CallStart, empty_samples
 
 
-class Regularised(Dop853Stepper):
+class Dop853RootStepper(Dop853Stepper):
     """Dormand–Prince 8 in (u, w) at a relative tolerance per step, in a transformed time next to contact events."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
@@ -36,7 +36,7 @@ class Regularised(Dop853Stepper):
     def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
                 out: Output) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
-        status, rows = run_regularised(self.method, self._vectors, self.trajectory(y),
+        status, rows = run_dop853_root(self.method, self._vectors, self.trajectory(y),
                                   Stretch(first, points, self.grid, every), samples, out)
         return status, rows
 
@@ -52,17 +52,18 @@ class Regularised(Dop853Stepper):
         return again.locate_failure(now, start, done)
 
 
-def _workspace(scaled: ScaledChain) -> RegularisedWorkspace:
+def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:
     """The workspace of a chain of up to 30 beads, all of whose effects these kernels know. Raises `BadInput`."""
-    width = next((lanes for lanes in WIDTHS if scaled.bodies <= lanes), 0)
-    unknown = unknown_slots(scaled.slots, "regularised")
+    width = next((lanes for lanes in CHAIN_WIDTHS if scaled.bodies <= lanes), 0)
+    unknown = unknown_slots(scaled.slots, "dop853_root")
     if not width or unknown or scaled.slots.driver is None:
         named = f" It does not know: {', '.join(unknown)}." if unknown else ""
-        raise BadInput(f"The method dop853-root takes chains of up to {max(WIDTHS) - 2} beads with a driver that is "
-                       f"harmonic or at rest, without tension cut and energy account; use dop853 for this one.{named}")
+        raise BadInput(f"The method dop853-root takes chains of up to {max(CHAIN_WIDTHS) - 2} beads with a driver "
+                       "that is harmonic or at rest, without tension cut and energy account; use dop853 for this "
+                       f"one.{named}")
 
     def rows(count: int) -> Stages:
         return Stages(aligned(count, width), aligned(count, width), aligned(count, VECTOR_WIDTH))
 
-    return RegularisedWorkspace(short_chain_workspace(scaled, width), rows(ALL_STAGES), rows(7), rows(1),
+    return Dop853RootWorkspace(short_chain_workspace(scaled, width), rows(ALL_STAGES), rows(7), rows(1),
                            aligned(STATE_ROWS, width), aligned(1, width), np.zeros(8))

@@ -23,19 +23,19 @@ from .preload import overlap
 from .tension import contact_primitive, lost_in, unless_force_free
 
 
-class Balance(NamedTuple):
+class EnergyAccount(NamedTuple):
     """Slot of the energy account; its one value is always 1, since the compiler has no type for an empty tuple."""
 
     present: int
 
 
 @by_slot
-def account(balance, slots, y, dy, e):
+def account_rates(account, slots, y, dy, e):
     """Write the integrands of W and Q after the motion in dy; needs the velocities in dy and the forces in e."""
 
 
-@account.of(Balance)
-def _(balance, slots, y, dy, e):
+@account_rates.of(EnergyAccount)
+def _(account, slots, y, dy, e):
     bodies = slots.chain.inverse_mass.size
     acceleration = driver_acceleration(slots.driver, y[0])
     dy[bodies] = acceleration
@@ -54,23 +54,23 @@ def _(balance, slots, y, dy, e):
 
 
 @by_slot
-def force_free_loss(balance, slots, y, end):
+def force_free_loss(account, slots, y, end):
     """Energy that force-free contacts lose from y to `end`. Absent: there is no account."""
     return 0.0
 
 
-@force_free_loss.of(Balance)
-def _(balance, slots, y, end):
+@force_free_loss.of(EnergyAccount)
+def _(account, slots, y, end):
     return lost_in(slots.tension, slots, y, end)
 
 
 @by_slot
-def add_to_account(balance, y, work, lost):
+def add_to_account(account, y, work, lost):
     """Add to the work and to the energy lost in y. Absent: there is no account."""
 
 
-@add_to_account.of(Balance)
-def _(balance, y, work, lost):
+@add_to_account.of(EnergyAccount)
+def _(account, y, work, lost):
     y[y.size - 2] += work
     y[y.size - 1] += lost
 
@@ -92,11 +92,11 @@ def account_ends(slots, y, dy):
 
 
 @by_slot
-def ends_of(balance, slots, y, dy):
+def ends_of(account, slots, y, dy):
     """`account_ends` where there is an account. Absent: zero."""
     return 0.0, 0.0
 
 
-@ends_of.of(Balance)
-def _(balance, slots, y, dy):
+@ends_of.of(EnergyAccount)
+def _(account, slots, y, dy):
     return account_ends(slots, y, dy)

@@ -181,7 +181,7 @@ def write_beads(constants, begin, y, bodies):
 
 
 @kernel
-def run_regularised(method, work, trajectory, stretch, samples, out):
+def run_dop853_root(method, work, trajectory, stretch, samples, out):
     """Run over a stretch of the grid, as `run_dop853` (dop853/run.py) does, with the chain's own workspace `work`."""
     slots, drive, y, workspace = trajectory
     points, grid, every, counts = stretch.points, stretch.grid, stretch.every, out.counts

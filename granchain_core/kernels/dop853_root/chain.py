@@ -22,7 +22,7 @@ import numpy as np
 
 from ..compiling.jit import inline_llvm
 from ..effects.contact import positive_part
-from ..effects.dissipation import shape
+from ..effects.dissipation import unit_primitive
 from ..effects.driver import driver_acceleration
 from ..effects.preload import row_overlap
 from ..equations.body_forces import force_on_bead
@@ -46,7 +46,7 @@ class Stages(NamedTuple):
     clock: np.ndarray
 
 
-class RegularisedWorkspace(NamedTuple):
+class Dop853RootWorkspace(NamedTuple):
     """Workspace of steps along a short chain.
 
     `slopes` are those in ξ of 16 stages, `dense` the 7 rows of the dense output, `begin` (1 row) the step's start. Rows
@@ -106,10 +106,10 @@ def powers(power, q):
 
 
 @inline_llvm
-def signed_shape(law, power, q):
-    """The shape of G at the overlap q^p, continued to q < 0 as a power of q."""
+def signed_primitive(law, power, q):
+    """G/λ at the overlap q^p, continued to q < 0 as a power of q."""
     _, r, d = powers(power, q)
-    return shape(law, d, r) if power == 2 else copysign(1.0, q) * shape(law, d, r)
+    return unit_primitive(law, d, r) if power == 2 else copysign(1.0, q) * unit_primitive(law, d, r)
 
 
 @inline_llvm
@@ -122,9 +122,9 @@ def rates_at(values, driver, transform, point):
     pressed = positive_part(overlap)
     roots = root(pressed)
     elastic = transform.stiffness * (pressed * roots) + transform.chosen_stiffness * (d * r)
-    shapes = (transform.others * shape(law, pressed, roots)
-              + transform.chosen * signed_shape(law, power, q))
-    du = chain_velocity(law, point.w, values.damping_over_mass, shapes)
+    primitives = (transform.others * unit_primitive(law, pressed, roots)
+              + transform.chosen * signed_primitive(law, power, q))
+    du = chain_velocity(law, point.w, values.damping_over_mass, primitives)
     net_force = force_on_bead(values.slots, None, from_left(blank(elastic), elastic) - elastic, u, du)
     dw = with_first(values.inverse_mass * net_force, driver_acceleration(driver, at(u, 0)))
     return Rates(du, dw, overlap, du - from_right(du, blank(du)), elastic)
