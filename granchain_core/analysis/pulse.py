@@ -3,7 +3,7 @@
 A chain of equal beads without precompression carries a solitary wave whose shape does not depend on its strength. With
 K = m = 1 and the distance of two beads as the unit of length its speed is V = c F^{1/6} for the largest force F, in
 Nesterenko's continuum c = 2/√5 (J. Appl. Mech. Tech. Phys. 24, 733, 1983), for the discrete chain c = 0.9055158. The
-discrete constant follows from the traveling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
+discrete constant follows from the travelling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
 V² δ(ξ) = ∫ Λ(ξ − s) δ(s)^{3/2} ds with Λ(s) = max(0, 1 − |s|), δ being the overlap; tests solve that equation.
 """
 
@@ -31,9 +31,14 @@ _PART = 0.02
 #: first maxima. The wave from the wall reaches the last two contacts after 2 such times.
 _PASSED = 1.5
 #: Stated error by sampling over the change of the force with every second sample. With F = F₀ − a x² + b x⁴ and the
-#: maximum a distance s from a sample, the parabola is wrong by b s² (h² − s²), so that of the spacing 2h changes it by
-#: 3 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated.
+#: maximum a distance s from a sample, the parabola is wrong by 3 b s² (h² − s²), so that of the spacing 2h changes it
+#: by 9 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated. The same holds
+#: for the place of the maximum, which is wrong by (b/a) s (4s² − h²) and changes by 3 (b/a) s h².
 _OF_THE_CHANGE = 2.0 / 3.0
+#: The same for the time above half height. A straight line between samples places a crossing at the part θ of its
+#: interval wrongly by a multiple of θ(1 − θ), and twice the spacing changes that by the same multiple of θ or 1 − θ: by
+#: the error itself, or more.
+_OF_THE_CHANGE_OF_WIDTH = 2.0
 
 
 def solitary_speed(scene: Scene, force: float, constant: float = DISCRETE) -> float:
@@ -72,6 +77,10 @@ class Pulse(Labelled):
     sampling_error : float
         Relative error of the forces because the motion is sampled: a parabola through three samples stands for the
         maximum.
+    sampling_error_time : float
+        The same of the times, absolute [s].
+    sampling_error_speed, sampling_error_width : float
+        The same of speeds and widths, relative; NaN where there are none.
 
     Examples
     --------
@@ -89,6 +98,9 @@ class Pulse(Labelled):
     width: np.ndarray
     velocity: np.ndarray
     sampling_error: float
+    sampling_error_time: float
+    sampling_error_speed: float
+    sampling_error_width: float
 
     @property
     def speed_in_metres(self) -> np.ndarray:
@@ -115,9 +127,10 @@ class Pulse(Labelled):
         return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Where it comes from, and the error by sampling."""
+        """Where it comes from, and the errors by sampling."""
         return {**provenance(self.scene, self.run.cost.method, self.run.displacement_error),
-                "sampling_error": self.sampling_error}
+                "sampling_error": self.sampling_error, "sampling_error_time": self.sampling_error_time,
+                "sampling_error_speed": self.sampling_error_speed, "sampling_error_width": self.sampling_error_width}
 
     def summary(self) -> list[str]:
         """Force, speed and width in the middle of the chain."""
@@ -162,13 +175,18 @@ def pulse(run: Run) -> Pulse:
     contacts = np.arange(1, scene.N)
     firsts = [_first_maximum(run, c) for c in range(1, scene.N + 1)]
     found = np.array([_passing(run, int(c), firsts) for c in contacts])
-    time, force, half, coarse, arrived = found.T
+    time, force, half, arrived = found[:, 0].T
+    time_change, force_change, half_change, arrival_change = np.abs(found[:, 1] - found[:, 0]).T
+    late = _OF_THE_CHANGE * arrival_change
     speed = np.full(scene.N - 1, np.nan)
     speed[1:-1] = 2.0 / np.where(arrived[2:] > arrived[:-2], arrived[2:] - arrived[:-2], np.nan)
     passed = np.searchsorted(run.time, [*time, 2.0 * time[-1] - time[-2]]) + 1  # a bead is fastest before this contact
     velocity = np.array([run.velocity[: passed[i], i].max() for i in range(scene.N)])
+    speed_error = 0.5 * speed[1:-1] * (late[2:] + late[:-2])
+    width_error = speed_error + _OF_THE_CHANGE_OF_WIDTH * (half_change / half)[1:-1]
     return Pulse(run, contacts, time, force, speed, speed * half, velocity,
-                 _OF_THE_CHANGE * float((np.abs(force - coarse) / force).max()))
+                 _OF_THE_CHANGE * float((force_change / force).max()), _OF_THE_CHANGE * float(time_change.max()),
+                 _largest(speed_error), _largest(width_error))
 
 
 def _first_maximum(run: Run, contact: int) -> int | None:
@@ -190,11 +208,17 @@ def _maxima(force: np.ndarray) -> np.ndarray:
     return 1 + np.flatnonzero((inner > 0.0) & (inner >= force[:-2]) & (inner > force[2:]))
 
 
-def _passing(run: Run, contact: int, firsts: list[int | None]) -> tuple[float, float, float, float, float]:
-    """The pulse in a contact: time [s] and height [N] of its maximum, how long the force is above half of it [s].
+def _largest(errors: np.ndarray) -> float:
+    """The largest of the errors that are known, NaN if none is."""
+    known = errors[np.isfinite(errors)]
+    return float(known.max()) if len(known) else math.nan
 
-    `firsts` are the samples of the first maxima of contacts 1 to N. The fourth number is the height from every second
-    sample, the fifth the time of the first maximum [s].
+
+def _passing(run: Run, contact: int, firsts: list[int | None]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """The pulse in a contact: time [s] and height [N] of its maximum, how long the force is above half of it [s], and
+    the time of its first maximum [s].
+
+    `firsts` are the samples of the first maxima of contacts 1 to N. The same once more from every second sample.
     """
     force, time, first = run.force[:, contact], run.time, firsts[contact - 1]
     if first is None:
@@ -204,12 +228,19 @@ def _passing(run: Run, contact: int, firsts: list[int | None]) -> tuple[float, f
     maxima = _maxima(force)
     passing = maxima[(maxima >= first) & (maxima < min(end, first + gone[0]))] if len(gone) else np.array([first])
     i = int(passing[np.argmax(force[passing])])
-    shift, height = _vertex(*force[i - 1 : i + 2])
-    near = max(0, i - 2), min(len(force) - 1, i + 2)
-    coarse = _vertex(force[near[0]], force[i], force[near[1]])[1]
-    arrived, spacing = first + _vertex(*force[first - 1 : first + 2])[0], time[1] - time[0]
-    return (float(time[0] + (i + shift) * spacing), height, _above_half(time, force, i, 0.5 * height), coarse,
-            float(time[0] + arrived * spacing))
+    return (*_maximum(time, force, i), _maximum(time, force, first)[0]), \
+        (*_maximum(*_every_second(time, force, i)), _maximum(*_every_second(time, force, first))[0])
+
+
+def _every_second(time: np.ndarray, force: np.ndarray, i: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Every second sample, sample i among them, and its number there."""
+    return time[i % 2 :: 2], force[i % 2 :: 2], i // 2
+
+
+def _maximum(time: np.ndarray, force: np.ndarray, i: int) -> tuple[float, float, float]:
+    """Time and height of the maximum beside sample i, and how long the force is above half of it."""
+    shift, height = _vertex(force[max(0, i - 1)], force[i], force[min(len(force) - 1, i + 1)])
+    return float(time[i] + shift * (time[1] - time[0])), height, _above_half(time, force, i, 0.5 * height)
 
 
 def _vertex(before: float, best: float, after: float) -> tuple[float, float]:

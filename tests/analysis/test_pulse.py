@@ -164,12 +164,18 @@ def test_a_ripple_before_the_pulse_of_a_pressed_chain_is_not_the_pulse() -> None
 
 
 def test_coarse_samples_are_told_by_the_error() -> None:
-    """The stated error of the force by sampling bounds the difference from a fine record."""
+    """The stated errors by sampling bound the differences from a fine record."""
     fine = pulse(recorded("impact"))
     for samples in (200, 400, 1000):
         coarse = pulse(run(scene("impact"), periods=0, record=1, samples=samples))
         wrong = np.abs(coarse.force / fine.force - 1.0).max()
         assert wrong < coarse.sampling_error < max(1.0, 100.0 * wrong)
+        late = np.abs(coarse.time - fine.time).max()
+        assert late < coarse.sampling_error_time < 30.0 * late
+        for name in ("speed", "width"):
+            exact = getattr(fine, name)[1:-1]
+            wrong = np.nanmax(np.abs(getattr(coarse, name)[1:-1] / exact - 1.0))
+            assert wrong < getattr(coarse, f"sampling_error_{name}") < 30.0 * wrong, name
     assert fine.sampling_error < 1e-5
 
 
