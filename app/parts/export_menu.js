@@ -67,7 +67,7 @@ function pieces(name) {
   }
   const [, id, model] = FIGURES[name];
   const bars = id === "map" ? [colours()] : [];
-  const words = { map: "#scale .colours span", right: "#key span", curve: ".chapters button" }[id];
+  const words = { map: "#scale .colours span", right: "#key span", curve: ".peak-names button" }[id];
   return { parts: views(model).map(figurePiece), words: words ? wordsOf(words) : [], bars };
 }
 
