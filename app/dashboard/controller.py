@@ -58,7 +58,7 @@ class Controller:
         own: Actions = {
             "ping": lambda _: views.chain.send(type="pong"),
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
-            "narrow": lambda m: views.set_compact(bool(m.get("value"))),
+            "compact": lambda m: views.set_compact(bool(m.get("value"))),
             "visible": self._visible,
             "painted": lambda m: self.pictures.painted(m.get("number")),
             **self._scenes.actions,
@@ -89,9 +89,9 @@ class Controller:
 
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
-        self.views.set_compact(bool(message.get("narrow")))
+        self.views.set_compact(bool(message.get("compact")))
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
-        self.choices.choose({"value": message.get("theme")})
+        self.choices.set_theme(message.get("theme"))
         self.pinned.show()
         self._scenes.opened(self._first_start)
 

@@ -67,16 +67,16 @@ def _refusing(scene: Scene) -> Iterator[None]:
 class MainPicture:
     """Settled pictures and the live run. `note` shows a message that the next picture clears.
 
-    `arrived` is called with every settled picture, before it is sent.
+    `picture_ready` is called with every settled picture, before it is sent.
     """
 
     def __init__(self, host: Host, views: Views, note: Callable[[str], None],
-                 arrived: Callable[[Settled], None]) -> None:
+                 picture_ready: Callable[[Settled], None]) -> None:
         self._host = host
         self._session = host.session
         self._views = views
         self._note = note
-        self._announce = arrived
+        self._picture_ready = picture_ready
         self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
         self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
         self._live: LiveRun | None = None
@@ -226,14 +226,14 @@ class MainPicture:
         self._count_answer()
         if isinstance(picture, Settled):
             self._session.picture = picture
-            self._announce(picture)
+            self._picture_ready(picture)
         if self._session.notice:
             self._note("")
         self._shown = picture
         self._pacer.offer(picture)
 
     def _failed(self, error: Exception) -> None:
-        """There is no picture to time; the next one is timed from its own request."""
+        """Pass a failure on; the next picture is timed from its own request."""
         self._requested_at = None
         self._host.failed(error)
 

@@ -196,7 +196,7 @@ export function exportMenu(send, files) {
   const save = (kind) => button(kind.toUpperCase(), () => savePicture(picture.value, kind));
   return element(
     "div",
-    { className: "take" },
+    { className: "export-menu" },
     element("h2", { textContent: "Export" }),
     element("div", { className: "row" }, picture, save("png"), save("svg")),
     ...files.map(([what, words]) => button(words, () => send(what))),

@@ -48,7 +48,7 @@ print(dashboard.views.overlays["transmission"].state["sentence"])
 document = Document()
 dashboard.views.put_into(document)
 print(dict(document.template_variables["overlays"])["transmission"], "transmission.js" in FILES)
-print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["title"] == "transmission"])
+print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["name"] == "transmission"])
 """)
     first, second, overlay, words = printed.splitlines()
     assert first == second == "25.0 % of the largest input force arrives at the wall."
