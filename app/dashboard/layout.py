@@ -12,7 +12,6 @@ from bokeh.document import Document
 from bokeh.models import Range1d
 from panel.io import unlocked
 
-from granchain_core import Settled
 from granchain_core.experiment.formats import FORMATS
 
 from ..curve.bar import KINDS, CurveBar
@@ -63,7 +62,6 @@ class Views:
             "endings": [ending for one in FORMATS for ending in one.endings]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
-        self.shown: Settled | None = None
 
     def set_compact(self, compact: bool) -> None:
         """Shorten titles and leave out numbers on the axes over time if there is little room for them."""

@@ -27,7 +27,7 @@ from ..session.energy_residual import with_account
 from ..session.host import Host
 from ..session.live import LivePicture, LiveRun
 from .layout import Views
-from .show import show_live, show_settled
+from .show import show_live, show_regime, show_settled
 
 
 def size_of(picture: Settled) -> int:
@@ -82,7 +82,9 @@ class MainPicture:
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LivePicture | None = None
-        self._shown: Settled | LivePicture | None = None
+        self._accepted: Settled | LivePicture | None = None
+        #: The settled picture that was sent last; None while a live run is shown.
+        self._sent: Settled | None = None
         self._requested_at: float | None = None
         #: Frames of the last pictures, so that they are prepared once.
         self._frames: deque[Frames] = deque(maxlen=2)
@@ -95,7 +97,7 @@ class MainPicture:
 
     @property
     def awaiting_picture(self) -> bool:
-        """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
+        """See `Host.awaiting_picture`; a live run is at work all the time."""
         return self._jobs.busy and self.live is None
 
     @property
@@ -229,7 +231,7 @@ class MainPicture:
             self._picture_ready(picture)
         if self._session.notice:
             self._note("")
-        self._shown = picture
+        self._accepted = picture
         self._pacer.offer(picture)
 
     def _failed(self, error: Exception) -> None:
@@ -248,9 +250,16 @@ class MainPicture:
 
     def _send(self, number: int, picture: Settled | LivePicture) -> None:
         if isinstance(picture, Settled):
+            self._sent = picture
             show_settled(self._views, number, picture)
         else:
+            self._sent = None
             show_live(self._views, number, picture, self._session.playing)
+
+    def show_regime(self) -> None:
+        """Write the status line anew: the curve may tell now on which of its peaks or valleys the motion lies."""
+        if self._sent is not None:
+            show_regime(self._views, self._sent)
 
     def painted(self, number: object) -> None:
         """The browser says that picture `number` is on the screen."""
@@ -258,7 +267,7 @@ class MainPicture:
 
     def redraw(self) -> None:
         """Send the picture on the screen again, to be drawn in another way; a running chain sends pictures anyway."""
-        shown, live = self._shown, self.live is not None
+        shown, live = self._accepted, self.live is not None
         if shown is None or isinstance(shown, LivePicture) != live or (live and self._session.playing):
             return
         if shown.run.scene.name == self._session.scene.name:
