@@ -34,7 +34,7 @@ from ..serve.shared import Shared
 from ..serve.turns import TurnFlag
 from ..session.host import Host
 from ..session.session import without_frequency
-from ..session.task import Job, Task
+from ..session.task import Job, Task, say_nothing
 
 #: Fewest points of a stop band.
 _FEWEST_BAND_POINTS = 3
@@ -100,7 +100,7 @@ class PeakNames:
     def __init__(self, host: Host, show: Callable[[list[dict[str, Any]]], None]) -> None:
         self._host = host
         self._show = show
-        self._task = Task(host, ANALYSES, lambda *_: None, "Naming the peaks of the curve", host.failed)
+        self._task = Task(host, ANALYSES, say_nothing, "Naming the peaks of the curve", host.failed)
 
     def forget(self) -> None:
         """Show no names, because the curve has changed."""

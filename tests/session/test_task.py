@@ -161,6 +161,17 @@ def test_who_gives_way_for_long_looks_ever_more_rarely(host: SayingHost, monkeyp
     assert pauses == [0.01, 0.02, 0.04, 0.08, 0.16, 0.2, 0.2]
 
 
+def test_progress_is_reported_in_steps_and_gives_way_before_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: list[bool] = []
+    monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: bool(looks.append(True))))
+    host, reported = SayingHost(), []
+    progress = Job(host, host.say).progress(reported.append, steps=4)  # type: ignore[arg-type]
+    for i in range(11):
+        progress(i / 10)
+    host.run_callbacks_until(lambda: not host.callbacks)
+    assert reported == [0.3, 0.5, 0.8, 1.0] and len(looks) == 10
+
+
 def test_compiling_is_said_and_given_up_with_the_job(host: SayingHost, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.session.task.COMPILER.has", lambda *_: False)
     monkeypatch.setattr("app.session.task.COMPILER.await_piece", lambda *_: False)
