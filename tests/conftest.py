@@ -26,7 +26,7 @@ HERE = Path(__file__).parent
 #: wrong; orders, random scenes and browsers are for the whole suite.
 QUICK = (
     "architecture", "public", "scene", "experiment", "dashboard", "session", "integrate", "kernels/equations",
-    "kernels/effects", "kernels/rk4", "kernels/dop853", "parts",
+    "kernels/effects", "kernels/rk4", "kernels/dop853", "parts", "pages", "curve",
 )
 #: Folders whose tests may have a server in another thread, with documents of its own.
 SERVERS = ("serve", "public", "browser")

@@ -17,6 +17,8 @@ from tornado.ioloop import IOLoop
 from app.serve.channel import Channel, run_locked
 from app.serve.part_messages import register, take
 
+pytestmark = pytest.mark.quick
+
 VALUE = {"type": "map", "entries": [
     ["do", "set"], ["value", 850.3], ["low", {"type": "number", "value": "-inf"}], ["list", [1, None, True, "é", []]],
     ["inner", {"type": "map", "entries": [["a", {"type": "number", "value": "nan"}]]}], ["none", {"type": "map", "entries": []}]]}
