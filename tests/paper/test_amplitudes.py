@@ -16,8 +16,6 @@ RIG, AT_60, AT_90, AT_50 = (f"{1e6 * scene(name).A0:g}" for name in ("rig", *STA
 MODELLED = [f"{1e6 * amplitude:g}" for amplitude in MODEL_AMPLITUDES]
 #: Words that each text must have; spaces and line breaks count alike.
 NAMED = {
-    "README.md": (f"flexures, driven with {RIG} µm",
-                  f"the rig at 60 Hz ({AT_60} µm), 90 Hz ({AT_90} µm), and at the 50 Hz ({AT_50} µm)"),
     "docs/paper.md": (f"form peak, valley, peak: {AT_60}, {AT_90} and {AT_50} µm", f"at {RIG} µm the broad high region",
                       f"At {RIG} µm the model has *no* anti-resonance"),
     "assets/paper/statements.toml": (

@@ -25,7 +25,7 @@ class Unfinished(NamedTuple):
 @numba.njit(error_model="numpy")
 def terms(law, d):  # type: ignore[no-untyped-def]
     """g, g', G and G/c."""
-    return loss.damping(law, d), loss.damping_slope(law, d), loss.primitive(law, d), loss.shape(law, d, d**0.5)
+    return loss.damping(law, d), loss.damping_slope(law, d), loss.primitive(law, d), loss.unit_primitive(law, d, d**0.5)
 
 
 @pytest.mark.parametrize("d", [0.2, 1.0, 3.0])
