@@ -25,8 +25,8 @@ def files_by_name(pattern: str, folder: Path = _HERE) -> dict[str, Path]:
 
 #: Every module by its name.
 FILES = files_by_name("*.js")
-#: Those that are written into the page itself: they listen before any module is there.
-IN_PAGE = ("page.js", "connection.js")
+#: Those that are written into the page itself, in this order: they listen before any module is there.
+IN_PAGE = ("page.js", "address.js", "connection.js")
 
 
 class Scripts:

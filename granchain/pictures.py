@@ -52,7 +52,10 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
 
 
 def part_of_app(name: str) -> Any:
-    """A module of the dashboard's package, which is `app` in the tree and `granchain_app` where it is installed."""
+    """A module of the dashboard's package, which is `app` in the tree and `granchain_app` where it is installed.
+
+    `entry` of granchain_start finds it in the same way.
+    """
     try:
         return importlib.import_module(f"granchain_app.{name}")
     except ModuleNotFoundError as missing:

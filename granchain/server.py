@@ -21,8 +21,10 @@ from .pictures import part_of_app
 #: What the process runs: the command `granchain`, and nothing that depends on the PATH. It ends with this process.
 _PROGRAM = ("import sys; from granchain_core.child_processes import end_with_parent; "
             "end_with_parent(int(sys.argv.pop(1))); import granchain_start; sys.exit(granchain_start.entry())")
-#: Until the server answers [s]: the first start on a machine compiles. Between two looks [s].
-_PATIENCE, _LOOK = 120.0, 0.05
+#: Longest wait for the server's first answer [s]: the first start on a machine compiles.
+_START_TIMEOUT = 120.0
+#: Between two checks whether the server answers [s].
+_POLL_INTERVAL = 0.05
 #: Whose pages may show it in a frame: notebooks on this machine, at any port.
 _EMBEDDING = ("http://localhost:*", "http://127.0.0.1:*")
 
@@ -106,16 +108,16 @@ def dashboard(shown: Scene | str = "sec2", height: int = 800, port: int = 0) -> 
     http://localhost:41563/?v=1&scene=sec2&f=1130.0
     """
     chain = scene(shown) if isinstance(shown, str) else shown
-    place = port or _free_port()
-    words = ["serve", "--port", str(place)]
+    port = port or _free_port()
+    words = ["serve", "--port", str(port)]
     for origin in _EMBEDDING:
         words += ["--allow-embedding", origin]
     query = part_of_app("session.share").encode(chain, {})
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as said:
         process = subprocess.Popen([sys.executable, "-c", _PROGRAM, str(os.getpid()), *words],
                                    stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said)
-        board = Dashboard(f"http://localhost:{place}/?{query}", height, process)
-        if not _answers(process, place):
+        board = Dashboard(f"http://localhost:{port}/?{query}", height, process)
+        if not _answers(process, port):
             board.stop()
             said.seek(0)
             last = said.read().strip().splitlines()[-1:] or ["it did not answer"]
@@ -132,16 +134,16 @@ def _free_port() -> int:
 
 def _answers(process: subprocess.Popen[bytes], port: int) -> bool:
     """Wait until the server answers; False if it ends before."""
-    end = time.monotonic() + _PATIENCE
+    end = time.monotonic() + _START_TIMEOUT
     while process.poll() is None and time.monotonic() < end:
-        line = http.client.HTTPConnection("127.0.0.1", port, timeout=1.0)
+        connection = http.client.HTTPConnection("127.0.0.1", port, timeout=1.0)
         try:
-            line.request("GET", "/liveness")
-            if line.getresponse().status == 200:
+            connection.request("GET", "/liveness")
+            if connection.getresponse().status == 200:
                 return True
         except (OSError, http.client.HTTPException):
             pass
         finally:
-            line.close()
-        time.sleep(_LOOK)
+            connection.close()
+        time.sleep(_POLL_INTERVAL)
     return False

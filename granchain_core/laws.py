@@ -48,8 +48,8 @@ class Law:
     def latex(self) -> str:
         """The force in SI."""
         if self.jumps:
-            return r"D\,\dot\delta_j\,H(\delta_j)"
-        return r"D\,(\delta_j/\delta_r)_+^{" + str(Fraction(self.exponent)) + r"}\,\dot\delta_j"
+            return r"D\,\dot\delta_c\,H(\delta_c)"
+        return r"D\,(\delta_c/\delta_r)_+^{" + str(Fraction(self.exponent)) + r"}\,\dot\delta_c"
 
 
 LAWS: dict[str, Law] = {law.name: law for law in (

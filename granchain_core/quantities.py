@@ -165,7 +165,7 @@ _TABLE = (
              at_zero="bead 1 starts at rest", at_start=True),
     Quantity("end", "", "", "", "driven end", "The end that the driver touches; the wall is at the other. "
              "“last” drives a chain of unequal beads from its other end.", choices=ENDS, numeric=False),
-    Quantity("wall", "W", "1", r"K_N/K", "right wall",
+    Quantity("wall", "W", "1", "W", "right wall",
              "Stiffness of the last contact over that of two beads like the last: 1 for a fixed bead, √2 for a flat "
              "wall of the same material, 2√2 for a rigid flat wall, or a number.",
              1e-6, 1e6, choices=tuple(WALL_FACTORS), short="wall"),

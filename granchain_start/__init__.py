@@ -1,7 +1,8 @@
 """The entry point of the command `granchain`: finds the package `app`, which is installed as `granchain_app`.
 
-A package called `app` would collide with everybody's. Nothing else is imported here: app/cli begins with what signals
-do.
+Installed as `app`, it would collide with the package `app` of other projects. Nothing else is imported here, because
+app/cli takes over the signals before it imports anything. `part_of_app` of granchain/pictures.py finds the package in
+the same way.
 """
 
 from __future__ import annotations

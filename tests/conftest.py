@@ -26,7 +26,7 @@ HERE = Path(__file__).parent
 #: wrong; orders, random scenes and browsers are for the whole suite.
 QUICK = (
     "architecture", "public", "scene", "experiment", "dashboard", "session", "integrate", "kernels/equations",
-    "kernels/effects", "kernels/rk4", "kernels/dop853", "parts",
+    "kernels/effects", "kernels/rk4", "kernels/dop853", "parts", "pages", "curve",
 )
 #: Folders whose tests may have a server in another thread, with documents of its own.
 SERVERS = ("serve", "public", "browser")
@@ -94,11 +94,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def spread(items: list[pytest.Item], workers: int) -> list[pytest.Item]:
     """The tests in the order in which `--dist worksteal` shares them out best: longest first, browser tests apart.
 
-    Each worker begins with an equal number of tests in a row, and who has ended takes the last half of the longest row.
-    So half of the rows begin with the files of browser tests, for which a worker needs a server and a browser of its
-    own, the others with files that have a test marked `long`; what is left at the end is short. In the order of folders
-    one worker had all browser tests, and ran the last 7 % of the suite alone for 3 of its 10 minutes. Both kinds of
-    files are not divided: their tests share what a fixture made, and a server computes the curves of a page once.
+    xdist gives each worker a row of equally many consecutive tests; an idle worker takes the last half of the longest
+    row. So half of the rows begin with the files of browser tests, for which a worker needs a server and a browser of
+    its own, the others with files that have a test marked `long`; the tests at the end of a row are short. In the order
+    of folders one worker had all browser tests, and ran the last 7 % of the suite alone for 3 of its 10 minutes.
+    Neither kind of file is divided: its tests share what a fixture made, and a server computes the curves of a page
+    once.
     """
     files: dict[Path, list[pytest.Item]] = {}
     for item in items:

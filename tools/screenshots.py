@@ -118,7 +118,7 @@ def main() -> None:
         browser = launch(playwright)
         if options.all is None:
             with opened(browser, f"{address}{SHOWN}&look=light", (1440, 900)) as page:
-                page.locator(".chapters").get_by_text("1:3").first.wait_for()  # the names come last
+                page.locator(".peak-names").get_by_text("1:3").first.wait_for()  # the names come last
                 shot(page, ROOT / "docs" / "dashboard.png")
             return
         options.all.mkdir(parents=True, exist_ok=True)

@@ -56,7 +56,7 @@ def do(arguments: argparse.Namespace) -> None:
                                            stop=stop))
     for note in seen.record.notes:
         say(f"{note[0].upper()}{note[1:]}.")
-    if seen.status != "done":
+    if seen.integration_error > chosen.accuracy:
         say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: successive computations differ by "
             f"{seen.integration_error:.1e}; an unstable observer amplifies every error.")
     elif seen.interpolation_error > chosen.accuracy:
@@ -88,4 +88,5 @@ def _json(seen: Observation) -> dict[str, Any]:
             "residual": None if seen.residual is None else asdict(seen.residual),
             "residual_elastic": None if seen.residual_elastic is None else asdict(seen.residual_elastic),
             "error_estimate": seen.displacement_error, "integration_error": seen.integration_error,
-            "interpolation_error": seen.interpolation_error, "cost": asdict(seen.cost)}
+            "interpolation_error": seen.interpolation_error, "error_estimate_output": seen.force_errors.output,
+            "error_estimate_elastic": seen.force_errors.elastic, "cost": asdict(seen.cost)}

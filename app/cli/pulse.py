@@ -48,6 +48,9 @@ def _json(found: Pulse) -> dict[str, Any]:
     return {"contact": found.contact.tolist(), "time": found.time.tolist(), "force": found.force.tolist(),
             "speed_beads": speed, "speed": metres, "width": width, "velocity": found.velocity.tolist(),
             "error_estimate": found.run.displacement_error, "sampling_error": found.sampling_error,
+            "sampling_error_time": found.sampling_error_time,
+            "sampling_error_speed": finite_or_null(found.sampling_error_speed),
+            "sampling_error_width": finite_or_null(found.sampling_error_width),
             "energy_residual": found.run.energy_residual}
 
 

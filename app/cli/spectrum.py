@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any
 
-from .common import chosen_scene, in_background, show_json
+from .common import chosen_scene, finite_or_null, in_background, show_json
 from .options import add_json, add_scene, whole
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
@@ -57,7 +57,9 @@ def _motion(chosen: Scene, record: int, samples: int, stop: Stop) -> Run:
 
 def _json(found: Spectrum, through: Transfer | None) -> dict[str, Any]:
     lines = None if through is None else {"frequency": through.frequency.tolist(), "gain": through.gain.tolist(),
-                                          "phase": through.phase.tolist()}
+                                          "phase": through.phase.tolist(),
+                                          "gain_error": [finite_or_null(float(x)) for x in through.gain_error],
+                                          "phase_error": [finite_or_null(float(x)) for x in through.phase_error]}
     return {"force": found.force, "period": found.period, "resolution": found.resolution, "aliasing": found.aliasing,
             "frequency": found.frequency.tolist(), "amplitude": found.amplitude.tolist(), "phase": found.phase.tolist(),
             "transfer": lines}

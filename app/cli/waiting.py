@@ -53,18 +53,18 @@ class Waiting:
     def _serve(self, listening: socket.socket) -> None:
         while True:
             try:
-                line, _ = listening.accept()
+                connection, _ = listening.accept()
             except OSError:  # closed
                 return
-            threading.Thread(target=self._reply, args=(line,), daemon=True).start()
+            threading.Thread(target=self._reply, args=(connection,), daemon=True).start()
 
-    def _reply(self, line: socket.socket) -> None:
-        with line, contextlib.suppress(OSError):
-            line.settimeout(_LONGEST_WAIT)
+    def _reply(self, connection: socket.socket) -> None:
+        with connection, contextlib.suppress(OSError):
+            connection.settimeout(_LONGEST_WAIT)
             head = b""
-            while b"\r\n\r\n" not in head and len(head) < _LONGEST_HEAD and (more := line.recv(_LONGEST_HEAD)):
+            while b"\r\n\r\n" not in head and len(head) < _LONGEST_HEAD and (more := connection.recv(_LONGEST_HEAD)):
                 head += more
-            line.sendall(self._answer)
+            connection.sendall(self._answer)
 
     def close(self) -> None:
         """Leave the port to the server."""

@@ -29,7 +29,7 @@ class CurveBar(Component):
     _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
-        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "chapters": [], "stated": [],
+        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "names": [], "stated": [],
                                           "kinds": KINDS, "strong": STRONG_PART, "driven": True, "too_long": False,
                                           "rig": False},
                          **params)

@@ -28,7 +28,7 @@ from ..session.session import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
 from .bar import CHOICES, CurveBar
-from .chapters import Chapters, stated_name
+from .peak_names import PeakNames, stated_name
 from .reports import Reports
 from .sweep import COARSE, Progress, Sweep, grid
 from .view import CurveFigure
@@ -50,17 +50,23 @@ class CurveController:
         self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
         self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed),
                                   host.session.cpu_time)
-        self._wanted_for: Scene | None = None
-        self._begun = 0
-        self._wanted = {name: name == "rest" for name, *_ in CHOICES}
-        self._visible = True
-        self._computed: dict[str, Scene] = {}
         self._quiet = Debounce(host, CURVE_QUIET)
         self._reports = Reports(host, self._draw)
-        self._computed_for: Scene | None = None
-        self._remaining: list[str] = []
+        self._visible = True
+        #: By direction, and for the stated features: whether it is selected.
+        self._wanted = {name: name == "rest" for name, *_ in CHOICES}
+        #: Scenes of `without_frequency`, since a curve is the same at every f: of the present knobs, of the curve that
+        #: was begun last, and of the complete curve of each direction.
+        self._wanted_for: Scene | None = None
+        self._begun_for: Scene | None = None
+        self._complete_for: dict[str, Scene] = {}
+        #: How many curves were begun; a draft that was asked for before the last of them is out of date.
+        self._begun = 0
+        #: Directions that were missing when the last curve was begun, and the part of them that is computed, from 0 to
+        #: 1; -1 if nothing is under way.
+        self._missing: list[str] = []
         self._done = -1.0
-        self._chapters = Chapters(host, self._show_chapters)
+        self._names = PeakNames(host, self._show_names)
         host.on_close(self._drafts.close)
 
     def selection(self, scene: Scene) -> str:
@@ -73,8 +79,8 @@ class CurveController:
 
         An empty text leaves the directions as they are, and shows the stated features of the paper's rig.
         """
-        self._computed.clear()
-        self._chapters.forget()
+        self._complete_for.clear()
+        self._names.forget()
         self._figure.clear()
         self._figure.range(*slider_range(scene, "f"))
         if selected:
@@ -88,7 +94,7 @@ class CurveController:
         """A knob moved. Any knob but f changes the curve: a draft comes at once, the curve when the knobs rest."""
         if without_frequency(scene) == self._wanted_for:
             return
-        self._chapters.forget()
+        self._names.forget()
         self.changed(scene)
         if self._visible and self._wanted["rest"] and curve_affordable(scene) and COMPILER.has(scene, CURVE_KERNELS):
             self._drafts.submit(partial(self._draft, scene, self._begun))
@@ -120,16 +126,19 @@ class CurveController:
 
     def _begin_when_compiled(self, scene: Scene) -> None:
         if not curve_affordable(scene):
-            self.stop()
-            self._computed.clear()
-            with unlocked():
-                self._figure.clear()  # another chain's curve is none of this picture
-            self._placed()
-            return
-        if COMPILER.has(scene, *PICTURE_PIECES):
+            self._give_up()
+        elif COMPILER.has(scene, *PICTURE_PIECES):
             self._begin(scene)
-        else:
+        else:  # look again
             self._quiet.start(self._begin_when_compiled, scene)
+
+    def _give_up(self) -> None:
+        """Show no curve: this chain has none, or it would take too long, and another chain's belongs to no picture."""
+        self.stop()
+        self._complete_for.clear()
+        with unlocked():
+            self._figure.clear()
+        self._placed()
 
     def visibility_changed(self, visible: bool) -> None:
         """The figure came on the screen or left it."""
@@ -181,7 +190,7 @@ class CurveController:
             title = f"resonance curve, {WORDS[name]}"
             if not self._wanted[name]:
                 found.append((title, OFF, "not selected"))
-            elif self._computed.get(name) is not None and self._computed.get(name) == self._computed_for:
+            elif self._complete_for.get(name) is not None and self._complete_for.get(name) == self._begun_for:
                 found.append((title, READY, "all points are computed"))
             elif not self._visible:
                 found.append((title, OFF, "not on the screen"))
@@ -189,7 +198,7 @@ class CurveController:
                 found.append((title, OFF, "nothing drives the chain"))
             elif self._wanted_for is not None and not curve_affordable(self._wanted_for):
                 found.append((title, OFF, "it would take too long; granchain curve computes it"))
-            elif name in self._remaining and self.computing:
+            elif name in self._missing and self.computing:
                 found.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
             else:
                 found.append((title, OFF, "waits until the knobs rest, or was stopped"))
@@ -204,16 +213,16 @@ class CurveController:
         """The curves of a scene that are drawn and complete, by their starts."""
         key = without_frequency(scene)
         return {name: self._figure.points(name) for name in CURVE_STARTS
-                if self._wanted[name] and self._computed.get(name) == key}
+                if self._wanted[name] and self._complete_for.get(name) == key}
 
     def _begin(self, scene: Scene) -> None:
         """Compute the selected directions that are missing; a change of f alone needs no new curve."""
         key = without_frequency(scene)
         missing = [name for name in CURVE_STARTS
-                   if self._visible and self._wanted[name] and self._computed.get(name) != key]
+                   if self._visible and self._wanted[name] and self._complete_for.get(name) != key]
         for name in missing:
-            self._computed.pop(name, None)
-        self._computed_for = key
+            self._complete_for.pop(name, None)
+        self._begun_for = key
         shown = [name for name in CURVE_STARTS if self._wanted[name]]
         with unlocked():
             self._figure.show_directions(shown)
@@ -222,7 +231,7 @@ class CurveController:
         self._begun += bool(missing)
         if "rest" in missing:
             self.compared(None)
-        self._remaining, self._done = list(missing), 0.0 if missing else -1.0
+        self._missing, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
             self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
                                    self._host.session.cpu_time))
@@ -245,28 +254,27 @@ class CurveController:
             for direction, new in points.items():
                 self._figure.add(direction, new, direction in covers)
             for progress in reports:
-                if progress.complete and self._computed_for is not None:
-                    self._computed[progress.direction] = self._computed_for
+                if progress.complete and self._begun_for is not None:
+                    self._complete_for[progress.direction] = self._begun_for
                     self._figure.finished(progress.direction)
                     self._placed()
                     if progress.direction == "rest":
-                        self._chapters.name(self._figure.points("rest"), self._computed_for)
+                        self._names.name(self._figure.points("rest"), self._begun_for)
                     self.compared(self._figure.difference)
             self._done = self._overall(reports[-1])
             self._bar.update_state(done=self._done)
 
     def _overall(self, progress: Progress) -> float:
         """Progress over all directions of this request."""
-        if progress.direction not in self._remaining:
+        if progress.direction not in self._missing:
             return -1.0
-        place = self._remaining.index(progress.direction)
-        return (place + progress.done) / len(self._remaining)
+        place = self._missing.index(progress.direction)
+        return (place + progress.done) / len(self._missing)
 
-    def _show_chapters(self, chapters: list[dict[str, Any]]) -> None:
-        """Chapters with their heights on the axis."""
+    def _show_names(self, names: list[dict[str, Any]]) -> None:
+        """Show the names of peaks, valleys and stop band, with their heights on the axis."""
         factor = self._figure.factor
-        places = [{**one, "height": one["force"] / factor} for one in chapters]
-        self._bar.update_state(chapters=places)
+        self._bar.update_state(names=[{**name, "height": name["force"] / factor} for name in names])
 
     def _ended(self, status: str, _: str) -> None:
         if status == "failed":

@@ -1,7 +1,7 @@
 // Which curves are shown, how far they are, and a button to stop them.
 
 import { button, element, meter } from "../parts/dom.js";
-import { ChapterLabels } from "./chapter_labels.js";
+import { PeakNames } from "./peak_names.js";
 
 function choiceBox(model, name) {
   const box = element("input", { type: "checkbox" });
@@ -68,18 +68,18 @@ export function render({ model }) {
     done.value = model.state.done ?? 0;
   };
   const key = element("div", { className: "key" });
-  const places = new ChapterLabels((f) => model.send_msg({ do: "set", name: "f", value: f }));
-  const name = () => {
+  const names = new PeakNames((f) => model.send_msg({ do: "set", name: "f", value: f }));
+  const showNames = () => {
     const none = reason(model.state);
     key.replaceChildren(...(none ? [none] : keyOf(model.state)));
-    places.show(model.state.chapters, model.state.stated);
+    names.show(model.state.names, model.state.stated);
   };
   model.on("state", () => {
     show();
-    name();
+    showNames();
   });
   show();
-  name();
+  showNames();
   const title = element("h2", { textContent: "resonance curve: largest force at the wall" });
   const head = element("div", { className: "row titled" }, title, progress);
   return element("div", { className: "part" }, head, choosing, key);

@@ -107,9 +107,9 @@ class CurveFigure:
         self.figure.add_tools(HoverTool(renderers=[dots], tooltips=TOOLTIPS))
         return [bars, dots]
 
-    def set_compact(self, narrow: bool) -> None:
+    def set_compact(self, compact: bool) -> None:
         """Fewer numbers on the axis where there is little room."""
-        self.figure.xaxis[0].ticker.desired_num_ticks = 3 if narrow else 5
+        self.figure.xaxis[0].ticker.desired_num_ticks = 3 if compact else 5
 
     def ink(self, colour: str, thick: float) -> None:
         """The colour of measured data and of the current point's ring: dark on light, light on dark."""

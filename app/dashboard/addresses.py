@@ -13,7 +13,7 @@ from ..pages.analysis.questions import read_question
 from ..pages.stories.page import story_places, story_step
 from ..session.pins import Pin, read_pin
 from ..session.session import Session
-from ..session.share import PINS, QUESTION, START, decode
+from ..session.share import BROWSER_FIELDS, PINS, QUESTION, START, decode
 from ..session.starts import read_start
 from .table import overlay_names, tab_names
 
@@ -21,7 +21,7 @@ T = TypeVar("T")
 
 #: Fields that do not determine the motion. A link that has a story and no other fields than these, as one writes it by
 #: hand, shows the motion of the story's step.
-_NOT_A_MOTION = {"v", "story", "tab", "page", "look", "embed"}
+_NOT_A_MOTION = {"v", "story", *BROWSER_FIELDS}
 
 
 def take_address(session: Session, query: str) -> tuple[State | None, list[str]]:

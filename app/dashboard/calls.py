@@ -37,7 +37,7 @@ class Calls:
             self._channel.call_later(seconds, partial(self.guarded, action, *arguments))
 
     def guarded(self, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` with the document locked already."""
+        """Call `action` now, where the document is locked already; `failed` takes its error."""
         if self._closed:
             return
         with gathered(self._document):  # no second time inside `run_locked`, which has begun to gather

@@ -29,7 +29,6 @@ from .pinned import Pinned
 from .playback import Playback
 from .scene_changes import SceneChanges
 from .sentences import Sentences
-from .show import show_regime
 from .table import CURVE_NAME, PAGES, overlay_names
 
 
@@ -61,7 +60,7 @@ class Controller:
         own: Actions = {
             "ping": lambda _: views.chain.send(type="pong"),
             "ready": self._ready, "window-shown": lambda _: self.pictures.restart(),
-            "narrow": lambda m: views.set_compact(bool(m.get("value"))),
+            "compact": lambda m: views.set_compact(bool(m.get("value"))),
             "visible": self._visible,
             "painted": lambda m: self.pictures.painted(m.get("number")),
             **self._scenes.actions,
@@ -92,9 +91,9 @@ class Controller:
 
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
-        self.views.set_compact(bool(message.get("narrow")))
+        self.views.set_compact(bool(message.get("compact")))
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
-        self.choices.choose({"value": message.get("theme")})
+        self.choices.set_theme(message.get("theme"))
         self.pinned.show()
         self._scenes.opened(self._first_start, self.session.curves)
 
@@ -108,15 +107,15 @@ class Controller:
     # What the pages ask for
 
     def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
-        """Call `action` with the document locked, as soon as that is possible; from any thread."""
+        """See `Host`."""
         self._calls.next_tick(action, *arguments)
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
-        """Call `action` with the document locked, after `seconds`."""
+        """See `Host`."""
         self._calls.call_later(seconds, action, *arguments)
 
     def on_close(self, action: Callable[[], object]) -> None:
-        """Call `action` when the visitor leaves; nothing is called by `next_tick` or `call_later` from then on."""
+        """See `Host`."""
         self._calls.on_close(action)
 
     def say(self, sentence: str) -> None:
@@ -124,11 +123,11 @@ class Controller:
         self.sentences.say(sentence)
 
     def failed(self, error: Exception) -> None:
-        """Say in one sentence what happened; the last good picture stays."""
+        """See `Host`."""
         self.sentences.failed(error)
 
     def fault(self, error: Exception, sentence: str) -> None:
-        """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
+        """See `Host`."""
         self.sentences.fault(error, sentence)
 
     def close(self, session_context: object) -> None:
@@ -137,42 +136,42 @@ class Controller:
 
     @property
     def busy(self) -> bool:
-        """Whether a picture is being computed."""
+        """See `Host`."""
         return self.pictures.busy
 
     @property
     def awaiting_picture(self) -> bool:
-        """Whether a knob has moved and its steady picture is not there yet."""
+        """See `Host`."""
         return self.pictures.awaiting_picture
 
     @property
     def overlays(self) -> tuple[str, ...]:
-        """The pages over the pictures, by name."""
+        """See `Host`."""
         return overlay_names()
 
     @property
     def curve_computing(self) -> bool:
-        """Whether a resonance curve is being computed."""
+        """See `Host`."""
         return self.curves.computing
 
     def complete_curve(self) -> list[CurvePoint]:
-        """The resonance curve from rest of the present knobs; empty unless all of it is there."""
+        """See `Host`."""
         return self.curves.complete(self.session.scene).get("rest", [])
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
-        """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose."""
+        """See `Host`."""
         self._scenes.show(scene, state, mode)
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
-        """Open a scene, maybe another preset, settled from `state` or from rest, with the curves of a link."""
+        """See `Host`."""
         self._scenes.open(scene, state, curves)
 
     def address_changed(self) -> None:
-        """Send the page its new address: something that a link carries has changed, but no knob."""
+        """See `Host`."""
         self.views.header.send(type="address", query=self.session.link)
 
     def activities(self) -> list[Activity]:
-        """Everything that is computed for this visitor, or could be."""
+        """See `Host`."""
         return [
             *picture_activities(self.session, self.busy), *self.curves.activities(),
             account_activity(self.session, self.busy), *(page.activity for page in self.pages if page.activity),
@@ -189,7 +188,7 @@ class Controller:
             page.picture_ready(picture)
 
     def _curve_placed(self) -> None:
-        show_regime(self.views)
+        self.pictures.show_regime()
         if self.complete_curve():
             for page in self.pages:
                 page.curve_ready()

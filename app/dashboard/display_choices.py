@@ -23,13 +23,13 @@ class DisplayChoices:
         self._theme_changed = theme_changed
         self._redraw = redraw
         self.actions: Actions = {
-            "theme": self.choose, "scale": self._scale,
+            "theme": lambda m: self.set_theme(m.get("value")), "scale": self._scale,
             "curve": self._curve, "curve-stop": lambda _: curves.stop(),
         }
 
-    def choose(self, message: dict[str, Any]) -> None:
+    def set_theme(self, name: object) -> None:
         """Take the colours and line widths of a theme; the name of no theme changes nothing."""
-        theme = THEMES.get(str(message.get("value")))
+        theme = THEMES.get(str(name))
         if theme is not None:
             self._views.curve.ink(theme.ink, theme.line)
             self._views.trains.ink(theme.ink)

@@ -12,7 +12,6 @@ from bokeh.document import Document
 from bokeh.models import Range1d
 from panel.io import unlocked
 
-from granchain_core import Settled
 from granchain_core.experiment.formats import FORMATS
 
 from ..curve.bar import KINDS, CurveBar
@@ -63,14 +62,13 @@ class Views:
             "endings": [ending for one in FORMATS for ending in one.endings]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
-        self.shown: Settled | None = None
 
-    def set_compact(self, narrow: bool) -> None:
+    def set_compact(self, compact: bool) -> None:
         """Shorten titles and leave out numbers on the axes over time if there is little room for them."""
         with unlocked():  # sent like the pictures, which write the same titles, so that neither overtakes the other
-            self.trains.set_compact(narrow)
-            self.energy.set_compact(narrow)
-            self.curve.set_compact(narrow)
+            self.trains.set_compact(compact)
+            self.energy.set_compact(compact)
+            self.curve.set_compact(compact)
 
     def apply_theme(self, theme: Theme) -> None:
         """Draw the figures of all pages in another theme."""
@@ -96,5 +94,5 @@ def _page() -> tuple[str, dict[str, Any]]:
         "terms": json.dumps(definitions()).replace("<", "\\u003c"),
         "modules": modules(),
         "frame_top": TOP, "frame_bottom": BOTTOM, "frame_left": LEFT, "gap": GAP,
-        "overlays": [(row.name, row.title.capitalize()) for row in PAGES if row.view],
+        "overlays": [(row.name, row.name.capitalize()) for row in PAGES if row.view],
     }

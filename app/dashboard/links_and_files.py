@@ -38,7 +38,7 @@ class LinksAndFiles:
         self._pictures = pictures
         self._saving = Task(host, FILES, say_nothing, "Saving the picture", host.failed)
         self._measurement = MeasurementActions(host, views, curves)
-        self.actions: Actions = {"share": self._share, "save": self._save, **self._measurement.actions}
+        self.actions: Actions = {"share": self._share, "export": self._export, **self._measurement.actions}
 
     def picture_ready(self, picture: Settled) -> None:
         """Compare a measured series with the new picture."""
@@ -50,7 +50,7 @@ class LinksAndFiles:
         if sentence := self._host.session.pins_left_out:
             raise BadInput(sentence)
 
-    def _save(self, message: dict[str, Any]) -> None:
+    def _export(self, message: dict[str, Any]) -> None:
         what = message.get("what", "hdf5")
         run = self._pictures.run()
         if run is None:

@@ -28,7 +28,7 @@ from ..session.energy_residual import with_account
 from ..session.host import Host
 from ..session.live import LivePicture, LiveRun
 from .layout import Views
-from .show import show_live, show_settled
+from .show import show_live, show_regime, show_settled
 
 
 def size_of(picture: Settled) -> int:
@@ -81,22 +81,24 @@ def _refusing(scene: Scene) -> Iterator[None]:
 class MainPicture:
     """Settled pictures and the live run. `note` shows a message that the next picture clears.
 
-    `arrived` is called with every settled picture, before it is sent.
+    `picture_ready` is called with every settled picture, before it is sent.
     """
 
     def __init__(self, host: Host, views: Views, note: Callable[[str], None],
-                 arrived: Callable[[Settled], None]) -> None:
+                 picture_ready: Callable[[Settled], None]) -> None:
         self._host = host
         self._session = host.session
         self._views = views
         self._note = note
-        self._announce = arrived
+        self._picture_ready = picture_ready
         self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
         self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LivePicture | None = None
-        self._shown: Settled | LivePicture | None = None
+        self._accepted: Settled | LivePicture | None = None
+        #: The settled picture that was sent last; None while a live run is shown.
+        self._sent: Settled | None = None
         self._requested_at: float | None = None
         #: Frames of the last pictures, so that they are prepared once.
         self._frames: deque[Frames] = deque(maxlen=2)
@@ -109,7 +111,7 @@ class MainPicture:
 
     @property
     def awaiting_picture(self) -> bool:
-        """Whether a knob has moved and its steady picture is not there yet; a live run is at work all the time."""
+        """See `Host.awaiting_picture`; a live run is at work all the time."""
         return self._jobs.busy and self.live is None
 
     @property
@@ -244,14 +246,14 @@ class MainPicture:
         self._count_answer()
         if isinstance(picture, Settled):
             self._session.picture = picture
-            self._announce(picture)
+            self._picture_ready(picture)
         if self._session.notice:
             self._note("")
-        self._shown = picture
+        self._accepted = picture
         self._pacer.offer(picture)
 
     def _failed(self, error: Exception) -> None:
-        """There is no picture to time; the next one is timed from its own request."""
+        """Pass a failure on; the next picture is timed from its own request."""
         self._requested_at = None
         self._host.failed(error)
 
@@ -266,9 +268,16 @@ class MainPicture:
 
     def _send(self, number: int, picture: Settled | LivePicture) -> None:
         if isinstance(picture, Settled):
+            self._sent = picture
             show_settled(self._views, number, picture)
         else:
+            self._sent = None
             show_live(self._views, number, picture, self._session.playing)
+
+    def show_regime(self) -> None:
+        """Write the status line anew: the curve may tell now on which of its peaks or valleys the motion lies."""
+        if self._sent is not None:
+            show_regime(self._views, self._sent)
 
     def painted(self, number: object) -> None:
         """The browser says that picture `number` is on the screen."""
@@ -276,7 +285,7 @@ class MainPicture:
 
     def redraw(self) -> None:
         """Send the picture on the screen again, to be drawn in another way; a running chain sends pictures anyway."""
-        shown, live = self._shown, self.live is not None
+        shown, live = self._accepted, self.live is not None
         if shown is None or isinstance(shown, LivePicture) != live or (live and self._session.playing):
             return
         if shown.run.scene.name == self._session.scene.name:

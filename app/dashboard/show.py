@@ -25,22 +25,19 @@ def show_settled(views: Views, number: int, picture: Settled) -> None:
     _draw(views, number, frames, picture.run, frames.time / factor, f"{letter}s",
           (picture.run.max_input_force, picture.run.max_output_force), final=picture.final)
     views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
-    views.shown = picture
-    show_regime(views)
+    show_regime(views, picture)
 
 
-def show_regime(views: Views) -> None:
+def show_regime(views: Views, picture: Settled) -> None:
     """Write the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
-    if views.shown is not None:
-        run = views.shown.run
-        force = views.trains.output_words(run.max_output_force, run.force_errors.output)
-        views.status_line.update_state(**settled_entries(views.shown, views.curve.place(run), force))
+    run = picture.run
+    force = views.trains.output_words(run.max_output_force, run.force_errors.output)
+    views.status_line.update_state(**settled_entries(picture, views.curve.place(run), force))
 
 
 def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
     """Show the last periods of the live run, with the present at the bottom."""
     frames, run = picture.frames, picture.run
-    views.shown = None
     time, unit, since = frames.time, "drive periods", f"drive period {picture.periods:.0f}"
     if not run.scene.is_driven:
         factor, letter = prefixed(PERIODS / run.scene.f)

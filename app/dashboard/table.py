@@ -41,15 +41,10 @@ class TabSpec:
     placeholder: str = ""
     tallest: bool = False
 
-    @property
-    def title(self) -> str:
-        """What stands on it."""
-        return self.name
-
 
 @dataclass(frozen=True)
 class PageSpec:
-    """One page: its name in messages, the title of its tab, what is computed and how it is drawn.
+    """One page: its name in messages, in links and on its tab, what is computed and how it is drawn.
 
     `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
     tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height. A
@@ -60,7 +55,6 @@ class PageSpec:
     """
 
     name: str
-    title: str
     page: Callable[[Host, Any], Page]
     view: Callable[..., Component] | None
     placeholder: str = ""
@@ -76,25 +70,25 @@ GROUPS = ("learn", "try", "check")
 
 #: The pages and the tabs without one, in the order of the tabs; the first is open when nothing else is said.
 TABS: tuple[PageSpec | TabSpec, ...] = (
-    PageSpec("stories", "stories", StoriesPage, None, group="learn"),
+    PageSpec("stories", StoriesPage, None, group="learn"),
     TabSpec("look at", "learn"),
     TabSpec("regimes", "learn"),
-    PageSpec("probe", "probe", ProbePage, Probe),
-    PageSpec("stability", "stability", StabilityPage, Stability, works_hidden=False),
-    PageSpec("accuracy", "accuracy", AccuracyPage, Accuracy, group="check"),
-    PageSpec("map", "map", MapPage, None, tallest=True),
-    PageSpec("effects", "effects", EffectsPage, None, group="check"),
-    PageSpec("branches", "branches", BranchesPage, Branches,
+    PageSpec("probe", ProbePage, Probe),
+    PageSpec("stability", StabilityPage, Stability, works_hidden=False),
+    PageSpec("accuracy", AccuracyPage, Accuracy, group="check"),
+    PageSpec("map", MapPage, None, tallest=True),
+    PageSpec("effects", EffectsPage, None, group="check"),
+    PageSpec("branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable.", needs_curve=True),
-    PageSpec("analysis", "analysis", AnalysisPage, Analysis,
+    PageSpec("analysis", AnalysisPage, Analysis,
         "Spectrum, strobes over a knob, basins and Lyapunov exponents of the present scene."),
-    PageSpec("observer", "observer", ObserverPage, Observer,
+    PageSpec("observer", ObserverPage, Observer,
         "A copy of the chain that is driven only by its input force.", works_hidden=False),
-    PageSpec("hard", "hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),
-    PageSpec("paper", "paper", PaperPage, Paper,
+    PageSpec("hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),
+    PageSpec("paper", PaperPage, Paper,
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
         group="learn"),
-    PageSpec("numbers", "numbers", NumbersPage, None, group=""),
+    PageSpec("numbers", NumbersPage, None, group=""),
     TabSpec("data", "", taller=True),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
@@ -116,8 +110,8 @@ check_names(TABS)
 def described_tabs() -> list[dict[str, Any]]:
     """What the browser needs of the table, in the order of the groups."""
     order = (*GROUPS, "")
-    return [{"name": row.name, "title": row.title, "placeholder": row.placeholder, "taller": row.taller,
-             "tallest": row.tallest, "group": row.group}
+    return [{"name": row.name, "placeholder": row.placeholder, "taller": row.taller, "tallest": row.tallest,
+             "group": row.group}
             for row in sorted(TABS, key=lambda row: order.index(row.group))]
 
 

@@ -109,8 +109,8 @@ class Tabs {
     return element("span", { className: "group" }, ...label, ...tabs);
   }
 
-  tab({ name, title }) {
-    const tab = button(title, () => this.choose(name), { role: "tab" });
+  tab({ name }) {
+    const tab = button(name, () => this.choose(name), { role: "tab" });
     tab.dataset.tab = name;
     return tab;
   }
@@ -150,15 +150,15 @@ class Tabs {
     const { content, show = () => {}, updatesItself = false } = make(this.model, this.rows.get(this.chosen));
     Object.assign(this, { redraw: show, updatesItself });
     this.body.replaceChildren(...content);
-    this.root.classList.toggle("telling", this.chosen === "stories" && Boolean(this.model.state.story));
+    this.root.classList.toggle("in-story", this.chosen === "stories" && Boolean(this.model.state.story));
     explainTerms(this.body);
     if (focused) this.body.querySelector(`[data-name="${focused}"]`)?.focus();
   }
 
   stateChanged() {
-    const overlaid = document.getElementById("overlaid");
-    overlaid.hidden = !this.model.state.series;
-    overlaid.textContent = this.model.state.series || "";
+    const measured = document.getElementById("measured-series");
+    measured.hidden = !this.model.state.series;
+    measured.textContent = this.model.state.series || "";
     window.granchain.kept = { ...window.granchain.kept, uploaded: Boolean(this.model.state.understood) };
     if (!this.updatesItself) this.show();
   }
@@ -201,6 +201,6 @@ export function render({ model }) {
   const { tab = tabs.first, page } = model.state.place;
   tabs.choose(tab);
   if (page) window.granchain.openPage(page);
-  else window.granchain.setLocation({ page: "" }); // one that there is not leaves the address
+  else window.granchain.setLocation({ page: "" }); // an unknown page is dropped from the address
   return tabs.root;
 }

@@ -12,7 +12,7 @@ from jinja2 import Template
 from panel.io.resources import BASE_TEMPLATE
 
 from ..parts.component import Component
-from ..serve.part_messages import receives
+from ..serve.part_messages import register
 
 
 def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable[Plot], template: str,
@@ -26,7 +26,7 @@ def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable
         for name, part in parts.items():
             part.server_doc(document, title="granchain", location=False)
             document.roots[-1].name = name
-            receives(document, document.roots[-1].id, part.heard)
+            register(document, document.roots[-1].id, part.heard)
         for plot in plots:
             document.add_root(plot)
     document.template = _compiled(template)

@@ -13,7 +13,7 @@ export function watchVisibility(pages, tell) {
   const page = window.granchain;
   const shown = { tabs: true, curve: true }; // which of these elements are on the screen
   let tab = "";
-  let telling = false; // whether a story is shown
+  let inStory = false; // whether a story is shown
   page.visible = new Set([CURVE_NAME]); // what the server starts with
 
   const isOpen = (name) => (page.overlay ?? tab) === name;
@@ -25,7 +25,7 @@ export function watchVisibility(pages, tell) {
   const check = () => {
     const before = page.visible;
     const now = new Set(Object.keys(pages).filter(isVisible));
-    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve || telling || PHONE.matches) now.add(CURVE_NAME);
+    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve || inStory || PHONE.matches) now.add(CURVE_NAME);
     const [gone, come] = [[...before].filter((name) => !now.has(name)), [...now].filter((name) => !before.has(name))];
     if (!gone.length && !come.length) return;
     page.visible = now;
@@ -45,8 +45,8 @@ export function watchVisibility(pages, tell) {
       if (isOpen(name) && !page.visible.has(name)) check();
     });
   page.on("overlay", check);
-  page.on("telling", (now) => {
-    telling = now;
+  page.on("story", (now) => {
+    inStory = now;
     check();
   });
   page.on("tab", (name) => {

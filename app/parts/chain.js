@@ -37,7 +37,7 @@ class Chain {
     this.sound = new Sound();
     this.dirty = true;
     this.asked = 0; // number of the requested animation frame
-    this.narrow = null; // the value last sent to the server; null before the first
+    this.compact = null; // the value last sent to the server; null before the first
   }
 
   // Draws the chain anew in the next animation frame.
@@ -60,13 +60,13 @@ class Chain {
     this.cursor.measure();
     this.placeColumn();
     this.mark();
-    if (this.narrow === null || this.narrow === this.isNarrow()) return;
-    this.narrow = !this.narrow;
-    this.model.send_msg({ do: "narrow", value: this.narrow });
+    if (this.compact === null || this.compact === this.isCompact()) return;
+    this.compact = !this.compact;
+    this.model.send_msg({ do: "compact", value: this.compact });
   }
 
-  isNarrow() {
-    return this.cursor.narrow(this.model.state.titles);
+  isCompact() {
+    return this.cursor.isCompact(this.model.state.titles);
   }
 
   // The colour bar below the map, and the choice of scale.
@@ -203,8 +203,8 @@ class Chain {
 
   // Tells the server that the page is complete and the first picture may come.
   begin() {
-    this.narrow = this.isNarrow();
-    this.model.send_msg({ do: "ready", theme: window.granchain.theme(), narrow: this.narrow });
+    this.compact = this.isCompact();
+    this.model.send_msg({ do: "ready", theme: window.granchain.theme(), compact: this.compact });
     window.granchain.connect(() => this.model.send_msg({ do: "ping" }));
   }
 }

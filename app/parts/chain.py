@@ -12,7 +12,7 @@ from granchain_core import Scene
 from ..format import prefixed
 from ..frames import Extremes, Frames, chain_series, drawn_values
 from ..scripts import module
-from ..session.share import EXTRAS, encode
+from ..session.share import VIEW_VALUES, encode
 from .component import Component, text
 
 #: The scales of the pictures: what a button says, and what it means.
@@ -22,7 +22,7 @@ _SCALES = {
              "a click takes the scene's own scale again"),
     "fit": ("fit", "Every picture fills its frame: weak motions are visible, but cannot be compared"),
 }
-SCALES = [(scale, *_SCALES[scale]) for scale in EXTRAS["scale"]]
+SCALES = [(scale, *_SCALES[scale]) for scale in VIEW_VALUES["scale"]]
 
 
 class ChainPart(Component):

@@ -118,7 +118,7 @@ export class Cursor {
   }
 
   // Whether an axis title under the force trains is wider than its room.
-  narrow({ left, right }) {
+  isCompact({ left, right }) {
     const pen = document.createElement("canvas").getContext("2d");
     pen.font = `bold ${getComputedStyle(document.documentElement).getPropertyValue("--small").trim()} helvetica`;
     const room = (id) => document.getElementById(id).clientWidth;

@@ -43,7 +43,7 @@ class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, Without
 
     def send(self, **message: Any) -> None:
         """Send a message to this part in the browser."""
-        if not self.sent(message):
+        if not self.try_send(message):
             self._send_msg(message)
 
     def apply_theme(self, theme: Theme) -> None:
@@ -54,7 +54,7 @@ class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, Without
         before = self.state
         if any(name not in before or before[name] != value for name, value in changes.items()):
             merged = {**before, **changes}
-            if not self.changed("state", merged):
+            if not self.try_change("state", merged):
                 self.state = merged
 
     def heard(self, data: Any) -> None:

@@ -13,149 +13,10 @@
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
-  // The part of an address that the server knows: all but tab, page and look (the theme).
-  const linkOf = (search) => {
-    const query = new URLSearchParams(search);
-    for (const name of ["tab", "page", "look"]) query.delete(name);
-    return query.toString();
-  };
-  // The last share link from the server. `unanswered` has the requests that are not in it yet.
-  let link = linkOf(location.search);
-  let known = false; // whether the server has sent one
-  const unanswered = new Map();
-  let viewFields = []; // the fields of a link that belong to no scene
-  const linkReceived = (query, answered, fields = viewFields) => {
-    // A link that answers a request is a step of the history, even if it is the first one or has come in parts.
-    const acted = answered.some((name) => unanswered.has(name)) || (known && query !== link);
-    link = query;
-    viewFields = fields;
-    for (const name of answered) unanswered.delete(name);
-    known = true;
-    follow(acted);
-  };
-  // A link that only makes the present address more precise is not a step of its own.
-  const linkRefined = (query) => {
-    link = query;
-    known = true;
-    follow(false);
-  };
-  const requested = (name, value) => {
-    if (name === "scene") unanswered.clear();
-    unanswered.delete(name);
-    unanswered.set(name, value);
-  };
-  const address = () => {
-    const url = new URL(location.href);
-    const query = new URLSearchParams(link);
-    // Knobs of the scene before do not belong to the new one.
-    if (unanswered.has("scene"))
-      for (const name of [...query.keys()]) if (!["v", ...viewFields].includes(name)) query.delete(name);
-    for (const [name, value] of unanswered) {
-      query.set(name, value);
-      if (name === "k") query.delete("kappa");
-      if (name === "kappa") query.delete("k");
-    }
-    if (page.themeChosen || url.searchParams.get("look") === page.theme()) query.set("look", page.theme());
-    for (const [name, value] of Object.entries(place)) if (value) query.set(name, value);
-    url.search = query;
-    return url;
-  };
-
-  // Scene and knobs of the address, including requests that the server has not answered yet.
-  const knobsAsked = () => {
-    const query = address().searchParams;
-    for (const name of [...query.keys()]) if (!["v", "scene", ...page.knobNames].includes(name)) query.delete(name);
-    return query.toString();
-  };
-  // Whether the picture on the screen is the final one of these knobs. A live run has no final picture.
-  const isSettled = () => {
-    const { knobs, final } = page.shown ?? {};
-    return known && !unanswered.size && Boolean(final) && new URLSearchParams(knobs).toString() === knobsAsked();
-  };
-
-  // Where the visitor is: the tab below the curve and the page over the pictures, empty for the first tab and for none.
-  const wherever = new URLSearchParams(location.search);
-  const place = { tab: wherever.get("tab") ?? "", page: wherever.get("page") ?? "" };
-  if (page.embedded) place.embed = "1";
-  const setLocation = (where) => {
-    const acted = known && Object.entries(where).some(([name, value]) => place[name] !== value);
-    Object.assign(place, where);
-    follow(acted);
-  };
-  // The address always describes what is on the screen, so reload, back and a bookmark restore it. A change by the
-  // visitor that is followed by a rest is a step of the browser's history, so back is undo and forward is redo.
-  const FOLLOW_AFTER = 400; // ms; a browser limits how many changes it takes a second
-  let following = 0,
-    stepping = false; // whether the visitor has done something since the last step
-  const follow = (acted) => {
-    stepping ||= acted && !steps.returning;
-    clearTimeout(following);
-    following = setTimeout(() => {
-      if (!known || leaving) return;
-      const there = address();
-      if (stepping && there.href !== location.href) steps.push(there);
-      else history.replaceState({ ...history.state, at: steps.at }, "", there);
-      stepping = false;
-    }, FOLLOW_AFTER);
-  };
-  page.on("theme", () => follow(known));
-
-  // The page's place in the history: `at` is the present step, `newest` the last one that “forward” can reach.
-  const NEWEST = "granchain-newest";
-  const remember = (value) => {
-    try {
-      sessionStorage.setItem(NEWEST, String(value));
-    } catch {
-      /* redo is forgotten at a reload */
-    }
-  };
-  const steps = {
-    at: 0,
-    newest: 0,
-    returning: false, // from a step back or forward until the server has applied its address
-    begin(at, newest) {
-      Object.assign(this, { at, newest: Math.max(at, newest) });
-      this.tell();
-    },
-    push(there) {
-      this.at += 1;
-      this.newest = this.at;
-      history.pushState({ at: this.at }, "", there);
-      remember(this.newest);
-      this.tell();
-    },
-    tell() {
-      page.emit("steps", { back: this.at > 0, forward: this.at < this.newest });
-    },
-  };
-  const undo = () => steps.at > 0 && !page.lost && history.back();
-  const redo = () => steps.at < steps.newest && !page.lost && history.forward();
-  addEventListener("popstate", ({ state }) => {
-    if (!known || !ping) return;
-    clearTimeout(following);
-    stepping = false;
-    steps.at = state?.at ?? 0;
-    steps.returning = !page.lost;
-    steps.tell();
-    const query = new URLSearchParams(location.search);
-    const [tab, over] = ["tab", "page"].map((name) => query.get(name) ?? "");
-    page.restoreTheme(query.get("look"));
-    unanswered.clear();
-    if (!page.lost) page.go?.(location.search.slice(1));
-    Object.assign(place, { tab, page: over });
-    page.emit("place", place);
-    link = linkOf(location.search);
-  });
-  // The server has applied an address of the history.
-  const addressApplied = (query) => {
-    linkRefined(query);
-    steps.returning = false;
-  };
-
   const say = (sentence) => {
-    const place = document.getElementById("lost");
-    place.textContent = sentence;
-    place.hidden = !sentence;
+    const banner = document.getElementById("lost");
+    banner.textContent = sentence;
+    banner.hidden = !sentence;
   };
   const show = (lost) => {
     page.lost = lost;
@@ -166,8 +27,7 @@
   };
 
   let ping = null,
-    closed = false,
-    leaving = false;
+    closed = false;
   // Times in milliseconds.
   let sincePing = null, // since the ping that is unanswered; null if there is none
     sinceAnswer = 0, // since the last answer
@@ -190,14 +50,14 @@
     return canvas.toDataURL("image/webp", 0.7);
   };
   const rebuild = () => {
-    leaving = true;
+    page.leaving = true;
     try {
-      const { at, newest } = steps;
-      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, at, newest, snapshot: snapshot() }));
+      const { at } = page.steps;
+      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, at, snapshot: snapshot() }));
     } catch {
       /* no room to keep them: the sentence and the last pictures are missing for a moment */
     }
-    location.replace(address());
+    location.replace(page.address());
   };
   const reach = async () => {
     try {
@@ -226,7 +86,7 @@
     const now = performance.now(),
       passed = Math.min(now - last, 4 * TICK);
     last = now;
-    if (leaving || !ping || (document.hidden && !closed)) return;
+    if (page.leaving || !ping || (document.hidden && !closed)) return;
     const resting = !closed && sincePing === null;
     if (resting) sinceAnswer += passed;
     if (resting && sinceAnswer >= PING_EVERY) {
@@ -264,14 +124,7 @@
   } catch {
     /* nothing kept */
   }
-  let kept = 0;
-  try {
-    kept = Number(sessionStorage.getItem(NEWEST)) || 0;
-  } catch {
-    /* nothing kept */
-  }
-  const begun = history.state?.at ?? again?.at ?? 0;
-  steps.begin(begun, history.state || again ? kept : begun);
+  page.steps.begin(again);
   if (again) {
     const before = Object.assign(new Image(), { id: "last-pictures", alt: "", src: again.snapshot ?? "" });
     document.addEventListener("DOMContentLoaded", () => {
@@ -283,6 +136,5 @@
       if (!page.lost) say("");
     });
   }
-  Object.assign(page, { again, requested, linkReceived, linkRefined, answerReceived, connect, address, isSettled });
-  Object.assign(page, { place, setLocation, addressApplied, undo, redo, steps });
+  Object.assign(page, { again, answerReceived, connect });
 })();

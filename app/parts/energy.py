@@ -18,7 +18,7 @@ class EnergyMap:
     def __init__(self, time: Range1d) -> None:
         self._source = ColumnDataSource({name: [] for name in ("image", "x", "y", "dw", "dh")})
         self._mapper = energy_mapper(1.0)
-        self._beads, self._narrow = 1, False
+        self._beads, self._compact = 1, False
         self.figure = self._build(time)
 
     def _build(self, time: Range1d) -> Plot:
@@ -32,11 +32,11 @@ class EnergyMap:
         plot.add_tools(self._hover)
         return plot
 
-    def set_compact(self, narrow: bool) -> None:
+    def set_compact(self, compact: bool) -> None:
         """Number fewer beads where there is little room."""
-        self._narrow = narrow
-        change(self._axis, axis_label="bead" if narrow else "bead, numbered as above")
-        change(self._axis.ticker, interval=bead_interval(self._beads, 6 if narrow else 12))
+        self._compact = compact
+        change(self._axis, axis_label="bead" if compact else "bead, numbered as above")
+        change(self._axis.ticker, interval=bead_interval(self._beads, 6 if compact else 12))
 
     def update(self, frames: Frames, time: np.ndarray, unit: str, high: float) -> None:
         """Show `frames`, whose rows are at `time` (in `unit`), in colours that end at `high` [J]."""
@@ -52,5 +52,5 @@ class EnergyMap:
         change(self._mapper, high=high / factor)
         change(self.figure.x_range, end=frames.beads + 0.5)
         self._beads = frames.beads
-        self.set_compact(self._narrow)
+        self.set_compact(self._compact)
         change(self._hover, tooltips=energy_hover(unit, f"{letter}J"))

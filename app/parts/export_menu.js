@@ -67,7 +67,7 @@ function pieces(name) {
   }
   const [, id, model] = FIGURES[name];
   const bars = id === "map" ? [colours()] : [];
-  const words = { map: "#scale .colours span", right: "#key span", curve: ".chapters button" }[id];
+  const words = { map: "#scale .colours span", right: "#key span", curve: ".peak-names button" }[id];
   return { parts: views(model).map(figurePiece), words: words ? wordsOf(words) : [], bars };
 }
 
@@ -196,7 +196,7 @@ export function exportMenu(send, files) {
   const save = (kind) => button(kind.toUpperCase(), () => savePicture(picture.value, kind));
   return element(
     "div",
-    { className: "take" },
+    { className: "export-menu" },
     element("h2", { textContent: "Export" }),
     element("div", { className: "row" }, picture, save("png"), save("svg")),
     ...files.map(([what, words]) => button(words, () => send(what))),

@@ -22,7 +22,8 @@ class FigurePart(Component):
     """A component with figures. They are sent without data when first needed, and again when the theme changes.
 
     `figures` are Bokeh's JSON by name, kept out of `state` because each change sends all of that. Data come as
-    messages, and the browser puts them into the figures.
+    messages, and the browser puts them into the figures: each is a `BokehFigure` (bokeh_figure.js), loaded when
+    `figures` arrives or changes and while its page is open, and so also when the page is opened.
     """
 
     figures = param.Dict(default={})

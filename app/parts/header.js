@@ -16,7 +16,7 @@ class Header {
     this.playing = true;
     this.themed = false; // whether the theme of the link has been taken over
     this.begun = false; // whether the first state has come
-    this.popovers = new Popovers((what) => this.send("save", { what }), model.state.files);
+    this.popovers = new Popovers((what) => this.send("export", { what }), model.state.files);
     this.makeTimeControls();
     this.makeSceneChooser();
     this.makeButtons();
@@ -41,7 +41,7 @@ class Header {
       element("span", { className: "grow" }),
       this.pin,
       this.share,
-      this.save,
+      this.exports,
       this.help,
       this.sound,
       this.theme,
@@ -62,7 +62,7 @@ class Header {
     this.pin = iconButton(icon("pin"), "Pin this picture and compare", () => this.pinPicture());
     this.share = iconButton(icon("share", "link"), "Link to this picture", send("share"));
     const words = "Export: pictures, tables, a program";
-    this.save = iconButton(icon("save", "export"), words, () => this.popovers.toggle("take"), "save");
+    this.exports = iconButton(icon("export", "export"), words, () => this.popovers.toggle("exports"), "export");
     this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp());
     this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme());
     this.sound = iconButton(icon("sound", "hear"), "Hear the force at the wall", () => this.toggleSound());
@@ -88,7 +88,7 @@ class Header {
       () => this.putAway(this.sound),
       () => this.putAway(this.speed),
       () => this.putAway(this.start),
-      () => this.putAway(this.save, this.share),
+      () => this.putAway(this.exports, this.share),
       () => this.putAway(this.undo, this.redo),
       () => this.putAway(this.step),
       () => this.putAway(this.scenes.button),

@@ -1,4 +1,4 @@
-"""The bar on top: scene, controls of time, mode, share, save, help and theme."""
+"""The bar on top: scene, controls of time, mode, share, export, help and theme."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from ..scripts import module
 from ..session.export import EXPORTS
 from ..session.session import Session, presets
-from ..session.share import EXTRAS, SPEEDS
+from ..session.share import SPEEDS, VIEW_VALUES
 from .component import Component, text
 
 _MODES = {
@@ -28,11 +28,11 @@ class Header(Component):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={
-            "modes": [(mode, _MODES[mode]) for mode in EXTRAS["mode"]],
-            "starts": [(start, _STARTS[start]) for start in EXTRAS["start"]],
+            "modes": [(mode, _MODES[mode]) for mode in VIEW_VALUES["mode"]],
+            "starts": [(start, _STARTS[start]) for start in VIEW_VALUES["start"]],
             "started_elsewhere": _STARTED_ELSEWHERE,
             "files": list(EXPORTS.items()),
-            "speeds": sorted(SPEEDS), "view_fields": list(EXTRAS),
+            "speeds": sorted(SPEEDS), "view_fields": list(VIEW_VALUES),
         }, **params)
         self._origin = "rest"
 

@@ -117,23 +117,25 @@ window.granchain = (() => {
     visible: new Set(),
     // page.html: the glossary's terms with their definitions
     terms: {},
-    // connection.js: the connection, the share link and the history
-    lost: false, // whether the server does not answer
-    kept: {}, // what the page needs besides its link when it is reloaded after a lost connection
-    again: null, // what the page before the reload kept in `kept`
-    place: null, // the open tab and the page over the pictures
-    steps: null,
-    setLocation: null,
+    // address.js: the share link, where the visitor is, and the history
+    address: null,
+    isSettled: null,
     requested: null,
     linkReceived: null,
     linkRefined: null,
-    answerReceived: null,
     addressApplied: null,
+    place: null, // the open tab and the page over the pictures
+    setLocation: null,
+    steps: null,
     undo: null,
     redo: null,
+    // connection.js
+    lost: false, // whether the server does not answer
+    leaving: false, // whether the page is being reloaded after a lost connection
+    kept: {}, // what the page needs besides its link when it is reloaded
+    again: null, // what the page before the reload kept in `kept`
+    answerReceived: null,
     connect: null,
-    address: null,
-    isSettled: null,
     // header.js: has the server show what an address says
     go: null,
     // chain.js: its drawing, the picture on the screen, and where its replay is in drive periods

@@ -134,20 +134,20 @@ class WithPlainChanges:
     """A Panel component that is shown once, whose messages and plain values go straight to its model.
 
     Panel takes each through Param's watchers, its own queues and a search of the documents in which a component is
-    shown. `sent` and `changed` return False where that way has to be taken: before the page is connected, or with a
-    release that keeps models or values elsewhere.
+    shown. `try_send` and `try_change` return False where that way has to be taken: before the page is connected, or
+    with a release that keeps models or values elsewhere.
     """
 
     def _shown(self) -> Model | None:
         models = list(getattr(self, "_models", {}).values())
         return models[0][0] if len(models) == 1 else None
 
-    def sent(self, message: dict[str, Any]) -> bool:
+    def try_send(self, message: dict[str, Any]) -> bool:
         """Send a message to the part in the browser, if that can be done here."""
         model = self._shown()
         return model is not None and ESMEvent is not None and tell(model, ESMEvent(model=model, data=message))
 
-    def changed(self, name: str, value: Any) -> bool:
+    def try_change(self, name: str, value: Any) -> bool:
         """Give a property of the part another value here and in the browser, if that can be done here."""
         data = getattr(self._shown(), "data", None)
         values = getattr(getattr(self, "_param__private", None), "values", None)

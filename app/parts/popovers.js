@@ -43,15 +43,15 @@ const title = (textContent) => element("h2", { textContent });
 
 // At most one of them is open.
 export class Popovers {
-  constructor(save, files) {
+  constructor(send, files) {
     this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
     this.help = element("div", { className: "popover help", hidden: true, tabIndex: 0 });
     this.help.append(title("Overview"), list(HELP), title("Keys"), list(KEYS));
     this.copied = element("p", { role: "status" });
     this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
-    this.take = element("div", { className: "popover", hidden: true }, exportMenu(save, files));
+    this.exports = element("div", { className: "popover", hidden: true }, exportMenu(send, files));
     this.menu = element("div", { className: "popover menu", hidden: true });
-    this.all = [this.help, this.link, this.take, this.menu];
+    this.all = [this.help, this.link, this.exports, this.menu];
   }
 
   // A button at the end of the help.

@@ -53,7 +53,7 @@ class ForceTrains:
         self._input = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
         self._output = ColumnDataSource({name: np.zeros(0) for name in ("time", "force")})
         self._lines: list[GlyphRenderer] = []
-        self._narrow = False
+        self._compact = False
         self._units = ("m", "N", "N")
         self._factors = (1.0, 1.0)
         self.left = self._left_figure(time)
@@ -176,16 +176,16 @@ class ForceTrains:
         """The colour of what was measured: dark on light, light on dark."""
         self._measured.ink(colour)
 
-    def set_compact(self, narrow: bool) -> None:
+    def set_compact(self, compact: bool) -> None:
         """Fewer ticks and shorter titles where there is little room."""
-        self._narrow = narrow
+        self._compact = compact
         for axis in self._axes:
-            axis.ticker.desired_num_ticks = 2 if narrow else 3
+            axis.ticker.desired_num_ticks = 2 if compact else 3
         self._write_titles()
 
     def _write_titles(self) -> None:
         for axis, style, unit in zip(self._axes, _AXES, self._units, strict=True):
-            change(axis, axis_label=style.label(unit, self._narrow))
+            change(axis, axis_label=style.label(unit, self._compact))
 
     def thicken(self, factor: float) -> None:
         """Wider lines for the projector."""

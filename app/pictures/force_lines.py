@@ -29,9 +29,9 @@ class LineStyle:
         """The line's colour, which is the same in every theme."""
         return str(getattr(THEMES["light"], self.role))
 
-    def label(self, unit: str, narrow: bool = False) -> str:
+    def label(self, unit: str, compact: bool = False) -> str:
         """The title of the axis, shorter where there is little room."""
-        return f"{self.short if narrow else self.title} ({unit})"
+        return f"{self.short if compact else self.title} ({unit})"
 
 
 DRIVE = LineStyle("drive u₀", "drive", "drive", 2.0)

@@ -148,8 +148,8 @@ class _Socket:
         self.connection = connection
         socket = getattr(connection, "_socket", None)
         self._lock = getattr(socket, "write_lock", None)
-        self._there = getattr(socket, "ws_connection", None)
-        self._stream = getattr(self._there, "stream", None)
+        self._ws_connection = getattr(socket, "ws_connection", None)
+        self._stream = getattr(self._ws_connection, "stream", None)
 
     @property
     def usable(self) -> bool:

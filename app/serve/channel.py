@@ -113,6 +113,7 @@ class Channel:
 
     def call_soon(self, action: Callable[[], None]) -> None:
         """Call `action` in the next turn of the event loop; from any thread."""
+        self._note_session()
         if self._closed or self._is_destroyed():
             return
         if self._loop is None or not self._served:
@@ -128,6 +129,7 @@ class Channel:
 
     def call_later(self, seconds: float, action: Callable[[], None]) -> None:
         """Call `action` after `seconds`; on the event loop."""
+        self._note_session()
         if self._closed or self._is_destroyed():
             return
         if self._loop is None or not self._served:
@@ -141,12 +143,13 @@ class Channel:
         timer: asyncio.TimerHandle = self._loop.asyncio_loop.call_later(seconds, fire)  # type: ignore[attr-defined]
         self._timers.add(timer)
 
+    def _note_session(self) -> None:
+        """Note whether the document has a session; it has none yet while the page is made."""
+        self._served = self._served or session_of(self._document) is not None
+
     def _is_destroyed(self) -> bool:
         """Whether Bokeh has taken the document apart, which it does before it tells that the visitor left."""
-        here = session_of(self._document) is not None
-        gone = self._served and not here
-        self._served = self._served or here
-        return gone
+        return self._served and session_of(self._document) is None
 
     def _run(self) -> None:
         with self._lock:

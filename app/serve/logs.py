@@ -27,7 +27,7 @@ class JsonFormatter(logging.Formatter):
 def only_when_debugging(_record: logging.LogRecord) -> bool:
     """A filter that shows Bokeh's records of messages that it cannot handle only with --log-level debug.
 
-    The guard logs such a message in one line without a traceback, and a stranger can send as many as he likes.
+    The guard logs such a message in one line without a traceback, and a stranger can send any number.
     """
     return logging.getLogger().isEnabledFor(logging.DEBUG)
 

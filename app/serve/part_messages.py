@@ -25,7 +25,7 @@ class _NotAPartMessage(Exception):
     """This is not a message of a part in plain values."""
 
 
-def receives(document: Document, model: str, receive: Receive) -> None:
+def register(document: Document, model: str, receive: Receive) -> None:
     """Let the messages of the model with this id go to a part's method, which is not kept alive."""
     _RECEIVERS.setdefault(document, {})[model] = weakref.WeakMethod(receive)
 

@@ -64,14 +64,14 @@ class Shared(Generic[Item]):
                 ready = self._finished[key][0]
             else:
                 ready = None
-                one = self._joined(key, compute, cpu_time)
+                computation = self._joined(key, compute, cpu_time)
         if ready is not None:
             yield from ready
             return
         try:
-            yield from self._awaited(one, stop)
+            yield from self._awaited(computation, stop)
         finally:
-            self._leave(key, one, cpu_time)
+            self._leave(key, computation, cpu_time)
 
     def _joined(self, key: Hashable, compute: Callable[[TurnFlag], Iterator[Item]],
                 cpu_time: CpuTime) -> _Computation[Item]:
@@ -89,62 +89,62 @@ class Shared(Generic[Item]):
             found.cpu_time.members.append(cpu_time)
         return found
 
-    def _leave(self, key: Hashable, one: _Computation[Item], cpu_time: CpuTime) -> None:
+    def _leave(self, key: Hashable, computation: _Computation[Item], cpu_time: CpuTime) -> None:
         with self._lock:
-            one.cpu_time.members.remove(cpu_time)
-            if not one.cpu_time.members and not one.done:
-                one.stop.set()
-                self._forget(key, one)
+            computation.cpu_time.members.remove(cpu_time)
+            if not computation.cpu_time.members and not computation.done:
+                computation.stop.set()
+                self._forget(key, computation)
 
-    def _forget(self, key: Hashable, one: _Computation[Item]) -> None:
-        if self._under_way.get(key) is one:
+    def _forget(self, key: Hashable, computation: _Computation[Item]) -> None:
+        if self._under_way.get(key) is computation:
             del self._under_way[key]
 
     @staticmethod
-    def _awaited(one: _Computation[Item], stop: Stop) -> Iterator[Item]:
+    def _awaited(computation: _Computation[Item], stop: Stop) -> Iterator[Item]:
         def wake() -> None:
-            with one.changed:
-                one.changed.notify_all()
+            with computation.changed:
+                computation.changed.notify_all()
 
         if isinstance(stop, Flag):
             stop.on_set = wake
         given = 0
         while True:
-            with one.changed:
-                while not stop and given == len(one.items) and not one.done:
-                    one.changed.wait(_STOP_CHECK_INTERVAL)
-                new, done = one.items[given:], one.done
+            with computation.changed:
+                while not stop and given == len(computation.items) and not computation.done:
+                    computation.changed.wait(_STOP_CHECK_INTERVAL)
+                new, done = computation.items[given:], computation.done
             stop.check()
             given += len(new)
             yield from new
-            if done and given == len(one.items):
-                if one.error is not None:
-                    raise one.error
+            if done and given == len(computation.items):
+                if computation.error is not None:
+                    raise computation.error
                 return
 
-    def _compute(self, key: Hashable, one: _Computation[Item],
+    def _compute(self, key: Hashable, computation: _Computation[Item],
                  compute: Callable[[TurnFlag], Iterator[Item]]) -> None:
         """In a thread of the queue."""
         error: Exception | None = None
         try:
-            one.stop.check()
-            found = compute(one.stop)
-            for item in one.stop.in_turns(found) if self._turns else found:
-                with one.changed:
-                    one.items.append(item)
-                    one.changed.notify_all()
-                one.stop.check()
+            computation.stop.check()
+            found = compute(computation.stop)
+            for item in computation.stop.in_turns(found) if self._turns else found:
+                with computation.changed:
+                    computation.items.append(item)
+                    computation.changed.notify_all()
+                computation.stop.check()
         except Exception as problem:
             error = problem
         try:
             with self._lock:
-                self._forget(key, one)
+                self._forget(key, computation)
                 if error is None and key is not None:
-                    self._keep(key, self._kept(one.items))
+                    self._keep(key, self._kept(computation.items))
         finally:
-            with one.changed:  # even after an error, because others wait
-                one.done, one.error = True, error
-                one.changed.notify_all()
+            with computation.changed:  # even after an error, because others wait
+                computation.done, computation.error = True, error
+                computation.changed.notify_all()
 
     def _keep(self, key: Hashable, items: list[Item]) -> None:
         """With the lock held: keep these items, and drop the least recently used ones beyond `memory`."""

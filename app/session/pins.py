@@ -37,10 +37,10 @@ def pin_texts(pins: Sequence[Pin]) -> dict[str, str]:
 
 def read_pin(text: str) -> Pin:
     """Read the pin of a link's field. Raises `BadInput` for the first bad value: a pin is read whole or not at all."""
-    shown, extras, refused = decode(text)
+    shown, fields, refused = decode(text)
     if refused:
         raise BadInput(f"A pin of the link was left out. {refused[0]}")
-    return Pin(shown, read_start(extras[START], shown) if START in extras else None)
+    return Pin(shown, read_start(fields[START], shown) if START in fields else None)
 
 
 def setting_words(pin: Scene, now: Scene) -> str:

@@ -16,12 +16,12 @@ from granchain_core.scene import Bead
 from ..serve.cpu_time import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
-from .share import EXTRAS, QUESTION, SPEEDS, START, VIEW, encode, pins_in
+from .share import BROWSER_FIELDS, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in
 from .starts import start_text
 from .switches import ACCOUNT_SWITCH, changes
 
-MODES = EXTRAS["mode"]
-STARTS = EXTRAS["start"]
+MODES = VIEW_VALUES["mode"]
+STARTS = VIEW_VALUES["start"]
 
 
 @dataclass
@@ -60,7 +60,7 @@ class Session:
     def link(self) -> str:
         """The query string that brings back what is on the screen: scene, knobs, where the motion began, the view."""
         view = {name: setting.text(getattr(self, setting.attribute))
-                for name, setting in VIEW.items() if not setting.by_browser}
+                for name, setting in VIEW.items() if name not in BROWSER_FIELDS}
         began = self.started_from if self.mode == "settled" else None
         texts = {START: start_text(began), "story": self.story, QUESTION: self.question, **pin_texts(self.pins)}
         return encode(self.scene, view, texts)
@@ -125,7 +125,7 @@ class Session:
 
     def set_scale(self, scale: object) -> None:
         """One scale for all pictures of the scene, or every picture fitted to its frame."""
-        self.scale = _one_of("scale", scale, EXTRAS["scale"])
+        self.scale = _one_of("scale", scale, VIEW_VALUES["scale"])
 
     def set_speed(self, speed: object) -> None:
         """Set the drive periods shown in a second to one of `SPEEDS`."""

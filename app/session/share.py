@@ -36,15 +36,13 @@ SPEEDS = (1.0, 0.1, 0.25, 0.5, 2.0, 5.0, 20.0, 100.0)
 class ViewField:
     """A view setting of a link: its values, the default first, and the attribute of `Session` that keeps it.
 
-    `read` converts the link's text to the attribute, `text` converts the attribute to text. A field `by_browser` is
-    added to the link by the browser, which alone knows its value.
+    `read` converts the link's text to the attribute, `text` converts the attribute to text.
     """
 
     attribute: str
     values: tuple[str, ...]
     read: Callable[[str], object] = str
     text: Callable[[Any], str] = str
-    by_browser: bool = False
 
 
 #: The view settings by their names in a link; one more needs a row here and its attribute. In links the theme is called
@@ -55,12 +53,15 @@ VIEW: dict[str, ViewField] = {
     "scale": ViewField("scale", ("same", "fit")),
     "curves": ViewField("curves", ("auto", *sorted({joined(some) for size in range(5)
                                                     for some in combinations(CURVES, size)}))),
-    "look": ViewField("theme", ("auto", "light", "dark", "projector"), by_browser=True),
+    "look": ViewField("theme", ("auto", "light", "dark", "projector")),
     "speed": ViewField("speed", tuple(f"{speed:g}" for speed in SPEEDS), float, lambda speed: f"{speed:g}"),
     "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }
-#: Their values; the first is the default.
-EXTRAS: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}
+#: Fields that the browser adds to a link, because it alone knows them (`parts/address.js`): the open tab, the page over
+#: the pictures, the theme if the visitor has chosen one, and whether another page embeds this one.
+BROWSER_FIELDS = ("tab", "page", "look", "embed")
+#: The values of the view settings; the first is the default.
+VIEW_VALUES: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}
 #: Field of the state in which the motion began, a text that `starts.py` reads.
 START = "from"
 #: Fields of the pinned pictures, texts that `pins.py` reads.
@@ -69,21 +70,21 @@ PINS = ("pin", "pin2", "pin3")
 QUESTION = "question"
 #: Most characters of a link.
 LONGEST = 4500
-#: Characters of these that are kept free for what the browser adds: tab, page, look, embed.
+#: Characters of these that are kept free for `BROWSER_FIELDS`.
 _ADDED_BY_BROWSER = 100
 
 
-def encode(shown: Scene, extras: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
+def encode(shown: Scene, view: Mapping[str, str], texts: Mapping[str, str] | None = None) -> str:
     """The query string (without "?") that brings back this scene and view.
 
-    `texts` has `START`, `PINS`, `QUESTION` and "story". Pins for which there is no room are
-    left out, the last one first (`pins_in`).
+    `texts` has `START`, `PINS`, `QUESTION` and "story". Pins for which there is no room are left out, the last one
+    first (`pins_in`).
     """
     fields: dict[str, Any] = {"v": VERSION, "scene": shown.name}
     for name, value in shown.differences().items():
         fields[name] = value if isinstance(value, str) else repr(value)
-    for name, value in extras.items():
-        if name in EXTRAS and value in EXTRAS[name] and value != EXTRAS[name][0]:
+    for name, value in view.items():
+        if name in VIEW_VALUES and value in VIEW_VALUES[name] and value != VIEW_VALUES[name][0]:
             fields[name] = value
     fields.update({name: text for name, text in (texts or {}).items() if text})
     query = urlencode(fields)
@@ -105,7 +106,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
 
     `more` has further view settings with their values, which only the page itself knows.
     """
-    known = {**EXTRAS, **(more or {})}
+    known = {**VIEW_VALUES, **(more or {})}
     if len(query) > LONGEST:
         return scene(scene_names()[0]), {}, [f"The link is longer than {LONGEST} characters and was not read."]
     refused: list[str] = []
@@ -113,15 +114,15 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
     if fields.pop("v", VERSION) != VERSION:
         refused.append(f"The link's format is not version {VERSION}; only the fields that are understood were used.")
     shown = _scene(fields.pop("scene", scene_names()[0]), refused)
-    extras: dict[str, str] = {}
+    view: dict[str, str] = {}
     # kappa last: it is converted with the link's own A0, and replaces k only if it is valid
     for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
         if name in (START, QUESTION, *PINS):
-            extras[name] = text
+            view[name] = text
             continue
         if name in known:
             if text in known[name]:
-                extras[name] = text
+                view[name] = text
             else:
                 refused.append(f"{name} = {text[:40]!r} in the link is not one of {', '.join(known[name])}.")
             continue
@@ -136,7 +137,7 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
             continue
         if name == "kappa" and "k" in fields:
             refused.append("The link sets both k and kappa, which are the same quantity; kappa was used.")
-    return shown, extras, refused
+    return shown, view, refused
 
 
 def _fields(query: str, refused: list[str]) -> dict[str, str]:
@@ -158,5 +159,5 @@ def _scene(name: str, refused: list[str]) -> Scene:
         return scene(scene_names()[0])
 
 
-if {*EXTRAS, START, QUESTION, *PINS} & set(QUANTITIES):
+if {*VIEW_VALUES, START, QUESTION, *PINS} & set(QUANTITIES):
     raise RuntimeError("a view setting has the name of a knob")

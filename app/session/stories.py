@@ -19,7 +19,7 @@ from granchain_core.regime import NEVER_REPEATING
 from granchain_core.scene import ASSETS
 from granchain_core.stop import Stop
 
-from .share import EXTRAS
+from .share import VIEW_VALUES
 
 FOLDER = ASSETS / "stories"
 
@@ -186,7 +186,7 @@ def _step(number: int, data: Any, pages: Sequence[str]) -> StoryStep:
             shown.evolve(f=frequency)
         return StoryStep(_text(data, "say", "it"), str(data.get("ask", "")), str(data.get("answer", "")), shown,
                          _expect(_table(data, "expect")), tuple(map(float, via)),
-                         _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *EXTRAS["curves"])),
+                         _one_of(data, "look", ("", *LOOKS)), _one_of(data, "curves", ("", *VIEW_VALUES["curves"])),
                          _one_of(data, "page", ("", *pages)))
     except BadInput as problem:
         raise BadInput(f"step {number}: {problem}") from None

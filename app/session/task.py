@@ -64,6 +64,23 @@ class Job:
             time.sleep(pause)
             pause = min(2.0 * pause, LONGEST_PICTURE_POLL)
 
+    def progress(self, report: Callable[[float], None], steps: int = 50) -> Callable[[float], None]:
+        """For work that tells how much of it is done, from 0 to 1: what it calls, which then gives way.
+
+        `report` is called with that number, with the document locked, at most `steps` times.
+        """
+        reported = 0
+
+        def done_so_far(done: float) -> None:
+            nonlocal reported
+            if done < 1.0:
+                self.give_way()
+            if int(steps * done) > reported:
+                reported = int(steps * done)
+                self.next_tick(report, done)
+
+        return done_so_far
+
 
 class Task:
     """One kind of background work of a page; a new start replaces the last, and it ends when the visitor leaves.

@@ -3,7 +3,7 @@
 A chain of equal beads without precompression carries a solitary wave whose shape does not depend on its strength. With
 K = m = 1 and the distance of two beads as the unit of length its speed is V = c F^{1/6} for the largest force F, in
 Nesterenko's continuum c = 2/√5 (J. Appl. Mech. Tech. Phys. 24, 733, 1983), for the discrete chain c = 0.9055158. The
-discrete constant follows from the traveling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
+discrete constant follows from the travelling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
 V² δ(ξ) = ∫ Λ(ξ − s) δ(s)^{3/2} ds with Λ(s) = max(0, 1 − |s|), δ being the overlap; tests solve that equation.
 """
 
@@ -25,12 +25,20 @@ from ..tables.provenance import Attribute
 DISCRETE = 0.9055158
 #: The same of the continuum.
 CONTINUUM = 2.0 / math.sqrt(5.0)
-#: Part of a contact's largest force below which there is no pulse.
+#: Part of a pulse's first maximum in a contact below which the pulse has passed.
 _PART = 0.02
+#: A pulse has passed a contact at the latest so many times later than it takes from there over two contacts, by its
+#: first maxima. The wave from the wall reaches the last two contacts after 2 such times.
+_PASSED = 1.5
 #: Stated error by sampling over the change of the force with every second sample. With F = F₀ − a x² + b x⁴ and the
-#: maximum a distance s from a sample, the parabola is wrong by b s² (h² − s²), so that of the spacing 2h changes it by
-#: 3 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated.
+#: maximum a distance s from a sample, the parabola is wrong by 3 b s² (h² − s²), so that of the spacing 2h changes it
+#: by 9 b s² h²: by four times the error at s = h/2, by three times near s = 0. Twice as much is stated. The same holds
+#: for the place of the maximum, which is wrong by (b/a) s (4s² − h²) and changes by 3 (b/a) s h².
 _OF_THE_CHANGE = 2.0 / 3.0
+#: The same for the time above half height. A straight line between samples places a crossing at the part θ of its
+#: interval wrongly by a multiple of θ(1 − θ), and twice the spacing changes that by the same multiple of θ or 1 − θ: by
+#: the error itself, or more.
+_OF_THE_CHANGE_OF_WIDTH = 2.0
 
 
 def solitary_speed(scene: Scene, force: float, constant: float = DISCRETE) -> float:
@@ -60,16 +68,19 @@ class Pulse(Labelled):
     force : numpy.ndarray, shape (N - 1,)
         That force [N]. A dimer chain's pulse can have two maxima in a contact; this is the larger one.
     speed : numpy.ndarray, shape (N - 1,)
-        Speed of the maximum from the previous contact to the next one [beads/s]; NaN at both ends, and where the
-        maxima of these three contacts do not follow one another: then they are not those of one hump.
+        Speed of the contacts' first maximum from the previous contact to the next one [beads/s]; NaN at both ends.
     width : numpy.ndarray, shape (N - 1,)
-        Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN
-        where the speed is.
+        Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN at
+        both ends.
     velocity : numpy.ndarray, shape (N,)
         Largest velocity of every bead until the pulse has passed it [m/s].
     sampling_error : float
         Relative error of the forces because the motion is sampled: a parabola through three samples stands for the
         maximum.
+    sampling_error_time : float
+        The same of the times, absolute [s].
+    sampling_error_speed, sampling_error_width : float
+        The same of speeds and widths, relative; NaN where there are none.
 
     Examples
     --------
@@ -87,6 +98,9 @@ class Pulse(Labelled):
     width: np.ndarray
     velocity: np.ndarray
     sampling_error: float
+    sampling_error_time: float
+    sampling_error_speed: float
+    sampling_error_width: float
 
     @property
     def speed_in_metres(self) -> np.ndarray:
@@ -106,16 +120,17 @@ class Pulse(Labelled):
         columns = {
             "time": Column(self.time, at, "s", "when the contact's force is largest while the pulse passes"),
             "force": Column(self.force, at, "N", "largest force of the pulse"),
-            "speed": Column(self.speed, at, "1/s", "speed of the maximum in beads per second, NaN where it has none"),
-            "speed_in_metres": Column(self.speed_in_metres, at, "m/s", "speed of the maximum, NaN where it has none"),
-            "width": Column(self.width, at, "1", "width at half height in beads, NaN where there is no speed")}
+            "speed": Column(self.speed, at, "1/s", "speed of the first maximum in beads per second, NaN at both ends"),
+            "speed_in_metres": Column(self.speed_in_metres, at, "m/s", "speed of the first maximum, NaN at both ends"),
+            "width": Column(self.width, at, "1", "width at half height in beads, NaN at both ends")}
         fastest = {"velocity": Column(self.velocity, ("bead",), "m/s", "largest velocity until the pulse has passed")}
         return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Where it comes from, and the error by sampling."""
+        """Where it comes from, and the errors by sampling."""
         return {**provenance(self.scene, self.run.cost.method, self.run.displacement_error),
-                "sampling_error": self.sampling_error}
+                "sampling_error": self.sampling_error, "sampling_error_time": self.sampling_error_time,
+                "sampling_error_speed": self.sampling_error_speed, "sampling_error_width": self.sampling_error_width}
 
     def summary(self) -> list[str]:
         """Force, speed and width in the middle of the chain."""
@@ -137,8 +152,9 @@ def pulse(run: Run) -> Pulse:
     -------
     Pulse
         Times and largest forces, from a parabola through the largest sample and its neighbours. In a contact the pulse
-        lasts until the force has fallen below 2 % of its largest value; where it never does, as in a precompressed
-        chain, the first maximum counts.
+        lasts until the force has fallen below 2 % of its first maximum, and at most 1.5 times as long as the first
+        maximum takes over the next two contacts, so that the wave from the wall does not count. Where the force never
+        falls so far, as in a precompressed chain, the first maximum counts.
 
     Raises
     ------
@@ -157,35 +173,74 @@ def pulse(run: Run) -> Pulse:
     if scene.N < 3:
         raise BadInput(f"A pulse is followed over at least three beads, and the chain has {scene.N}.")
     contacts = np.arange(1, scene.N)
-    found = np.array([_passing(run, int(c)) for c in contacts])
-    time, force, half, coarse = found.T
+    firsts = [_first_maximum(run, c) for c in range(1, scene.N + 1)]
+    found = np.array([_passing(run, int(c), firsts) for c in contacts])
+    time, force, half, arrived = found[:, 0].T
+    time_change, force_change, half_change, arrival_change = np.abs(found[:, 1] - found[:, 0]).T
+    late = _OF_THE_CHANGE * arrival_change
     speed = np.full(scene.N - 1, np.nan)
-    in_order = (time[:-2] < time[1:-1]) & (time[1:-1] < time[2:])
-    speed[1:-1][in_order] = 2.0 / (time[2:] - time[:-2])[in_order]
+    speed[1:-1] = 2.0 / np.where(arrived[2:] > arrived[:-2], arrived[2:] - arrived[:-2], np.nan)
     passed = np.searchsorted(run.time, [*time, 2.0 * time[-1] - time[-2]]) + 1  # a bead is fastest before this contact
     velocity = np.array([run.velocity[: passed[i], i].max() for i in range(scene.N)])
+    speed_error = 0.5 * speed[1:-1] * (late[2:] + late[:-2])
+    width_error = speed_error + _OF_THE_CHANGE_OF_WIDTH * (half_change / half)[1:-1]
     return Pulse(run, contacts, time, force, speed, speed * half, velocity,
-                 _OF_THE_CHANGE * float((np.abs(force - coarse) / force).max()))
+                 _OF_THE_CHANGE * float((force_change / force).max()), _OF_THE_CHANGE * float(time_change.max()),
+                 _largest(speed_error), _largest(width_error))
 
 
-def _passing(run: Run, contact: int) -> tuple[float, float, float, float]:
-    """The pulse in a contact: time [s] and height [N] of its maximum, how long the force is above half of it [s].
+def _first_maximum(run: Run, contact: int) -> int | None:
+    """The sample at which the force of a contact first has a maximum, None if it has none.
 
-    The fourth number is the height from every second sample.
+    A contact without preload has no force until the pulse arrives. Under a preload a ripple runs ahead of the pulse: a
+    maximum below 2 % of the largest one is not counted.
     """
-    force, time = run.force[:, contact], run.time
-    least = _PART * float(force.max())
+    added = run.force[:, contact] - run.scene.F0
+    maxima = _maxima(added)
+    if run.scene.F0 > 0.0:
+        maxima = maxima[added[maxima] > _PART * added.max()]
+    return int(maxima[0]) if len(maxima) else None
+
+
+def _maxima(force: np.ndarray) -> np.ndarray:
+    """The samples at which a force > 0 has a maximum."""
     inner = force[1:-1]
-    peaks = 1 + np.flatnonzero((inner > least) & (inner >= force[:-2]) & (inner > force[2:]))
-    if not len(peaks):
+    return 1 + np.flatnonzero((inner > 0.0) & (inner >= force[:-2]) & (inner > force[2:]))
+
+
+def _largest(errors: np.ndarray) -> float:
+    """The largest of the errors that are known, NaN if none is."""
+    known = errors[np.isfinite(errors)]
+    return float(known.max()) if len(known) else math.nan
+
+
+def _passing(run: Run, contact: int, firsts: list[int | None]) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """The pulse in a contact: time [s] and height [N] of its maximum, how long the force is above half of it [s], and
+    the time of its first maximum [s].
+
+    `firsts` are the samples of the first maxima of contacts 1 to N. The same once more from every second sample.
+    """
+    force, time, first = run.force[:, contact], run.time, firsts[contact - 1]
+    if first is None:
         raise BadInput(f"No pulse reaches contact {contact} in this record; record longer.")
-    gone = np.flatnonzero(force[peaks[0] :] < least)
-    passing = peaks[peaks < peaks[0] + gone[0]] if len(gone) else peaks[:1]
+    end = first + max(1, _PASSED * ((firsts[min(contact + 2, run.scene.N) - 1] or len(force)) - first))
+    gone = np.flatnonzero(force[first:] < _PART * force[first])
+    maxima = _maxima(force)
+    passing = maxima[(maxima >= first) & (maxima < min(end, first + gone[0]))] if len(gone) else np.array([first])
     i = int(passing[np.argmax(force[passing])])
-    shift, height = _vertex(*force[i - 1 : i + 2])
-    near = max(0, i - 2), min(len(force) - 1, i + 2)
-    coarse = _vertex(force[near[0]], force[i], force[near[1]])[1]
-    return float(time[i] + shift * (time[1] - time[0])), height, _above_half(time, force, i, 0.5 * height), coarse
+    return (*_maximum(time, force, i), _maximum(time, force, first)[0]), \
+        (*_maximum(*_every_second(time, force, i)), _maximum(*_every_second(time, force, first))[0])
+
+
+def _every_second(time: np.ndarray, force: np.ndarray, i: int) -> tuple[np.ndarray, np.ndarray, int]:
+    """Every second sample, sample i among them, and its number there."""
+    return time[i % 2 :: 2], force[i % 2 :: 2], i // 2
+
+
+def _maximum(time: np.ndarray, force: np.ndarray, i: int) -> tuple[float, float, float]:
+    """Time and height of the maximum beside sample i, and how long the force is above half of it."""
+    shift, height = _vertex(force[max(0, i - 1)], force[i], force[min(len(force) - 1, i + 1)])
+    return float(time[i] + shift * (time[1] - time[0])), height, _above_half(time, force, i, 0.5 * height)
 
 
 def _vertex(before: float, best: float, after: float) -> tuple[float, float]:

@@ -12,6 +12,7 @@ Note       The spectrum of a motion without a period is not such a series: quasi
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -67,6 +68,16 @@ class Spectrum(Labelled):
     aliasing: float
 
     @property
+    def error(self) -> float:
+        """Estimated error of an amplitude [N]: `aliasing`, and the error of the motion as that of its largest force.
+
+        NaN where the run states no error.
+        """
+        stated = (getattr(self.run.force_errors, self.force), self.run.displacement_error)
+        known = [one for one in stated if one is not None]
+        return self.aliasing + max(known) * float(np.abs(self.run.force).max()) if known else math.nan
+
+    @property
     def resolution(self) -> float:
         """Frequency resolution [Hz]."""
         return float(self.frequency[1]) * (1.0 if self.period else 2.0)
@@ -107,6 +118,9 @@ class Transfer(Labelled):
         Lines at which the input force is above 1e-6 of its largest part and above twice its `aliasing` [Hz].
     gain, phase : numpy.ndarray, shape (M,)
         |H|, and its argument [rad]: negative where the output is late.
+    gain_error, phase_error : numpy.ndarray, shape (M,)
+        Estimated errors of both, that of the phase [rad] at most π; the gain's is NaN at lines of the input force that
+        are not known.
     run : Run
         The motion.
 
@@ -121,6 +135,8 @@ class Transfer(Labelled):
     frequency: np.ndarray
     gain: np.ndarray
     phase: np.ndarray
+    gain_error: np.ndarray
+    phase_error: np.ndarray
     run: Run
 
     @property
@@ -133,7 +149,9 @@ class Transfer(Labelled):
         along = ("frequency",)
         return (Table("transfer", axis("frequency", self.frequency, "Hz", "frequency"), {
             "gain": Column(self.gain, along, "1", "line of the output force over that of the input force"),
-            "phase": Column(self.phase, along, "rad", "phase of the output less that of the input")}),)
+            "phase": Column(self.phase, along, "rad", "phase of the output less that of the input"),
+            "gain_error": Column(self.gain_error, along, "1", "error of the gain, NaN if unknown"),
+            "phase_error": Column(self.phase_error, along, "rad", "error of the phase, at most π")}),)
 
     def attributes(self) -> dict[str, Attribute]:
         """The attributes of its run."""
@@ -143,7 +161,8 @@ class Transfer(Labelled):
         """How many lines, and what passes at the drive frequency."""
         at = int(np.argmin(np.abs(self.frequency - self.scene.f)))
         return [f"{len(self.frequency)} lines at which the input force is not negligible",
-                f"at {self.frequency[at]:.6g} Hz: gain {self.gain[at]:.4g}, phase {self.phase[at]:+.3f} rad"]
+                f"at {self.frequency[at]:.6g} Hz: gain {self.gain[at]:.4g} ± {self.gain_error[at]:.0e}, phase "
+                f"{self.phase[at]:+.3f} ± {self.phase_error[at]:.0e} rad"]
 
 
 def spectrum(run: Run, force: str = "output") -> Spectrum:
@@ -215,8 +234,11 @@ def transfer(run: Run) -> Transfer:
     into, out = spectrum(run, "input"), spectrum(run, "output")
     strong = into.amplitude > max(_COUNTS * into.amplitude.max(), 2.0 * into.aliasing)
     turned = out.phase[strong] - into.phase[strong]
-    return Transfer(into.frequency[strong], out.amplitude[strong] / into.amplitude[strong],
-                    np.angle(np.exp(1j * turned)), run)
+    gain = out.amplitude[strong] / into.amplitude[strong]
+    a, b = out.error / out.amplitude[strong], into.error / into.amplitude[strong]  # relative errors of both lines
+    gain_error = np.where(b < 1.0, gain * (a + b) / np.where(b < 1.0, 1.0 - b, 1.0), math.nan)
+    phase_error = np.where(a + b < 1.0, np.arcsin(np.minimum(a + b, 1.0)), math.pi)
+    return Transfer(into.frequency[strong], gain, np.angle(np.exp(1j * turned)), gain_error, phase_error, run)
 
 
 def _record(run: Run, values: np.ndarray) -> tuple[np.ndarray, int | None]:

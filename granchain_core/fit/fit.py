@@ -21,7 +21,7 @@ from .intervals import LEVEL, BetterMinimum, Profile, limit, profile
 from .parameters import Free, with_values
 from .search import STEP, Problem, Target, descended, searched
 from .tables import data_table, landscape_table, parameter_table, profile_table
-from .targets import CurveTarget, Evaluation, FeatureTarget
+from .targets import Evaluation, FeatureTarget
 
 #: Probability of a χ² as large, if the model were true, below which the verdict is that it cannot.
 CANNOT = 0.01
@@ -310,11 +310,3 @@ def _sentence(problem: Problem, evaluation: Evaluation, best: np.ndarray, counte
     return (f"The model cannot describe the data within these bounds: the best of {len(problem.misfits)} sets of "
             f"parameters has {numbers}{bounds}; it is {abs(evaluation.residuals[worst]):.1f} standard deviations "
             f"away {problem.target.where(worst)}.")
-
-
-def curve_of(found: Fit, frequencies: np.ndarray, stop: Stop | None = None) -> Any:
-    """The fitted model's curve over other frequencies, for a picture; where each datum has its own A0, over those."""
-    from ..steady.curve.resonance_curve import resonance_curve
-
-    start = found.target.start if isinstance(found.target, (CurveTarget, FeatureTarget)) else "rest"
-    return resonance_curve(found.scene, frequencies, start, stop=stop, amplitude=found.amplitude)

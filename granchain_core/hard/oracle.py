@@ -1,8 +1,8 @@
 """An independent solver to compare with: SciPy in (u, v), restarted at every contact event.
 
-It shares no equation, no variable and no line with the kernels: contacts are gated by flags that events flip, forces
-are those of Zhang et al. 2016, eq. (1), in scaled units, and the method may be implicit (Radau) where a dashpot is
-stiff.
+It shares no equation and no variable with the kernels: contacts are gated by flags that events flip, forces are those
+of Zhang et al. 2016, eq. (1), in scaled units, and the method may be implicit (Radau) where a dashpot is stiff. Only
+`restitution` takes something from them: the exponents of the damping laws, so that it knows every law.
 """
 
 from __future__ import annotations

@@ -132,8 +132,8 @@ class Method:
         Whether the error falls by the method's order at every refinement, contact events or not.
     variables : str
         "uw" or "uv".
-    keeps_account : bool
-        Whether its kernels know the energy account.
+    has_account : bool
+        Whether its equations and kernels know the energy account.
     """
 
     name: str
@@ -150,12 +150,7 @@ class Method:
     converges_regularly: bool = False
     variables: str = "uw"
     order_with_cut: float = 1.0
-    keeps_account: bool = True
-
-    @property
-    def has_account(self) -> bool:
-        """Whether its equations can have the energy account."""
-        return self.variables == "uw" and self.keeps_account
+    has_account: bool = True
 
 
 def _fixed(kind: Any, simd: bool = False) -> Callable[[Setting, ScaledChain, int], Stepper]:
@@ -194,13 +189,14 @@ METHODS: dict[str, Method] = {
             name="rk4-naive", title="RK4 in (u, v), the obvious first attempt", order_smooth=4.0, order=1.0,
             adaptive=False, symplectic=False,
             restrictions="no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
-            reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv"),
+            reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv",
+            has_account=False),
         Method(
             name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt", order_smooth=1.0,
             order=1.0, adaptive=False, symplectic=True,
             restrictions="no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
-            variables="uv"),
+            variables="uv", has_account=False),
         Method(
             name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
             adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
@@ -213,7 +209,7 @@ METHODS: dict[str, Method] = {
                          "harmonic or at rest, without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/method.md",
             stepper=_adaptive(Dop853RootStepper), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
-            usual_error=1.0, keeps_account=False),
+            usual_error=1.0, has_account=False),
     )
 }
 

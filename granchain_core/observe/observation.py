@@ -2,10 +2,10 @@
 
     m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
 
-The motion is computed with steps that are halved until two computations agree to the accuracy asked for, and once more
-from every second sample. The first difference bounds the integration error, three times the second the interpolation
-error. Where a contact's dashpot makes the force jump, the latter is of the order of the spacing and depends on the
-place of the jump in it, so that one halving may gain little.
+The motion is computed with steps that are halved until the stated integration error is small enough, by the rules of
+`run` (integrate/stated.py), and once more from every second sample. Three times the difference from that is stated as
+the interpolation error. Where a contact's dashpot makes the force jump, it is of the order of the spacing and depends
+on the place of the jump in it, so that one halving may gain little.
 """
 
 from __future__ import annotations
@@ -18,16 +18,17 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
+from ..integrate import fixed_step_setting
 from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
-from ..integrate.safety_factors import IRREGULAR, REGULAR
-from ..integrate.stated import relative_difference
+from ..integrate.safety_factors import IRREGULAR
+from ..integrate.stated import Computations, force_differences, least_errors, relative_changes, relative_difference
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns, time_axis
-from ..result import Cost
+from ..result import RUN_ERRORS, Cost, ForceErrors, said_forces
 from ..scene import Scene
 from ..state import State, checked_start, rest
 from ..stop import Stop
-from ..tables import Column, Table, bead_axis, contact_axis, provenance
+from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
 from .record import ForceRecord, force_record, prepared
@@ -58,11 +59,14 @@ class Observation(RecordedMotion):
         Forces of the contacts [N]; column 0 is the input.
     max_output_force, max_output_force_elastic : float
         Largest force on the wall and its elastic part [N].
+    force_errors : ForceErrors
+        Relative errors of these two, by steps and interpolation (docs/observers.md). None is stated of the largest
+        input force, which is a sample.
     integration_error, interpolation_error : float
         Relative errors of the displacements by the steps and by the interpolation between samples; their sum
         is `displacement_error`, also called `error_estimate`.
     status : str
-        "done" or "accuracy-not-reached".
+        "done" if `displacement_error` is at most the accuracy asked for, else "accuracy-not-reached".
     cost : Cost
         Computing time, steps and evaluations.
     residual, residual_elastic : Residual or None
@@ -86,6 +90,7 @@ class Observation(RecordedMotion):
     force: np.ndarray
     max_output_force: float
     max_output_force_elastic: float
+    force_errors: ForceErrors
     integration_error: float
     interpolation_error: float
     status: str
@@ -120,19 +125,20 @@ class Observation(RecordedMotion):
         return (Table("observation", axes, columns),)
 
     def attributes(self) -> dict[str, Attribute]:
-        """Status, errors, how the input was read, residuals, cost, and where it comes from."""
+        """Status, largest forces, errors, how the input was read, residuals, cost, and where it comes from."""
         residuals: dict[str, Attribute] = {
             name: json.dumps(asdict(found)) for name in ("residual", "residual_elastic")
             if (found := getattr(self, name)) is not None}
         return {**provenance(self.scene, self.cost.method, self.displacement_error), "status": self.status,
                 "integration_error": self.integration_error, "interpolation_error": self.interpolation_error,
                 "input": "; ".join((self.record.understood, *self.record.notes)),
-                "cost": json.dumps(asdict(self.cost)), **residuals}
+                "cost": json.dumps(asdict(self.cost)), **residuals, **{name: getattr(self, name) for name in MAXIMA},
+                **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 
     def summary(self) -> list[str]:
         """Largest forces, errors, and the difference from what was measured."""
         found = [f"{len(self.time)} samples over {self.time[-1] - self.time[0]:.4g} s; {self.status.replace('-', ' ')}",
-                 f"largest output force {self.max_output_force:.5g} N, elastic {self.max_output_force_elastic:.5g} N",
+                 *said_forces(self)[:2],
                  f"relative error of displacements {self.integration_error:.1e} by steps, "
                  f"{self.interpolation_error:.1e} between samples"]
         if self.residual is not None:
@@ -145,8 +151,8 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
             progress: Callable[[float], None] | None = None) -> Observation:
     """The observer of model (3), Zhang et al. 2016: the chain without driver, a given force on its first bead.
 
-    Steps are halved until two computations agree. A further computation from every second sample gives the
-    interpolation error (docs/observers.md).
+    Steps are halved until the error by the steps is at most the accuracy asked for. A further computation from every
+    second sample gives the interpolation error (docs/observers.md).
 
     Parameters
     ----------
@@ -172,8 +178,8 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     Returns
     -------
     Observation
-        The motion at every sample. Its `status` is "done", or "accuracy-not-reached" for an observer that magnifies
-        every error.
+        The motion at every sample. Its `status` is "done", or "accuracy-not-reached" where samples are too far apart
+        for the accuracy asked for, or where the observer magnifies every error.
 
     Raises
     ------
@@ -202,19 +208,28 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else checked_start(scene, start)
     chain = PushedChain(scene, record, stop)
-    before, halvings = chain.run(begin, 0), 0
-    while True:
-        halvings += 1
-        now = chain.run(begin, halvings)
-        integration = REGULAR * relative_difference(now.displacement, before.displacement)
+    before, first, shown = chain.run(begin, 0), chain.maxima, Computations(scene.cuts_tension)
+    shown.begin(fixed_step_setting())
+    for halvings in range(1, MOST_HALVINGS + 1):
+        setting = fixed_step_setting(2**halvings)
+        now, maxima = chain.run(begin, halvings), chain.maxima
+        differences = [relative_difference(now.displacement, before.displacement),
+                       *force_differences(maxima, first, scene.forces_jump)]
+        least = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
+        shown.add(setting, chain.steps(halvings), np.array(differences), least)
         if progress is not None:
             progress(halvings / (MOST_HALVINGS + 1))
-        if integration <= scene.accuracy or halvings == MOST_HALVINGS:
+        if shown.stated[0] <= scene.accuracy or shown.rounded:
             break
-        before = now
+        before, first = now, maxima
+    integration = shown.final(bool(shown.stated[0] <= scene.accuracy))
     thin, kept, of_thin = record.thinned()
-    coarse = PushedChain(scene, thin, stop, chain.counts).run(begin, halvings)
-    maxima, scales = chain.maxima, chain.scaled.scales
+    thinned = PushedChain(scene, thin, stop, chain.counts)
+    coarse = thinned.run(begin, halvings)
+    changes = [relative_difference(now.displacement[kept], coarse.displacement[of_thin]),
+               *relative_changes(maxima, thinned.maxima)]
+    interpolation = IRREGULAR * np.maximum(changes, changes[0])  # two largest forces may agree by chance
+    errors, scales = integration + interpolation, chain.scaled.scales
     displacement = now.displacement * scales.length
     forces = now.force * scales.force
     forces[:, 0] = record.force
@@ -224,9 +239,9 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     return Observation(
         scene=scene, record=record, displacement=displacement, velocity=now.velocity * scales.velocity, force=forces,
         max_output_force=float(maxima[1]) * scales.force, max_output_force_elastic=float(maxima[2]) * scales.force,
-        integration_error=integration,
-        interpolation_error=IRREGULAR * relative_difference(now.displacement[kept], coarse.displacement[of_thin]),
-        status="done" if integration <= scene.accuracy else "accuracy-not-reached",
+        integration_error=float(integration[0]), interpolation_error=float(interpolation[0]),
+        status="done" if errors[0] <= scene.accuracy else "accuracy-not-reached",
+        force_errors=ForceErrors.of(np.array([np.nan, *errors[2:]])),
         cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )

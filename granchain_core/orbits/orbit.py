@@ -55,7 +55,7 @@ class Orbit(Labelled):
     state : State
         Where the orbit is at drive phase 0.
     residual : float
-        Change of the state by the map, over the state's largest entry.
+        Change of the state by the map, relative to the largest displacement and the largest w.
     newton_residuals : tuple of float
         The residuals of all iterations.
     multipliers : numpy.ndarray of complex, shape (2N,)
@@ -63,7 +63,7 @@ class Orbit(Labelled):
     liouville : float or None
         Difference between the logarithm of the multipliers' product and ∫ trace, relative to the latter where that is
         above 1; None where not all multipliers are known or the smallest are rounding.
-    changes : numpy.ndarray, shape (events, 2)
+    contact_events : numpy.ndarray, shape (events, 2)
         Contact events along the orbit: contact + 1, negative where it opens, and the time over the drive period.
     observer_multipliers : numpy.ndarray of complex or None
         Those of the observer of model (4), where they were requested.
@@ -86,10 +86,15 @@ class Orbit(Labelled):
     newton_residuals: tuple[float, ...]
     multipliers: np.ndarray
     liouville: float | None
-    changes: np.ndarray
+    contact_events: np.ndarray
     observer_multipliers: np.ndarray | None = None
     monodromy: np.ndarray | None = None
     observer_monodromy: np.ndarray | None = None
+
+    @property
+    def changes(self) -> np.ndarray:
+        """The former name of `contact_events`."""
+        return self.contact_events
 
     @functools.cached_property
     def multiplier_errors(self) -> np.ndarray | None:
@@ -161,7 +166,7 @@ class Orbit(Labelled):
             columns |= multiplier_columns(self.observer_multipliers, ("rank",), errors, "observer_")
         ranks = axis("rank", np.arange(len(self.multipliers)), "1", "place by modulus, 0 is the largest")
         residuals = Column(np.array(self.newton_residuals), ("iteration",), "1",
-                           "change of the state by the map, over the state's largest entry")
+                           "change of the state by the map, relative to the largest displacement and the largest w")
         return (Table("multipliers", ranks, columns),
                 Table("state", bead_axis(self.scene.N),
                       state_columns(self.state.displacement, self.state.velocity, ("bead",))),
@@ -182,7 +187,7 @@ class Orbit(Labelled):
         return [f"period {self.period}, {self.stability_words()}{observer}",
                 f"leading multiplier {lead.real:+.4f}{lead.imag:+.4f}i, |μ| {modulus_words(abs(lead))}"
                 + ("" if self.multiplier_errors is None else f" ± {self.multiplier_errors[0]:.0e}"),
-                f"closes to {self.residual:.1e} of its largest entry"]
+                f"closes to {self.residual:.1e} of its largest displacement and w"]
 
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
@@ -311,7 +316,7 @@ def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarra
         observer_multipliers = leading_multipliers(stroboscopic_map, x, observer=True) if observer else None
     scaled = stroboscopic_map.engine.scaled
     return Orbit(scene, n, scaled.to_si(scaled.embed(x)), history[-1], tuple(history), multipliers, liouville,
-                 flow.changes, observer_multipliers, monodromy, observer_monodromy)
+                 flow.contact_events, observer_multipliers, monodromy, observer_monodromy)
 
 
 def _is_certain(multipliers: np.ndarray, errors: np.ndarray | None) -> bool:

@@ -43,14 +43,14 @@ class Flow:
     """The flow over n periods: end (2N,) of displacements then w in scaled units, derivative (2N, columns).
 
     `log_determinant` is ∫ trace along the way, to be compared with the derivative's own (Liouville).
-    `changes` (events, 2) are the contact events on the way: contact + 1, negative where it opened, and the time over
-    the drive period.
+    `contact_events` (events, 2) are those on the way: contact + 1, negative where it opened, and the time over the
+    drive period.
     """
 
     end: np.ndarray
     derivative: np.ndarray
     log_determinant: float
-    changes: np.ndarray
+    contact_events: np.ndarray
 
 
 def refuse_cut(scene: Scene) -> None:
@@ -101,7 +101,7 @@ class StroboscopicMap:
         start = np.eye(len(x)) if directions is None else directions
         tangent = new_tangent(start, self.engine.scaled.bodies, 1 if observer else 0)
         trace = self._run(x, tangent)
-        return Flow(self.inner(self.engine.y), columns_of(tangent, start.shape[1]), trace, self.changes)
+        return Flow(self.inner(self.engine.y), columns_of(tangent, start.shape[1]), trace, self.contact_events)
 
     def derivative_by_saltation(self, x: np.ndarray, jumps: bool = True) -> np.ndarray:
         """The derivative (2N, 2N) in (u, w), from tangents in (u, v) with their jumps at contact events.
@@ -127,7 +127,7 @@ class StroboscopicMap:
         return self.inner(self.engine.y)
 
     @property
-    def changes(self) -> np.ndarray:
+    def contact_events(self) -> np.ndarray:
         """The contact events of the last run, as in `Flow`."""
         found = self._contacts.log[: self._contacts.logged[0]].copy()
         found[:, 1] /= self.engine.scaled.period

@@ -116,12 +116,12 @@ def effects_of(scene: Description) -> list[Effect]:
 def latex(scene: Description) -> str:
     """Motion, contact force, overlap and driver of `scene` (Zhang et al. 2016, eqs. 1, 3 and 5), active terms only."""
     masses = not scene.is_uniform
-    stiffness = "K_j" if masses or scene.wall_factor != 1.0 else "K"
+    stiffness = "K_c" if masses or scene.wall_factor != 1.0 else "K"
     equation = Equation(("m_i" if masses else "m") + r"\,\ddot u_i = F_{i-1} - F_i",
-                        stiffness + r"\,[\delta_j]_+^{3/2}", r"u_j - u_{j+1}", stiffness)
+                        stiffness + r"\,[\delta_c]_+^{3/2}", r"u_c - u_{c+1}", stiffness)
     for effect in effects_of(scene):
         equation = effect.latex(equation, scene)
     driver = r"A_0\sin 2\pi f t" if scene.is_driven else "0"
     start = r",\quad \dot u_1(0) = v_1" if scene.strike > 0.0 else ""
-    return (equation.motion + r",\qquad F_j = " + equation.force + r",\qquad \delta_j = " + equation.overlap
+    return (equation.motion + r",\qquad F_c = " + equation.force + r",\qquad \delta_c = " + equation.overlap
             + r",\qquad u_0 = " + driver + r",\quad u_{N+1} = 0" + start)

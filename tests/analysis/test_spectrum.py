@@ -57,6 +57,21 @@ def lattice(chain: Scene, f: float) -> complex:
     return complex(spring[-1] * u[-1] / (spring[0] * (1.0 - u[0])))
 
 
+@pytest.mark.parametrize("changes", [{"N": 4}, {"N": 5, "F0": 1.0, "dissipation": "tsuji"}], ids=["jumps", "pressed"])
+def test_gain_and_phase_are_known_to_the_errors_that_are_stated(changes: dict[str, object]) -> None:
+    """Against sixteen times the samples or more; without a jump the error is that of the motion."""
+    chain = scene("sec2").evolve(f=1200.0, **changes)
+    fine = transfer(run(chain.evolve(accuracy=1e-9), periods=300, record=2, samples=4096))
+    for samples in (64, 256):
+        found = transfer(run(chain, periods=300, record=2, samples=samples))
+        same = np.searchsorted(fine.frequency, found.frequency * (1.0 - 1e-9))
+        wrong = np.abs(found.gain - fine.gain[same])
+        turned = np.abs(np.angle(np.exp(1j * (found.phase - fine.phase[same]))))
+        known = ~np.isnan(found.gain_error)
+        assert (wrong[known] <= found.gain_error[known]).all() and (turned <= found.phase_error).all()
+        assert found.gain_error[1] < 0.1 * found.gain[1] and found.phase_error[1] < 0.1  # bounds that say something
+
+
 @pytest.mark.parametrize("f", [2000.0, 4000.0, 6000.0])
 def test_small_waves_of_a_pressed_chain_pass_as_the_linear_lattice_says(f: float) -> None:
     """The chain departs from the linear one as its amplitude over the static overlap, 1e-9 over 3e-6 m."""

@@ -28,8 +28,9 @@ LAYERS = {folder.split("/")[1]: uses for folder, uses in ROWS.items() if re.full
 #: Powers and factors of Hertz's law: p = 3/2, p + 1, what they are divided by, and those of contact times and waves.
 _POWERS = {1.5, 2.5, 0.4, 0.25, 2.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0, -1.0 / 3.0, -1.0 / 6.0}
 _FACTORS = {1.5, 2.5, 0.4}
-#: Files in which such a number means something else: a share of a record's samples, a reserve of time.
-_OTHER_NUMBERS = {"experiment/grid.py", "run/budget.py"}
+#: Files in which such a number means something else: a share of a record's samples, a reserve of time, a part of a
+#: speed, a part of a record.
+_OTHER_NUMBERS = {"experiment/grid.py", "run/budget.py", "orbits/response.py", "observe/twin.py"}
 
 
 def allowed(layer: str, layers: dict[str, list[str]] = LAYERS) -> set[str]:
@@ -112,11 +113,16 @@ def constant(node: ast.expr) -> float | None:
 
 
 def writes_the_exponent(node: ast.AST) -> bool:
-    """Whether an expression has a power or a factor of Hertz's law."""
+    """Whether a node has a power or a factor of Hertz's law, gives such a power a name, or compares with its exponent.
+    """
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
         return constant(node.right) in _POWERS
     if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
         return constant(node.left) in _FACTORS or constant(node.right) in _FACTORS
+    if isinstance(node, ast.Assign):
+        return isinstance(node.value, ast.BinOp) and constant(node.value) in _POWERS
+    if isinstance(node, ast.Compare):
+        return any(constant(one) == 1.5 for one in node.comparators)
     return isinstance(node, ast.Name) and node.id == "three_halves"
 
 

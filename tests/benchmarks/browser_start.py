@@ -54,7 +54,7 @@ addEventListener("DOMContentLoaded", () => {
     };
     look();
   });
-  const named = () => (document.querySelector(".chapters button") ? (times.curve ??= now()) : setTimeout(named, 50));
+  const named = () => (document.querySelector(".peak-names button") ? (times.curve ??= now()) : setTimeout(named, 50));
   named();
 });
 """
@@ -91,7 +91,7 @@ def one_start(browser: Browser, folder: Path | None) -> dict[str, float]:
                               stderr=subprocess.DEVNULL)
     try:
         times = {"answer": opened(page, f"http://127.0.0.1:{port}/") - start}
-        page.wait_for_selector(".chapters button", timeout=120_000)
+        page.wait_for_selector(".peak-names button", timeout=120_000)
         page.wait_for_function("times.curve && times.moving", timeout=120_000)
         times |= {name: at / 1000 - start for name, at in page.evaluate("times").items()}
         page.close()

@@ -99,7 +99,7 @@ def prepared(profile: BrowserContext, address: str) -> str:
     profile.pages[0].goto(address + "liveness")
     page = profile.new_page()
     page.goto(address)
-    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.wait_for_selector(".peak-names button", timeout=COMPILED)
     page.close()
     return address
 

@@ -95,7 +95,7 @@ FAULTS = """() => {
         if (!box.width) continue;
         const fault = cut({ parentElement: one, getRootNode: () => one.getRootNode() }, box, 2);
         if (fault) faults.push(`“${node.textContent.trim().slice(0, 40)}” ${fault}`);
-        if (one.closest(".title, .peak, #key, #scale, .chapters")) texts.push([one, box]);
+        if (one.closest(".title, .peak, #key, #scale, .peak-names")) texts.push([one, box]);
       }
     }
   }

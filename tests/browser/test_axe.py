@@ -68,7 +68,7 @@ def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
 @pytest.mark.long
 def test_axe_finds_nothing(visit: Visit) -> None:
     page = visit("?v=1&look=light")
-    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.wait_for_selector(".peak-names button", timeout=COMPILED)
     places = everywhere(page)
     assert len(places) > 20 and {where: what for where, what in places.items() if what} == {}
     # so it would be found, also in one of the other themes alone
@@ -116,7 +116,7 @@ def test_the_pictures_are_told_in_words_and_tables(visit: Visit) -> None:
     expect(rows).to_have_count(11)
     type_into(page, "f", "340")
     expect(summary).to_contain_text("arrive at the wall, 0.901 times as much")
-    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.wait_for_selector(".peak-names button", timeout=COMPILED)
     page.get_by_label("which table").select_option("curve")
     assert rows.count() > 75
     expect(rows.first).to_contain_text("mN")

@@ -98,13 +98,13 @@ def test_on_a_phone_one_tap_puts_the_curve_under_the_picture(visit: Visit) -> No
     foot, below = page.locator("#foot").bounding_box(), curve.bounding_box()
     assert foot and below and below["y"] >= foot["y"]  # under the line and the knob f
     button.tap()
-    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.wait_for_selector(".peak-names button", timeout=COMPILED)
     for part in ("chain", "map", "curve"):
         expect(page.locator(f"#{part}")).to_be_in_viewport(ratio=1)
     sheet, box = page.locator("#side").bounding_box(), curve.bounding_box()
     assert sheet and box and box["y"] + box["height"] <= sheet["y"]  # the knob f does not cover it
     until(page, lambda: faults(page) == [])
-    page.locator(".chapters .peak").nth(1).tap()
+    page.locator(".peak-names .peak").nth(1).tap()
     expect(page.locator("#foot b")).to_contain_text("1:2 resonance")
     page.get_by_role("button", name="Show or hide the other knobs").tap()
     expect(button).to_have_attribute("aria-pressed", "false")  # the sheet has its place

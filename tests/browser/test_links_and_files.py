@@ -126,7 +126,7 @@ def test_a_virtual_experiment_lies_over_the_trains_until_it_is_removed(visit: Vi
 def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit) -> None:
     """The map keeps itself up to date by messages: drawn anew, it would lose what the pointer is on."""
     page = visit()
-    page.wait_for_selector(".chapters button", timeout=COMPILED)  # the curve is whole: nothing else changes the tab
+    page.wait_for_selector(".peak-names button", timeout=COMPILED)  # the curve is whole: nothing else changes the tab
     page.get_by_role("tab", name="data").click()
     page.locator("[role=tabpanel]").evaluate("""(body) => {
       window.drawn = 0;

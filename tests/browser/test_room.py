@@ -89,7 +89,7 @@ def test_dark_differs_from_light_in_colours_only() -> None:
 @pytest.mark.parametrize("scene", ["sec2", "fig11-founded"])
 def test_no_control_and_no_word_is_cut_hidden_or_covered(at: Visit, scene: str) -> None:
     page = at(f"?v=1&scene={scene}&look=light")
-    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.wait_for_selector(".peak-names button", timeout=COMPILED)
     for look in ("light", "dark", "projector"):
         expect(page.locator("html")).to_have_attribute("data-theme", look)
         for width, height in SIZES if look != "dark" else ():
@@ -167,9 +167,9 @@ def test_a_moved_knob_moves_no_picture(at: Visit, look: str) -> None:
 def test_what_the_paper_states_is_named_at_its_frequency(at: Visit, look: str) -> None:
     # more damping than the rig's 35.4: the curve has as many names and takes a sixth of the time
     page = at(f"?v=1&scene=rig&D=65&look={look}")
-    stated = page.locator(".chapters .stated")
+    stated = page.locator(".peak-names .stated")
     expect(stated).to_have_text(["1:1", "1:1 anti", "1:2"])
-    page.wait_for_selector(".chapters .peak", timeout=COMPILED)
+    page.wait_for_selector(".peak-names .peak", timeout=COMPILED)
     for width, height in ((1024, 768), *WIDTHS):
         page.set_viewport_size({"width": width, "height": height})
         fits(page)

@@ -82,7 +82,7 @@ def test_a_step_back_brings_the_motion_and_not_only_the_knobs(visit: Visit) -> N
 
 def test_a_pin_stays_while_knobs_move_and_comes_back_with_the_link(visit: Visit) -> None:
     page = visit()
-    page.wait_for_selector(".chapters button", timeout=COMPILED)
+    page.wait_for_selector(".peak-names button", timeout=COMPILED)
     page.get_by_role("button", name="Pin this picture and compare").click()
     expect(page.get_by_role("tab", name="numbers")).to_have_attribute("aria-selected", "true")
     type_into(page, "D", "60")

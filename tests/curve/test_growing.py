@@ -61,7 +61,7 @@ def test_a_stopped_curve_is_not_under_way_again_when_its_last_points_would_be_dr
     monkeypatch.setattr("app.curve.reports.time.monotonic", lambda: now[0])
     host = Host()
     curves = CurveController(host, CurveFigure(lambda _: None), CurveBar(lambda _: None), lambda: None)  # type: ignore[arg-type]
-    curves._remaining = ["rest"]
+    curves._missing = ["rest"]
     for f in (500.0, 600.0):
         curves._reports.add(point(f))
         host.call_waiting()

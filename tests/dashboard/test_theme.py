@@ -11,9 +11,9 @@ import pytest
 import app
 from app.pictures.force_lines import DRIVE, INPUT, OUTPUT
 from app.pictures.theme import THEMES, Theme, style_sheet
-from app.session.share import EXTRAS
+from app.session.share import BROWSER_FIELDS, VIEW_VALUES
 
-SCRIPT = Path(app.__file__).parent / "parts" / "page.js"
+PARTS = Path(app.__file__).parent / "parts"
 
 
 def properties(name: str) -> dict[str, str]:
@@ -48,7 +48,15 @@ def test_no_style_uses_a_role_that_no_theme_has(path: Path) -> None:
     assert set(re.findall(r"var\((--[\w-]+)\)", path.read_text(encoding="utf-8"))) <= {*properties("light"), *own, "--font", "--stale"}
 
 
+def names_in(script: str, constant: str) -> tuple[str, ...]:
+    """The names that a script has as this constant."""
+    (names,) = re.findall(rf"const {constant} = \[([^\]]+)\]", (PARTS / script).read_text(encoding="utf-8"))
+    return tuple(name.strip('" ') for name in names.split(","))
+
+
 def test_a_theme_is_known_everywhere() -> None:
-    script = SCRIPT.read_text(encoding="utf-8")
-    (names,) = re.findall(r"const THEMES = \[([^\]]+)\]", script)
-    assert tuple(THEMES) == EXTRAS["look"][1:] == tuple(name.strip('" ') for name in names.split(","))
+    assert tuple(THEMES) == VIEW_VALUES["look"][1:] == names_in("page.js", "THEMES")
+
+
+def test_the_browser_keeps_the_fields_of_a_link_that_only_it_knows() -> None:
+    assert names_in("address.js", "BROWSER_FIELDS") == BROWSER_FIELDS

@@ -14,7 +14,8 @@ from granchain_core.kernels.compiling.cache import CACHE_FOLDER
 
 _PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml", "README.md", "docs/model.md",
           "tests/numerics/test_orders.py", "docs/command-line.md",
-          "tests/cli/test_json_keys.py", "tests/cli/test_command_lists.py", "tools/__init__.py", "tools/hostile")
+          "tests/cli/test_json_keys.py", "tests/cli/test_command_lists.py", "tools/__init__.py", "tools/hostile",
+          "tests/kernels/equations", "tests/reference/reference.npz")
 
 
 def files_of(page: Path, until: str = "") -> tuple[set[str], set[str]]:
@@ -64,14 +65,16 @@ def edit_files(page: Path, tree: Path, until: str = "") -> None:
             file.write_text(edited(file.read_text(encoding="utf-8"), block.text), encoding="utf-8")
 
 
-def follow(tree: Path, *arguments: str) -> str:
+def follow(tree: Path, *arguments: str, own_kernels: bool = True) -> str:
     """What a command prints in the edited tree.
 
     What it compiles is kept: the folder of kernels is named by their sources, so an edited tree finds its own there
-    until a kernel or the page changes. Without optimisation (NUMBA_OPT=0) Numba could keep nothing.
+    until a kernel or the page changes. Without optimisation (NUMBA_OPT=0) Numba could keep nothing. Without
+    `own_kernels` those of the repository are used, which are the same where the page edits none of them.
     """
     cache = tree / "cache" if CACHE_FOLDER is None else CACHE_FOLDER.parent / "edited-trees"
+    kernels = {"GRANCHAIN_CACHE": str(cache), "NUMBA_OPT": "1"} if own_kernels else {}
     done = subprocess.run([sys.executable, *arguments], cwd=tree, capture_output=True, text=True, timeout=900,
-                          env={**os.environ, "PYTHONPATH": str(tree), "GRANCHAIN_CACHE": str(cache), "NUMBA_OPT": "1"})
+                          env={**os.environ, "PYTHONPATH": str(tree), **kernels})
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return done.stdout

@@ -21,16 +21,23 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return copy
 
 
-def test_the_page_edits_two_files_and_writes_none() -> None:
+def test_the_page_edits_three_files_and_writes_none() -> None:
     edits, new = files_of(PAGE)
-    assert (len(edits), len(new)) == (2, 0)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a damping law: edit 2 files, mention it in 6"
+    assert (len(edits), len(new)) == (3, 0)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a damping law: edit 3 files, mention it in 4"
 
 
 def test_the_new_law_is_right_in_every_kernel(tree: Path) -> None:
     """Energy, order of the split steps, tangents, the kink of a cut, and one state from every way to the steady state.
     """
     assert "6 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "test_added_law.py")))
+
+
+def test_the_equations_of_the_paper_hold_with_the_new_law(tree: Path) -> None:
+    """The quick tests whose reference has exponents of its own take their cases from the table of laws."""
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "kernels", "equations")),
+                     "-k", "three-quarters")
+    assert "15 passed" in printed
 
 
 def test_the_new_law_is_seen(tree: Path) -> None:
@@ -47,7 +54,7 @@ print(explanation(one, None, 96))
 """)
     first, choices, *explained = printed.splitlines()
     name, equation, kernels = first.split("|")
-    assert name == "damping with δ^(3/4)" and r"D\,(\delta_j/\delta_r)_+^{3/4}\,\dot\delta_j" in equation
+    assert name == "damping with δ^(3/4)" and r"D\,(\delta_c/\delta_r)_+^{3/4}\,\dot\delta_c" in equation
     assert kernels == "three-quarters, vector of 16" and "'three-quarters'" in choices
     assert "contact damping (ThreeQuarters)" in explained[0]
 

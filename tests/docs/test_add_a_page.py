@@ -5,26 +5,35 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from documents import ROOT
+from documents import ROOT, blocks
 from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-page.md"
+#: The heading of the step that not every page needs.
+PICTURE = "## 7. A picture"
 
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made, and the tests of its architecture."""
     copy = tmp_path_factory.mktemp("page") / "tree"
-    for part in ("docs", "granchain", "granchain_start", "tests/architecture", "tests/dashboard/test_messages.py",
-                 "tests/dashboard/test_table.py", "tests/host.py", "tests/waiting.py"):
+    for part in ("docs", "granchain", "granchain_start", "tests/architecture", "tests/browser",
+                 "tests/dashboard/test_messages.py", "tests/dashboard/test_table.py", "tests/host.py", "tests/waiting.py"):
         copied(part, copy)
     return edited_copy(PAGE, copy)
 
 
-def test_the_page_edits_three_files_and_writes_four() -> None:
-    edits, new = files_of(PAGE)
-    assert (len(edits - new), len(new)) == (3, 4)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 3 files, write 4"
+def test_the_page_edits_three_files_and_writes_five() -> None:
+    edits, new = files_of(PAGE, PICTURE)
+    assert (len(edits - new), len(new)) == (3, 5)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 3 files, write 5"
+
+
+def test_a_picture_edits_four_files_and_writes_one() -> None:
+    (edits, new), (_, of_the_page) = files_of(PAGE), files_of(PAGE, PICTURE)
+    picture = {block.path for block in blocks(PAGE)[len(blocks(PAGE, PICTURE)):]}
+    assert (len(picture & edits), len(new - of_the_page)) == (4, 1)
+    assert "edit 4 files, write one." in PAGE.read_text(encoding="utf-8").partition(PICTURE)[2]
 
 
 def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
@@ -48,7 +57,7 @@ print(dashboard.views.overlays["transmission"].state["sentence"])
 document = Document()
 dashboard.views.put_into(document)
 print(dict(document.template_variables["overlays"])["transmission"], "transmission.js" in FILES)
-print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["title"] == "transmission"])
+print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["name"] == "transmission"])
 """)
     first, second, overlay, words = printed.splitlines()
     assert first == second == "25.0 % of the largest input force arrives at the wall."
@@ -56,32 +65,39 @@ print([one["placeholder"] for one in dashboard.views.tabs.state["tabs"] if one["
 
 
 def test_the_new_page_computes_in_the_background_until_it_is_told_to_stop(tree: Path) -> None:
-    """The page's task ends when it has its result, when a knob is moved, and when the visitor leaves."""
+    """The page's task ends when it has its result, when a knob is moved, and when the visitor leaves. Its picture has a
+    point for each frequency.
+    """
     printed = follow(tree, "-c", """
 import sys
 sys.path.insert(0, "tests")
 from types import SimpleNamespace
 from host import FakeHost
 from app.pages.transmission.page import TransmissionPage
+from app.pictures.theme import THEMES
 from granchain_core import scene
 
-host, shown = FakeHost(), {"running": False}
+host, shown, figures = FakeHost(), {"running": False}, []
 host.session = SimpleNamespace(scene=scene("sec2").evolve(N=2, f=600.0), picture=None)
-page = TransmissionPage(host, SimpleNamespace(update_state=shown.update))
+view = SimpleNamespace(update_state=shown.update, clear_figure=figures.clear,
+                       show_figure=lambda draw, words, shape: figures.append(draw(THEMES["dark"])))
+page = TransmissionPage(host, view)
 page.actions["transmission-search"]({})
 print(shown["running"], shown["progress"])
 host.run_callbacks_until(lambda: not shown["running"], 300.0)
 print(shown["status"], shown["most"])
+print(len(figures[0].select_one({"name": "shares"}).data["share"]), figures[0].yaxis[0].axis_label)
 page.actions["transmission-search"]({})
 page.scene_changed()
-print(shown["status"], shown["running"], repr(shown["most"]))
+print(shown["status"], shown["running"], repr(shown["most"]), figures)
 page.actions["transmission-search"]({})
 host.leave()
 host.run_callbacks_until(lambda: not host.callbacks)
 print(shown["status"])
 """)
-    begun, found, stopped, left = printed.splitlines()
-    assert (begun, stopped, left) == ("True waiting for its turn …", "stopped False ''", "waiting")
+    begun, found, drawn, stopped, left = printed.splitlines()
+    assert (begun, stopped, left) == ("True waiting for its turn …", "stopped False '' []", "waiting")
+    assert drawn == "17 share of the input force (%)"
     assert found.startswith("done The largest share arrives at ") and found.endswith(" Hz.")
 
 
@@ -93,3 +109,11 @@ def test_the_new_page_fits_into_the_dashboard(tree: Path) -> None:
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
                      str(Path("tests", "dashboard")), "-k", "transmission or table or map or circle or message")
     assert " passed" in printed and "deselected" in printed
+
+
+@pytest.mark.long
+def test_a_browser_shows_what_the_new_page_says_and_draws(tree: Path) -> None:
+    """The test that the page writes; no kernel is edited, so it uses those of the repository."""
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider",
+                     str(Path("tests", "browser", "test_transmission_page.py")), own_kernels=False)
+    assert "1 passed" in printed

@@ -24,6 +24,16 @@ OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encodin
                        for name in ("observers", "glossary"))
 
 
+def test_the_thresholds_of_rotation_numbers_have_the_values_of_the_code() -> None:
+    """Their table is written by hand."""
+    page = (ROOT / "docs" / "regimes.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| [^|]*(?:\\\|[^|]*)* \| ([\de.-]+) \| `(\w+)` in `(analysis/\w+)\.py` \|$", page, re.MULTILINE)
+    assert len(rows) > 20
+    for value, name, file in rows:
+        module = importlib.import_module("granchain_core." + file.replace("/", "."))
+        assert float(value) == pytest.approx(getattr(module, name), rel=1e-12), name
+
+
 def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:
     """Names given together, `A, B = range(2)`, are columns."""
     marked = {(one.file, one.name) for one in marked_constants()}

@@ -13,13 +13,17 @@ from granchain_core.orbits import periodic_orbit
 
 @dataclass(frozen=True)
 class Recorded:
-    """A chain on its orbit: times, input and output force, displacements (T, N), and the state at the first time."""
+    """A chain on its orbit: times, input and output force, displacements (T, N), and the state at the first time.
+
+    `largest` (2,) are the largest output force and the largest of its elastic part, between the samples too.
+    """
 
     time: np.ndarray
     force: np.ndarray
     output: np.ndarray
     displacement: np.ndarray
     start: State
+    largest: np.ndarray
 
 
 def recorded(scene: Scene, samples: int, periods: int = 3) -> Recorded:
@@ -29,7 +33,8 @@ def recorded(scene: Scene, samples: int, periods: int = 3) -> Recorded:
     engine.start(start)
     rows, scales = engine.record(periods * samples), engine.scaled.scales
     return Recorded(np.arange(periods * samples + 1) / samples / scene.f, rows.force[:, 0] * scales.force,
-                    rows.force[:, -1] * scales.force, rows.displacement * scales.length, start)
+                    rows.force[:, -1] * scales.force, rows.displacement * scales.length, start,
+                    engine.maxima[1:] * scales.force)
 
 
 def error(found: np.ndarray, true: np.ndarray) -> float:

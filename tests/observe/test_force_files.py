@@ -181,7 +181,7 @@ def test_an_offset_is_subtracted_only_if_asked() -> None:
 def test_a_run_written_by_granchain_is_observed_and_comes_round(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     known, seen = tmp_path / "known.h5", tmp_path / "seen.h5"
     save(run(CHAIN, periods=60, record=2, samples=1000), known)
-    words = ["observe", "fig11-founded", "--set", "f=340", "--start", "input", "--json"]
+    words = ["observe", "fig11-founded", "--set", "f=340", "--set", "accuracy=0.1", "--start", "input", "--json"]
     assert cli.main([*words, "--input", str(known), "--out", str(seen)]) == 0
     printed = json.loads(capsys.readouterr().out)
     assert printed["status"] == "done" and printed["residual"]["relative"] < 0.01

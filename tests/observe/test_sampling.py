@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from recorded import Recorded, error, recorded
 
-from granchain_core import observe, scene
-from granchain_core.observe import force_record
+from granchain_core import observe, run, scene
+from granchain_core.observe import ForceRecord, force_record
+from granchain_core.observe.pushed_chain import PushedChain
+from granchain_core.state import rest
 from granchain_core.stop import Stop
 
 FOUNDED = scene("fig11-founded")
@@ -28,6 +30,9 @@ def test_the_observer_follows_its_chain_to_the_error_it_states(known) -> None:  
         seen = observe(shown, r.time, r.force, r.output, start=r.start)
         assert error(seen.displacement, r.displacement) <= seen.displacement_error
         assert seen.displacement_error < 0.1  # a bound that says something
+        assert seen.status == "accuracy-not-reached"  # 1e-6 is asked for, and the samples are too far apart for it
+        found = np.array([seen.max_output_force, seen.max_output_force_elastic])
+        assert (np.abs(found / r.largest - 1.0) <= seen.force_errors.row[1:]).all()
         assert seen.residual is not None and seen.residual.relative < 0.01
         assert np.array_equal(seen.input_force, r.force)
 
@@ -65,15 +70,30 @@ def test_the_force_is_monotone_between_samples_and_zero_between_zeros() -> None:
 
 
 def test_steps_converge_with_their_fourth_power() -> None:
-    from granchain_core.observe.pushed_chain import PushedChain
-    from granchain_core.observe.record import ForceRecord
-
     r = recorded(SMOOTH, 500)
     chain = PushedChain(SMOOTH, ForceRecord(r.time, r.force), Stop())
     found = [chain.run(r.start, halvings).displacement for halvings in range(5)]
     change = [error(a, found[-1]) for a in found[:3]]
     # RK4 split at events has 3.9 and more (granchain_core/integrate/methods.py); fitted over a factor of 4
     assert np.log2(change[0] / change[2]) / 2.0 > 3.4
+
+
+def test_the_accuracy_is_reached_where_steps_and_samples_suffice() -> None:
+    r = recorded(SMOOTH, 500)
+    seen = observe(SMOOTH.evolve(accuracy=2e-3), r.time, r.force, start=r.start)
+    assert seen.status == "done" and 1e-3 < seen.displacement_error <= 2e-3
+    # the steps alone reach it
+    assert observe(SMOOTH.evolve(accuracy=1e-3), r.time, r.force, start=r.start).status == "accuracy-not-reached"
+
+
+def test_steps_of_a_chain_that_cuts_tension_are_known_to_the_error_that_is_stated() -> None:
+    """Its steps have order 1 and their error falls unevenly: two computations agree to a fifth of it."""
+    shown = scene("sec2").evolve(N=3, f=1000.0, dissipation="tsuji", tension="cut", accuracy=1e-3)
+    given = run(shown, periods=0, record=15, samples=400)
+    seen = observe(shown, given.time, given.input_force)
+    chain = PushedChain(shown, ForceRecord(given.time, given.input_force), Stop())
+    true = chain.run(rest(shown), 9).displacement * chain.scaled.scales.length
+    assert error(seen.displacement, true) <= seen.integration_error <= shown.accuracy
 
 
 def test_an_observer_without_foundation_does_not_hide_what_it_loses() -> None:

@@ -26,9 +26,9 @@ def test_a_brief_touch_is_in_the_map_and_in_its_derivative(depth: float) -> None
                            dissipation=type(slots.dissipation)(0.0))
     stroboscopic_map.engine.use(replace(scaled, slots=slots))
     flow = stroboscopic_map(np.array([1.0 - depth, 0.0]))
-    assert [int(contact) for contact, _ in flow.changes] == [1, -1]
+    assert [int(contact) for contact, _ in flow.contact_events] == [1, -1]
     # the touch lasts 1.4 % and 0.45 % of a period, a step of the flow up to a sixteenth
-    top, width = flow.changes[:, 1].mean(), np.ptp(flow.changes[:, 1])
+    top, width = flow.contact_events[:, 1].mean(), np.ptp(flow.contact_events[:, 1])
     assert top == pytest.approx(0.25, abs=1e-4) and width == pytest.approx(np.sqrt(2.0 * depth) / np.pi, rel=1e-2)
     speed = thrown_by_a_touch(depth, scaled.beta)
     # the bead's own motion and cos θ are corrections of order depth
@@ -57,7 +57,7 @@ def test_a_grazing_changes_the_derivative_by_a_power_of_its_depth(law: str, dept
         return stroboscopic_map(stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(state)))
 
     beyond, before = flow(1.0 - depth), flow(1.0 + depth)
-    assert (len(beyond.changes), len(before.changes)) == (2, 0)
+    assert (len(beyond.contact_events), len(before.contact_events)) == (2, 0)
     a, beta, coefficient = LAWS[law].exponent, scaled.beta, slots.dissipation.coefficient
     moved = coefficient * sqrt(2.0) * gamma(0.5) * gamma(2.0 + a) / gamma(2.5 + a) / (1.0 + a) / beta * depth**(1.5 + a)
     speed, rest = thrown_by_a_touch(depth, beta), 1.5 * pi / beta  # rest: from the driver's crest to the period's end

@@ -28,7 +28,7 @@ def test_tangents_in_w_and_tangents_in_v_with_saltation_are_one_derivative(chang
     stroboscopic_map = StroboscopicMap(shown, 1)
     x = 0.3 * np.random.default_rng(3).standard_normal(2 * shown.N)
     first, second = stroboscopic_map(x).derivative, stroboscopic_map.derivative_by_saltation(x)
-    assert len(stroboscopic_map.changes) > 0  # contacts open and close: else there is nothing to jump
+    assert len(stroboscopic_map.contact_events) > 0  # contacts open and close: else there is nothing to jump
     assert np.abs(first - second).max() < 1e-9 * np.abs(first).max()
 
 
@@ -73,10 +73,10 @@ def test_the_flow_with_and_without_tangents_ends_at_the_same_place_with_the_same
     x = 0.3 * np.random.default_rng(6).standard_normal(22)
     flow = stroboscopic_map(x)
     assert np.array_equal(stroboscopic_map.end(x), flow.end)
-    assert np.array_equal(stroboscopic_map.changes, flow.changes)
-    assert np.all(np.diff(flow.changes[:, 1]) >= 0.0) and 0.0 <= flow.changes[-1, 1] <= 2.0
+    assert np.array_equal(stroboscopic_map.contact_events, flow.contact_events)
+    assert np.all(np.diff(flow.contact_events[:, 1]) >= 0.0) and 0.0 <= flow.contact_events[-1, 1] <= 2.0
     closed: dict[int, bool] = {}
-    for contact, _ in flow.changes:  # each contact opens and closes in turn
+    for contact, _ in flow.contact_events:  # each contact opens and closes in turn
         c, closes = abs(int(contact)), contact > 0
         assert closed.get(c, not closes) is not closes
         closed[c] = closes

@@ -14,8 +14,6 @@ from granchain_core import Cancelled, NumbersFailed
 from granchain_core.hard import CASES, Case, Check, Measurement, run_case
 from granchain_core.stop import Stop
 
-pytestmark = pytest.mark.quick
-
 
 def measured(*found: Measurement) -> list[Check]:
     """Rows of the case "touch and graze" with these figures in place of its own."""

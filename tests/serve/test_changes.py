@@ -26,6 +26,8 @@ from panel.models.esm import ESMEvent
 from app.serve import changes
 from app.serve.changes import change, written
 
+pytestmark = pytest.mark.quick
+
 
 def parts_of(data: bytes) -> list[bytes]:
     """The payloads of websocket frames that are whole, not masked and not compressed."""

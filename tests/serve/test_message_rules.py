@@ -13,6 +13,8 @@ from event_loop import run_async
 from app.serve import guard
 from app.serve.message_rules import DEEPEST, RefusedMessage, check
 
+pytestmark = pytest.mark.quick
+
 ASKED = json.dumps({"msgid": "1", "msgtype": "PATCH-DOC"})
 
 

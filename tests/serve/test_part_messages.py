@@ -15,7 +15,9 @@ from event_loop import run_async
 from tornado.ioloop import IOLoop
 
 from app.serve.channel import Channel, run_locked
-from app.serve.part_messages import receives, take
+from app.serve.part_messages import register, take
+
+pytestmark = pytest.mark.quick
 
 VALUE = {"type": "map", "entries": [
     ["do", "set"], ["value", 850.3], ["low", {"type": "number", "value": "-inf"}], ["list", [1, None, True, "é", []]],
@@ -50,7 +52,7 @@ def content(data: Any, model: str = "p1", **changes: Any) -> dict[str, Any]:
 def heard(sent: dict[str, Any]) -> tuple[bool, list[Any]]:
     """Whether a message was taken, and what the part heard."""
     connection, part = Connection(), Part()
-    receives(connection.session.document, "p1", part.hear)
+    register(connection.session.document, "p1", part.hear)
 
     async def send() -> bool:
         return take(connection, sent)
@@ -78,7 +80,7 @@ def test_anything_else_is_left_to_bokeh(sent: dict[str, Any]) -> None:
 
 def test_a_part_that_is_gone_is_not_kept_and_hears_nothing() -> None:
     connection = Connection()
-    receives(connection.session.document, "p1", Part().hear)
+    register(connection.session.document, "p1", Part().hear)
     assert not take(connection, content(VALUE))
 
 

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import threading
 
+import pytest
 import waiting
 
 from app.serve.queues import LatestWins, Queue
+
+pytestmark = pytest.mark.quick
 
 
 def test_work_does_not_wait_for_a_thread_that_has_just_been_given_other_work() -> None:

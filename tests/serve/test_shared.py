@@ -15,6 +15,8 @@ from app.serve.shared import Shared
 from app.serve.turns import Flag, TurnFlag
 from granchain_core import Cancelled
 
+pytestmark = pytest.mark.quick
+
 
 class Work:
     """A computation of three results that goes on when the test says so."""

@@ -11,6 +11,8 @@ from app.serve.cpu_time import CpuTime, SharedCpuTime
 from app.serve.turns import FairScheduler, TurnFlag
 from granchain_core import Stop
 
+pytestmark = pytest.mark.quick
+
 
 def test_half_of_what_was_used_is_forgotten_in_five_seconds() -> None:
     now = [0.0]

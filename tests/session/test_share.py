@@ -14,7 +14,7 @@ from app.dashboard.table import overlay_names
 from app.pages.stories.page import story_step
 from app.session.pins import NAMES, Pin
 from app.session.session import Session
-from app.session.share import EXTRAS, LONGEST, SPEEDS, VIEW, decode, encode, joined, pins_in
+from app.session.share import LONGEST, SPEEDS, VIEW, VIEW_VALUES, decode, encode, joined, pins_in
 from app.session.starts import MOST_BEADS
 from granchain_core import BadInput, State, scene, scene_names
 from tools.links import FILE, meaning
@@ -25,22 +25,22 @@ MEANINGS = json.loads(FILE.read_text(encoding="utf-8"))
 
 @given(name=st.sampled_from(scene_names()), f=st.floats(0.1, 1e6), amplitude=st.floats(1e-12, 1e-4),
        damping=st.floats(0.0, 1e6), stiffness=st.floats(0.0, 1e10), beads=st.integers(1, 10_000),
-       law=st.sampled_from(["linear", "tsuji", "kuwabara-kono", "none"]), mode=st.sampled_from(EXTRAS["mode"]))
+       law=st.sampled_from(["linear", "tsuji", "kuwabara-kono", "none"]), mode=st.sampled_from(VIEW_VALUES["mode"]))
 def test_a_link_brings_back_exactly_what_was_shared(name: str, f: float, amplitude: float, damping: float,
                                                     stiffness: float, beads: int, law: str, mode: str) -> None:
     shown = scene(name).evolve(f=f, A0=amplitude, D=damping, k=stiffness, N=beads, dissipation=law)
-    back, extras, refused = decode(encode(shown, {"mode": mode}))
+    back, fields, refused = decode(encode(shown, {"mode": mode}))
     assert back == shown and refused == []
-    assert extras.get("mode", EXTRAS["mode"][0]) == mode
+    assert fields.get("mode", VIEW_VALUES["mode"][0]) == mode
 
 
 def test_a_link_that_was_sent_once_means_today_what_it_meant() -> None:
     """Literal on purpose: if a preset, a default or a name changes, links that are out there change with it."""
-    shown, extras, refused = decode(
+    shown, fields, refused = decode(
         "v=1&scene=rig&f=72.5&A0=6e-06&D=12.5&k=1500.0&N=9&F0=0.25&wall=rigid&dissipation=tsuji&tension=cut"
         "&accuracy=1e-08&mode=live&start=previous&look=dark")
     assert refused == []
-    assert extras == {"mode": "live", "start": "previous", "look": "dark"}
+    assert fields == {"mode": "live", "start": "previous", "look": "dark"}
     assert shown.name == "rig"
     said = {"f": 72.5, "A0": 6e-6, "D": 12.5, "k": 1500.0, "N": 9, "F0": 0.25, "wall": "rigid", "dissipation": "tsuji",
             "tension": "cut", "accuracy": 1e-8}
@@ -56,8 +56,8 @@ def test_a_link_to_a_scene_as_it_is_means_what_it_meant(name: str) -> None:
 
     A later knob of `sec2` is at its default in every link.
     """
-    shown, extras, refused = decode(f"v=1&scene={name}")
-    assert (shown.name, extras, refused) == (name, {}, [])
+    shown, fields, refused = decode(f"v=1&scene={name}")
+    assert (shown.name, fields, refused) == (name, {}, [])
     found, said = meaning(shown), MEANINGS[name]
     assert found.keys() == said.keys() or (name == "sec2" and found.keys() > said.keys())
     assert all(found[key] == pytest.approx(value, rel=1e-12) if key in ("k", "kappa") else found[key] == value
@@ -75,9 +75,9 @@ def test_a_link_with_kappa_means_the_k_it_meant() -> None:
 
 
 def test_every_bad_field_gets_its_sentence_and_the_good_ones_count() -> None:
-    back, extras, refused = decode("v=1&scene=rig&f=nan&A0=1e3&foo=1&mode=x&D=12&look=dark")
+    back, fields, refused = decode("v=1&scene=rig&f=nan&A0=1e3&foo=1&mode=x&D=12&look=dark")
     assert back == scene("rig").evolve(D=12.0)
-    assert extras == {"look": "dark"}
+    assert fields == {"look": "dark"}
     assert len(refused) == 4 and all(sentence.endswith(".") for sentence in refused)
 
 
@@ -86,7 +86,7 @@ def test_an_unknown_scene_or_version_is_said_and_the_first_scene_shown() -> None
     assert back == scene(scene_names()[0]) and len(refused) == 2
 
 
-@given(chosen=st.fixed_dictionaries({name: st.sampled_from(values) for name, values in EXTRAS.items()}))
+@given(chosen=st.fixed_dictionaries({name: st.sampled_from(values) for name, values in VIEW_VALUES.items()}))
 def test_every_view_setting_comes_back_into_its_attribute(chosen: dict[str, str]) -> None:
     """Settings of the link replace those of the session; `look`, which the browser adds, is read but not written."""
     left, back = Session(), Session(mode="live", scale="fit", speed=5.0, energy_account=True, theme="dark", curves="none")
@@ -99,8 +99,8 @@ def test_every_view_setting_comes_back_into_its_attribute(chosen: dict[str, str]
 
 @given(st.text(max_size=200))
 def test_no_query_string_breaks_the_page(query: str) -> None:
-    back, extras, refused = decode(query)
-    assert back.N >= 1 and isinstance(extras, dict) and all(isinstance(s, str) for s in refused)
+    back, fields, refused = decode(query)
+    assert back.N >= 1 and isinstance(fields, dict) and all(isinstance(s, str) for s in refused)
 
 
 def test_a_link_of_unreasonable_length_is_not_read() -> None:
@@ -172,14 +172,14 @@ def test_a_speed_is_one_of_the_list(wrong: object) -> None:
 
 def test_every_choice_of_curves_comes_back_and_no_other() -> None:
     for chosen in ([], ["rest"], ["down", "up"], ["features", "down", "up", "rest"]):
-        _, extras, refused = decode(encode(scene("sec2"), {"curves": joined(chosen)}))
-        assert refused == [] and {*extras["curves"].split(".")} == ({*chosen} or {"none"})
-    _, extras, refused = decode("v=1&curves=rest.sideways")
-    assert extras == {} and "rest.sideways" in refused[0]
+        _, fields, refused = decode(encode(scene("sec2"), {"curves": joined(chosen)}))
+        assert refused == [] and {*fields["curves"].split(".")} == ({*chosen} or {"none"})
+    _, fields, refused = decode("v=1&curves=rest.sideways")
+    assert fields == {} and "rest.sideways" in refused[0]
 
 
 def test_the_page_has_settings_of_its_own() -> None:
-    _, extras, refused = decode("v=1&tab=map", {"tab": ("map", "data")})
-    assert (extras, refused) == ({"tab": "map"}, [])
-    _, extras, refused = decode("v=1&tab=nap", {"tab": ("map", "data")})
-    assert extras == {} and "not one of map, data" in refused[0]
+    _, fields, refused = decode("v=1&tab=map", {"tab": ("map", "data")})
+    assert (fields, refused) == ({"tab": "map"}, [])
+    _, fields, refused = decode("v=1&tab=nap", {"tab": ("map", "data")})
+    assert fields == {} and "not one of map, data" in refused[0]

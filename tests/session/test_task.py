@@ -14,7 +14,7 @@ from app.session.task import Job, Task, say_nothing
 from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 
 
-class Dashboard(FakeHost):
+class SayingHost(FakeHost):
     """A host that keeps what a task's page says."""
 
     def __init__(self) -> None:
@@ -27,13 +27,13 @@ class Dashboard(FakeHost):
 
 
 @pytest.fixture
-def host() -> Dashboard:
-    """A dashboard with nothing on it."""
-    return Dashboard()
+def host() -> SayingHost:
+    """A host to which nothing was said yet."""
+    return SayingHost()
 
 
 @pytest.fixture
-def task(host: Dashboard) -> Task:
+def task(host: SayingHost) -> Task:
     """A task on a queue of its own."""
     return Task(host, Queue("test", 1), host.say, "The measurement")  # type: ignore[arg-type]
 
@@ -49,14 +49,14 @@ def failing(error: Exception) -> Callable[[Job], None]:
     return work
 
 
-def test_what_the_work_says_comes_before_its_end(host: Dashboard, task: Task) -> None:
+def test_what_the_work_says_comes_before_its_end(host: SayingHost, task: Task) -> None:
     task.start(lambda job: job.say("measuring"))
     assert task.running
     host.run_callbacks_until(lambda: not task.running)
     assert host.said == [("measuring", ""), ("done", "")]
 
 
-def test_a_task_ends_when_the_visitor_leaves(host: Dashboard, task: Task) -> None:
+def test_a_task_ends_when_the_visitor_leaves(host: SayingHost, task: Task) -> None:
     """A page need not remember it, and nothing is computed for nobody."""
     begun, ended = threading.Event(), threading.Event()
 
@@ -78,7 +78,7 @@ def test_a_task_ends_when_the_visitor_leaves(host: Dashboard, task: Task) -> Non
     (NumbersFailed("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
     (BadInput("f must be positive."), "f must be positive.", False),
     (ZeroDivisionError("1/0"), FAULT, True)])
-def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: Dashboard,
+def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: SayingHost,
                                                           task: Task) -> None:
     task.start(failing(error))
     host.run_callbacks_until(lambda: not task.running and not host.callbacks)
@@ -86,7 +86,7 @@ def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sen
     assert host.faults == ([(error, "")] if told else []) and host.failures == []
 
 
-def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: Dashboard) -> None:
+def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: SayingHost) -> None:
     problem = BadInput("f must be positive.")
     task = Task(host, Queue("test", 1), host.say, failed=host.failed)  # type: ignore[arg-type]
     task.start(failing(problem))
@@ -99,7 +99,7 @@ def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: Dashboard)
     assert host.faults == [(fault, FAULT)] and host.failures == [problem]
 
 
-def test_nothing_of_cancelled_work_arrives(host: Dashboard, task: Task) -> None:
+def test_nothing_of_cancelled_work_arrives(host: SayingHost, task: Task) -> None:
     entered, leave = threading.Event(), threading.Event()
 
     def work(job: Job) -> None:
@@ -119,7 +119,7 @@ def test_nothing_of_cancelled_work_arrives(host: Dashboard, task: Task) -> None:
     assert host.said == [("done", "")]
 
 
-def test_cancelled_is_no_failure(host: Dashboard, task: Task) -> None:
+def test_cancelled_is_no_failure(host: SayingHost, task: Task) -> None:
     def work(job: Job) -> None:
         while not job.stop:
             time.sleep(0.002)
@@ -131,7 +131,7 @@ def test_cancelled_is_no_failure(host: Dashboard, task: Task) -> None:
     assert host.said == [("done", "")] and host.failures == []
 
 
-def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: Dashboard) -> None:
+def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: SayingHost) -> None:
     queue, leave = Queue("test", 1), threading.Event()
     queue.submit(leave.wait, 20)
     task = Task(host, queue, host.say)  # type: ignore[arg-type]
@@ -146,22 +146,33 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: Dashboard) ->
 def test_work_gives_way_to_a_moving_knob(monkeypatch: pytest.MonkeyPatch) -> None:
     """The picture is awaited three times that the work looks for it, then it is there."""
     looks: list[bool] = []
-    monkeypatch.setattr(Dashboard, "awaiting_picture", property(lambda _: looks.append(True) or len(looks) < 4))
-    host = Dashboard()
+    monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: looks.append(True) or len(looks) < 4))
+    host = SayingHost()
     task = Task(host, Queue("test", 1), host.say)  # type: ignore[arg-type]
     task.start(lambda job: job.give_way())
     host.run_callbacks_until(lambda: not task.running)
     assert len(looks) == 4 and host.said == [("done", "")]
 
 
-def test_who_gives_way_for_long_looks_ever_more_rarely(host: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_who_gives_way_for_long_looks_ever_more_rarely(host: SayingHost, monkeypatch: pytest.MonkeyPatch) -> None:
     pauses: list[float] = []
     monkeypatch.setattr("app.session.task.time.sleep", pauses.append)
     Job(host, host.say).give_way(lambda: len(pauses) < 7)  # type: ignore[arg-type]
     assert pauses == [0.01, 0.02, 0.04, 0.08, 0.16, 0.2, 0.2]
 
 
-def test_compiling_is_said_and_given_up_with_the_job(host: Dashboard, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_progress_is_reported_in_steps_and_gives_way_before_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: list[bool] = []
+    monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: bool(looks.append(True))))
+    host, reported = SayingHost(), []
+    progress = Job(host, host.say).progress(reported.append, steps=4)  # type: ignore[arg-type]
+    for i in range(11):
+        progress(i / 10)
+    host.run_callbacks_until(lambda: not host.callbacks)
+    assert reported == [0.3, 0.5, 0.8, 1.0] and len(looks) == 10
+
+
+def test_compiling_is_said_and_given_up_with_the_job(host: SayingHost, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("app.session.task.COMPILER.has", lambda *_: False)
     monkeypatch.setattr("app.session.task.COMPILER.await_piece", lambda *_: False)
     monkeypatch.setattr("app.session.task.COMPILER.load", lambda *_: pytest.fail("loaded"))

@@ -133,14 +133,15 @@ def test_errors_and_regimes_stand_beside_the_numbers() -> None:
 
 
 ALONE = "rk4-split or dop853"
+BATCH = "rk4 corrected at contact events, in batches"
 FLOW = "tangent flow (DOP853 in regularised time)"
 
 
 @pytest.mark.parametrize(("kind", "method"), [
     ("Run", "rk4-split"), ("Orbit", FLOW), ("Branch", FLOW), ("LyapunovSpectrum", FLOW), ("StrobeDiagram", f"{ALONE} value by value"),
-    ("Curve", f"rk4 in batches, {ALONE} point by point"), ("Diagram", f"rk4 in batches, {ALONE} cell by cell"),
-    ("Basins", f"rk4 in batches, {ALONE} start by start; orbits by {FLOW}"),
-    ("Attractors", f"rk4 in batches, {ALONE} start by start; orbits by {FLOW}"),
+    ("Curve", f"{BATCH}, {ALONE} point by point"), ("Diagram", f"{BATCH}, {ALONE} cell by cell"),
+    ("Basins", f"{BATCH}, {ALONE} start by start; orbits by {FLOW}"),
+    ("Attractors", f"{BATCH}, {ALONE} start by start; orbits by {FLOW}"),
 ])
 def test_a_result_names_the_method_that_computed_it(kind: str, method: str) -> None:
     assert result(kind).attributes()["method"] == method

@@ -40,7 +40,7 @@ ROTATION = (
            "the average of a torus converges as 1/P", k.ROTATION),
     Mutant("rotation-halves-not-compared", _WINDING, "error = max(_STATED * max(*errors, convergence[-1, 2]), _ROUNDING)", "error = _ROUNDING",
            "the error of an average is always rounding", k.ROTATION),
-    Mutant("rotation-near-any-fraction", _WINDING, " * states < _FEWEST_PASSES:", " * states < 0.0:",
+    Mutant("rotation-near-any-fraction", _WINDING, " * states < fewest:", " * states < 0.0:",
            "a record in which the curve is not filled has a rotation number", k.ROTATION),
     Mutant("rotation-of-another-line", _WINDING, "abs(excess) > AT_MULTIPLE / len(states) or ", "",
            "the angle of a stronger line is taken for that of a weak one", k.ROTATION),
@@ -104,7 +104,7 @@ OBSERVED = (
            "between samples a measured force is above both, or below 0", k.SAMPLING),
     Mutant("force-in-seconds", "observe/pushed_chain.py", "/ scales.phi ** np.arange(4)", "/ scales.phi ** np.zeros(4)",
            "the slopes of a measured force are not scaled", k.SAMPLING),
-    Mutant("loss-between-samples", "observe/observation.py", "=IRREGULAR * relative_difference(", "=1e-3 * IRREGULAR * relative_difference(",
+    Mutant("loss-between-samples", "observe/observation.py", "= IRREGULAR * np.maximum(", "= 1e-3 * IRREGULAR * np.maximum(",
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 

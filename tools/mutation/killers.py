@@ -5,7 +5,8 @@ from __future__ import annotations
 #: The right-hand side against the (u, v) equations of the paper, NaN, equilibrium, v to w and back; the same where
 #: beads are not alike; NaN in every member; what is not finite.
 MOTION = ("tests/kernels/equations/test_motion.py",)
-UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py",)
+UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py", "tests/kernels/effects/test_given_force.py",
+          "tests/kernels/dop853/test_force_kinks.py")
 VECTORS = ("tests/kernels/simd/test_vector_nan.py",)
 FAILURES_W = ("tests/integrate/test_not_finite.py", "-k", "first_bead")
 FASTMATH = ("tests/integrate/test_not_finite.py", "tests/kernels/equations/test_motion.py", "-k",
@@ -39,8 +40,8 @@ FORCE_FREE_ENERGY = ("tests/numerics/test_force_free.py", "tests/physics/test_en
 CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.
-SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-light or tsuji-pressed)")
-SIMD_LAWS = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-pressed or kuwabara-rigid)")
+SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-rigid or tsuji-pressed)")
+SIMD_LAWS = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-pressed or kuwabara-kono-rigid)")
 SIMD_PLAIN = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and plain")
 SIMD_LONG = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and hundred")
 SIMD_LONG_FOUNDED = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and long-founded")

@@ -115,7 +115,7 @@ NORMAL_FORMS = (
            "Neimark–Sacker points have the sign of period doublings", k.NORMAL_FORMS),
     Mutant("any-two-values-agree", _NORMAL_FORMS, "_LARGEST_ERROR = 0.25", "_LARGEST_ERROR = 1e9",
            "a sign is told that only one of two values has", k.NORMAL_FORMS),
-    Mutant("differences-across-a-grazing", _CRITICALITY, "if not same_sequence(kind, flow.changes[:, 0], between.contacts(point)):",
+    Mutant("differences-across-a-grazing", _CRITICALITY, "if not same_sequence(kind, flow.contact_events[:, 0], between.contacts(point)):",
            "if flow.derivative is None:", "states are used along which a contact closes once more", k.CRITICALITY),
     Mutant("order-in-the-interval-not-compared", _CRITICALITY,
            "            and same_sequence(special.kind, between.contacts(before), between.contacts(after))):", "            ):",

@@ -114,7 +114,7 @@ class Viewer:
                 raise RuntimeError("the page has no part of ours")
             self._model = found.group(1)
             await self._event("document_ready", [])
-            await self.say(do="ready", narrow=False, theme="light")
+            await self.say(do="ready", compact=False, theme="light")
         elif kind == "PATCH-DOC":
             await self._changed(content)
 

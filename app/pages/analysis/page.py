@@ -26,9 +26,6 @@ from .questions import (
 )
 from .view import Analysis
 
-#: Parts of a computation between two reports of how far it is.
-_PROGRESS_STEPS = 50
-
 WORDS = StatusWords("the kernels of the analysis", ORBIT_KERNELS)
 
 
@@ -130,15 +127,8 @@ class AnalysisPage(Page):
         for scene, pieces in plan.kernels:
             job.compile(scene, *pieces)
         job.say("computing")
-        reported = [0]
-
-        def report(done: float) -> None:
-            job.give_way()
-            if int(_PROGRESS_STEPS * done) > reported[0]:
-                reported[0] = int(_PROGRESS_STEPS * done)
-                job.next_tick(self._view.update_state, done=done)
-
-        job.next_tick(self._view.answer, plan, plan.compute(job.stop, report))
+        progress = job.progress(lambda done: self._view.update_state(done=done))
+        job.next_tick(self._view.answer, plan, plan.compute(job.stop, progress))
 
     def _say(self, status: Status, sentence: str = "") -> None:
         if status == "waiting":

@@ -25,8 +25,6 @@ _KERNELS: dict[str, tuple[tuple[str, tuple[str, ...]], ...]] = {
 }
 #: The figure that the page begins with: the resonance curve of section 2, which takes a second.
 _FIRST_FIGURE = "2"
-#: Parts of a computation between two reports of how far it is.
-_PROGRESS_STEPS = 50
 
 WORDS = StatusWords("the figure's kernels", ORBIT_KERNELS)
 
@@ -67,16 +65,8 @@ class PaperPage(Page):
         for name, pieces in _KERNELS.get(figure.number, ()):
             job.compile(scene(name), *pieces)
         job.say("computing")
-        reported = [0]
-
-        def report(done: float) -> None:
-            if done < 1.0:
-                job.give_way()
-            if int(_PROGRESS_STEPS * done) > reported[0]:
-                reported[0] = int(_PROGRESS_STEPS * done)
-                job.next_tick(self._view.update_state, done=done)
-
-        job.next_tick(self._arrived, figure, compute(figure.number, stop=job.stop, progress=report))
+        progress = job.progress(lambda done: self._view.update_state(done=done))
+        job.next_tick(self._arrived, figure, compute(figure.number, stop=job.stop, progress=progress))
 
     def _arrived(self, figure: PaperFigure, result: Result) -> None:
         self._found[figure.number] = result

@@ -14,7 +14,7 @@ from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import whole
 from ...session.stories import Story, StoryStep, state_before, stories, told_words
-from ...session.task import Job, Task
+from ...session.task import Job, Task, say_nothing
 
 
 @cache
@@ -42,7 +42,7 @@ class StoriesPage(Page):
     def __init__(self, host: Host, view: Component) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, ANALYSES, lambda *_: None, "The story", host.failed)
+        self._task = Task(host, ANALYSES, say_nothing, "The story", host.failed)
         known, refused = _stories_read(host.overlays)
         self._stories = {one.name: one for one in known}
         self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}

@@ -8,9 +8,9 @@ let revealed = ""; // the step whose answer is shown
 let shownStep = ""; // the step that was shown last
 
 // Puts a frame around the part of the page that a step is about.
-function point(look, telling = false) {
-  document.getElementById("curves").classList.toggle("telling", telling);
-  window.granchain.emit("telling", telling);
+function point(look, inStory = false) {
+  document.getElementById("curves").classList.toggle("in-story", inStory);
+  window.granchain.emit("story", inStory);
   for (const one of document.querySelectorAll(".looked-at")) one.classList.remove("looked-at");
   if (look) document.getElementById(look).classList.add("looked-at");
 }
@@ -27,7 +27,7 @@ function chooser(model) {
   return [paragraph(INVITES), ...model.state.stories.map(open), ...refused];
 }
 
-function telling(model, story) {
+function shownStory(model, story) {
   const { name, title, step, steps, say, ask, answer, page } = story;
   const go = (to) => model.send_msg({ do: "story-open", name, step: to });
   const answered = paragraph(answer, "answer");
@@ -68,7 +68,7 @@ export function storiesTab(model) {
   const { story } = model.state;
   point(story?.look, Boolean(story));
   comeUp(story);
-  return { content: story ? telling(model, story) : chooser(model) };
+  return { content: story ? shownStory(model, story) : chooser(model) };
 }
 
 // When another tab is opened, nothing has a frame.

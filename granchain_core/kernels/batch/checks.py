@@ -37,8 +37,8 @@ CHECKED = 4 * LONGEST_PERIOD + 1
 _FEWEST_ORBITS_LEFT = 4.0
 #: [period n] A batch: fewest drive periods from an extrapolation that was out of reach to the next one.
 _PERIODS_AFTER_FAILURE = 8
-#: [period n] A batch: an extrapolation reaches at most this many times as far as the decay predicts, which is change/(1
-#: − decay).
+#: [period n] A batch: an extrapolation reaches at most this many times as far as change/(1 − decay), the distance
+#: before the last change.
 FARTHEST_EXTRAPOLATION = 3.0
 #: [period n] A batch: largest part of the coarse orbit's error that may be left in the finer run.
 COARSE_ERROR_LEFT = 0.02

@@ -71,7 +71,7 @@ _FIRST_STEP = 2.0
 class Stretch(NamedTuple):
     """What a run covers: `points` points of a grid of `grid` points a period, from number `first` on.
 
-    With every > 0 each every-th grid point is recorded, the first one too, with every = 0 none.
+    With `every` = n > 0 each n-th grid point is recorded, the first one too; with 0 none.
     """
 
     first: int

@@ -1,6 +1,6 @@
 """The energy account: the work of the driver and the energy that the chain loses, integrated with the motion.
 
-Equation   Ẇ = F_0 v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
+Equation   Ẇ = F_{c=0} v_0,   Q̇ = Σ_c (F_c − F^el_c) δ̇_c;   W − Q − ΔE = 0
            Q is lost in the contacts and to forces from outside the chain; the latter part is added by
            equations/body_forces.py.
 Method     Both integrands jump with the dashpot force. Integrated by parts they do not: with dG = g δ̇ dt,

@@ -23,7 +23,7 @@ class Foundation(NamedTuple):
 
 @by_slot
 def add_foundation_force(foundation, force, u):
-    """Force on a bead with the foundation's pull taken off. Absent: the force itself."""
+    """Force on a bead, `force` with −k u added. Absent: `force` itself."""
     return force
 
 

@@ -2,7 +2,8 @@
 
 Equation   m_i ẇ_i = F^el_{i-1} − F^el_i + P_i(u_i, v_i),   P = −k u for a foundation
 Terms      P itself; the energy stored in it; the power −P v that it takes away for good; its linearisation
-           δP = ∂P/∂u δu + ∂P/∂v δv for tangents; and ∂P/∂v for the trace, which is the rate at which volumes shrink
+           δP = ∂P/∂u δu + ∂P/∂v δv for tangents; and ∂P/∂v for the trace, the rate at which volumes grow,
+           negative with damping
 Each term is given the bead's number i, 1 to N, for values that differ from bead to bead. The SIMD kernels use
 `force_on_bead` too, with vectors of all members of a batch, or of all beads of a chain, where i is None.
 """

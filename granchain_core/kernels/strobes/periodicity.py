@@ -42,7 +42,7 @@ _SETTLED_OVER_DIVISOR = 3.0
 #: [period n] Changes over q periods that decay more slowly than this, per q periods, may be those of a longer orbit.
 #: Faster ones go to zero.
 _SLOWEST_APPROACH = 0.97
-#: [period n] A batch: an approach is extrapolated once its change is below this (kernels/strobes/extrapolation.py).
+#: [period n] A period is looked for, and in a batch extrapolated to, once its change is below this.
 _LARGEST_EXTRAPOLATED_CHANGE = 1e-2
 
 

@@ -73,7 +73,7 @@ class Between:
         if point not in self._contacts:
             exact = self.equations.reused_map(point.knob, TOLERANCE)
             exact.end(point.x)
-            self._contacts[point] = exact.changes[:, 0]
+            self._contacts[point] = exact.contact_events[:, 0]
         return self._contacts[point]
 
     def _solved(self, guess: np.ndarray, normal: np.ndarray, towards: np.ndarray, arclength: float,
@@ -85,7 +85,7 @@ class Between:
         self._remember(arclength, solved.near)
         found = branch_point(self.equations, solved, self.equations.tangent(solved, towards), arclength)
         self._exact[found], self._derivatives[found] = found, solved.flow.derivative
-        self._contacts[found] = solved.flow.changes[:, 0]
+        self._contacts[found] = solved.flow.contact_events[:, 0]
         return found
 
     def _arclength(self, a: BranchPoint, b: BranchPoint, fraction: float) -> float:

@@ -79,7 +79,7 @@ def _map_near(kind: str, between: Between, point: BranchPoint, tolerance: float)
             flow = between.equations.reused_map(point.knob, tolerance)(x, directions=columns)
         except NumbersFailed:
             raise NotSmooth(NO_MAP) from None
-        if not same_sequence(kind, flow.changes[:, 0], between.contacts(point)):
+        if not same_sequence(kind, flow.contact_events[:, 0], between.contacts(point)):
             raise NotSmooth(SEQUENCE_NEAR)
         return flow.derivative
 

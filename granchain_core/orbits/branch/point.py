@@ -61,7 +61,7 @@ class BranchPoint:
 
     @property
     def residual(self) -> float:
-        """Change of the orbit's state after its period, relative to the largest entry."""
+        """Change of the orbit's state after its period, relative to the largest displacement and the largest w."""
         return self.residuals[-1]
 
     @property
@@ -87,7 +87,7 @@ class BranchPoint:
 
 def branch_point(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
     """The point with its multipliers, forces and contacts, from a run along the orbit."""
-    return recorded(equations, unrecorded(equations, solved, tangent, arclength), solved.flow.changes)
+    return recorded(equations, unrecorded(equations, solved, tangent, arclength), solved.flow.contact_events)
 
 
 def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, arclength: float) -> BranchPoint:
@@ -101,13 +101,13 @@ def unrecorded(equations: BranchEquations, solved: Solved, tangent: np.ndarray, 
         damped=equations.axis.damped_at(equations.value(solved.z)))
 
 
-def recorded(equations: BranchEquations, point: BranchPoint, changes: np.ndarray) -> BranchPoint:
-    """The point with its forces and contacts; `changes` are its contact events, as in `Flow`."""
+def recorded(equations: BranchEquations, point: BranchPoint, contact_events: np.ndarray) -> BranchPoint:
+    """The point with its forces and contacts; `contact_events` are its contact events, as in `Flow`."""
     engine, record = record_along(equations, point.x, point.knob)
     maxima = largest_forces(record.peaks) * engine.scaled.scales.force
     return replace(
         point, max_input_force=float(maxima[0]), max_output_force=float(maxima[1]),
-        max_output_force_elastic=float(maxima[2]), closings=_counts(len(point.closings), record, changes),
+        max_output_force_elastic=float(maxima[2]), closings=_counts(len(point.closings), record, contact_events),
         turns=record.turns)
 
 
@@ -156,9 +156,9 @@ def _counted_turns(contacts: int, turns: np.ndarray) -> np.ndarray:
     return closings
 
 
-def _counts(contacts: int, record: OrbitRecord, changes: np.ndarray) -> np.ndarray:
+def _counts(contacts: int, record: OrbitRecord, contact_events: np.ndarray) -> np.ndarray:
     """Closings of every contact; always open and always closed are distinguished by the overlap's turning points."""
-    numbers = changes[:, 0].astype(int)
+    numbers = contact_events[:, 0].astype(int)
     closings = np.bincount(numbers[numbers > 0] - 1, minlength=contacts)
     if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):
         raise NumbersFailed("A contact closed more often than it opened along a closed orbit.", "contacts")

@@ -1,7 +1,8 @@
 """The stroboscopic map without derivative by the fixed-step method, for all but the last steps of Newton's method.
 
 Its steps are split at contact events, so that it is smooth: differences in the knob are good to 1e-6. Its kernels work
-in vectors: near orbits of sec2 it is good to 1e-8 in a sixth of the time of the flow at a tolerance of 1e-10.
+in vectors: near orbits of sec2 it is good to 1e-8 in a sixth of the time of the flow at a tolerance of 1e-10
+(docs/branches.md, "Few derivatives").
 """
 
 from __future__ import annotations

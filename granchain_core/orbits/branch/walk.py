@@ -123,20 +123,21 @@ class Walk(Iterator[BranchPoint]):
         """Compute the next orbit ahead; halve the step where it is too long."""
         last, tried = Ending(self._last_two[-1], self._near_last), self._step
         try:
-            ending, changes = self._next_orbit(last)
+            ending, contact_events = self._next_orbit(last)
         except (NumbersFailed, np.linalg.LinAlgError) as problem:
             self._step, self._failure = 0.5 * tried, problem
             return
         before = self._ahead[-1].found if self._ahead else last.point
-        found = self._pool.submit(self._completed, before, ending.point, changes, (last.near, ending.near))
+        found = self._pool.submit(self._completed, before, ending.point, contact_events, (last.near, ending.near))
         self._ahead.append(_Ahead(ending, tried, self._step, found))
 
     def _completed(self, before: BranchPoint | Future[tuple[BranchPoint, list[SpecialPoint]]], point: BranchPoint,
-                   changes: np.ndarray | None, near: tuple[Near, Near]) -> tuple[BranchPoint, list[SpecialPoint]]:
+                   contact_events: np.ndarray | None,
+                   near: tuple[Near, Near]) -> tuple[BranchPoint, list[SpecialPoint]]:
         """The orbit with its forces and contacts, and the special points between the one before and itself."""
         last = before.result()[0] if isinstance(before, Future) else before
-        if changes is not None:
-            point = recorded(self.equations, point, changes)
+        if contact_events is not None:
+            point = recorded(self.equations, point, contact_events)
         between = Between(self.equations, last, point, near)
         return point, with_normal_forms(special_between(between), between)
 
@@ -170,7 +171,7 @@ class Walk(Iterator[BranchPoint]):
         ending = self._ends.of_step(last, beyond, solved.z, may_close)
         off = float(np.linalg.norm(solved.z - guess))
         self._step, self._failure = next_step(step, off, cosine, self._failure is not None), None
-        return ending, solved.flow.changes if ending is beyond else None
+        return ending, solved.flow.contact_events if ending is beyond else None
 
     @property
     def _before_last(self) -> tuple[np.ndarray, np.ndarray] | None:

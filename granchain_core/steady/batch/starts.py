@@ -20,7 +20,7 @@ from .job import Start
 def settling_methods(scene: Scene, each: str) -> str:
     """The methods behind many steady states of `scene` in words, for their provenance; `each` is "point", "cell", …"""
     alone = f"{methods_alone(scene)} {each} by {each}"
-    return f"rk4 in batches, {alone}" if can_share_batch(scene) else alone
+    return f"rk4 corrected at contact events, in batches, {alone}" if can_share_batch(scene) else alone
 
 
 def methods_alone(scene: Scene) -> str:

@@ -1,4 +1,4 @@
-"""Beads that are not alike, other amplitudes, a measured force: numbers stand where the equations have them."""
+"""Numbers in SI become scaled numbers: beads that are not alike, damping at other amplitudes."""
 
 from __future__ import annotations
 
@@ -9,12 +9,8 @@ import numpy as np
 import pytest
 
 from granchain_core import Scene, scene
-from granchain_core.kernels.dop853.force_kinks import scaled_force
-from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji, damping
-from granchain_core.kernels.effects.driver import driver_velocity
-from granchain_core.kernels.effects.given_force import Sampled
+from granchain_core.kernels.effects.dissipation import damping
 from granchain_core.kernels.equations.motion import contact_force, motion, stored_energy
-from granchain_core.kernels.forces.peaks import quartic_top
 from granchain_core.scaling import scale_chain
 from granchain_core.scene import Bead
 
@@ -78,25 +74,3 @@ def test_the_damping_named_by_the_knob_is_that_at_the_reference_overlap(law: str
     for overlap in (1e-8, 3e-6):
         found = damping(scaled.slots.dissipation, overlap / scaled.scales.length) * unit
         assert found == pytest.approx(31.0 * (overlap / chosen.reference_overlap) ** power, rel=1e-12)
-
-
-def test_a_measured_force_is_a_cubic_between_samples() -> None:
-    """Constant term first, in the time since the sample: what pushes bead 1 of an observer."""
-    p = np.array([0.3, -1.2, 2.5, 4.0])
-    assert driver_velocity(Sampled(p), 0.7) == pytest.approx(np.polyval(p[::-1], 0.7), rel=1e-14)
-
-
-@pytest.mark.parametrize(("law", "power"), [(LinearDashpot(0.4), 0.0), (Tsuji(0.4), 0.25), (KuwabaraKono(0.4), 0.5)])
-def test_a_cut_contact_stops_pushing_where_its_force_is_zero(law, power) -> None:  # type: ignore[no-untyped-def]
-    """The sign that is followed is that of F/g, F = K δ^{3/2} + g(δ) δ̇."""
-    for d, rate in ((0.3, -0.7), (1e-4, -1e-4), (2.0, 1.0)):
-        g = 0.4 * d**power
-        assert scaled_force(law, 1.4, d, rate) == pytest.approx((1.4 * d**1.5 + g * rate) / g, rel=1e-13)
-
-
-@pytest.mark.parametrize("offset", np.linspace(-0.5, 0.5, 11))
-def test_the_top_of_a_pulse_between_its_samples(offset: float) -> None:
-    """A cosine and a lopsided pulse sampled 0.25 apart: the quartic's top is theirs to a part in 1e5."""
-    t = 0.25 * (np.arange(-2, 3) + offset)
-    assert quartic_top.py_func(*np.cos(t)) == pytest.approx(1.0, abs=5e-6)
-    assert quartic_top.py_func(*((t + 2.0) ** 2 * np.exp(-2.0 - t))) == pytest.approx(4.0 * np.exp(-2.0), abs=2e-5)

@@ -22,6 +22,11 @@ from granchain_core.steady.settling.single_chain import settle_to_forces
 from granchain_core.stop import Stop
 
 _BOTH = {"kappa": 0.001, "F0": 0.5}
+#: The chains in which a law other than the linear one stands, so that a law which is added is examined too.
+_OF_EACH_FURTHER_LAW: dict[str, dict[str, object]] = {
+    "alone": {}, "rigid": {"wall": "rigid", **_BOTH}, "short": {"N": 5, "taper": 0.7, **_BOTH},
+    "wide": {"N": 20, **_BOTH}, "long": {"N": 40, "dimer": 0.4, **_BOTH},
+}
 #: Each effect of the table with its usual values, in chains of one vector and of several, if vectors know it.
 WITH_EFFECTS: dict[str, dict[str, object]] = {
     f"{effect.name}, {beads} beads": {"N": beads, **effect.usual} for effect in EFFECTS for beads in (11, 40)
@@ -39,16 +44,9 @@ CHAINS: dict[str, dict[str, object]] = {
     "undamped": {"dissipation": "none"}, "short-undamped": {"dissipation": "none", "N": 4},
     "wide-undamped": {"dissipation": "none", "N": 20, "dimer": 0.4},
     "long-undamped": {"dissipation": "none", "N": 40, "taper": 0.7, **_BOTH},
-    "tsuji": {"dissipation": "tsuji", "dimer": 0.4}, "tsuji-light": {"dissipation": "tsuji", **_BOTH},
     "tsuji-pressed": {"dissipation": "tsuji", **_BOTH, "F0": 5.0},
-    "short-tsuji": {"dissipation": "tsuji", "N": 5, **_BOTH},
-    "wide-tsuji": {"dissipation": "tsuji", "N": 20, "taper": 0.7, **_BOTH},
-    "long-tsuji": {"dissipation": "tsuji", "N": 40, **_BOTH},
-    "kuwabara": {"dissipation": "kuwabara-kono"},
-    "kuwabara-rigid": {"dissipation": "kuwabara-kono", "wall": "rigid", **_BOTH},
-    "short-kuwabara": {"dissipation": "kuwabara-kono", "N": 5, "taper": 0.7, **_BOTH},
-    "wide-kuwabara": {"dissipation": "kuwabara-kono", "N": 20, **_BOTH},
-    "long-kuwabara": {"dissipation": "kuwabara-kono", "N": 40, "dimer": 0.4, **_BOTH},
+    **{f"{law}-{name}": {"dissipation": law, **changes} for law in LAWS if law not in ("linear", "none")
+       for name, changes in _OF_EACH_FURTHER_LAW.items()},
 }
 #: Eight scalar multiplications in another order, some hundred steps long, through contacts that amplify a little.
 ROUNDING = 1e-12

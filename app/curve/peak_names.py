@@ -1,4 +1,4 @@
-"""Buttons for the peaks, valleys and the stop band of the curve from rest.
+"""The names of the peaks, the valleys and the stop band of the curve from rest, which the page shows as buttons.
 
 Each name follows from a computation at its place. The extrema are those that stand out from both neighbours by 20 %
 (`steady/curve/resonance.py`). At each the chain is settled once more and its driver's pushes are counted. A peak is
@@ -34,7 +34,7 @@ from ..serve.shared import Shared
 from ..serve.turns import TurnFlag
 from ..session.host import Host
 from ..session.session import without_frequency
-from ..session.task import Job, Task
+from ..session.task import Job, Task, say_nothing
 
 #: Fewest points of a stop band.
 _FEWEST_BAND_POINTS = 3
@@ -57,8 +57,8 @@ def stop_band(points: Sequence[CurvePoint]) -> tuple[CurvePoint, CurvePoint] | N
     return (band[0], band[-1]) if len(band) >= _FEWEST_BAND_POINTS else None
 
 
-def extreme_chapter(kind: str, point: CurvePoint, scene: Scene, stop: Stop | None = None) -> dict[str, Any] | None:
-    """The chapter of an extremum, from the motion there; None where that has no name. Raises `Cancelled`."""
+def extremum_name(kind: str, point: CurvePoint, scene: Scene, stop: Stop | None = None) -> dict[str, Any] | None:
+    """The name of an extremum, from the motion there; None where that has none. Raises `Cancelled`."""
     at = scene.evolve(f=round(point.frequency, 1))
     pushed = pushes(settle(at, samples=samples_for(at), stop=stop).run)
     if pushed is None or (kind == "valley" and pushed != (1, 1)):
@@ -68,8 +68,8 @@ def extreme_chapter(kind: str, point: CurvePoint, scene: Scene, stop: Stop | Non
             "f": at.f, "force": point.max_output_force}
 
 
-def band_chapter(band: tuple[CurvePoint, CurvePoint]) -> dict[str, Any]:
-    """The chapter of the stop band; its place is in the middle."""
+def band_name(band: tuple[CurvePoint, CurvePoint]) -> dict[str, Any]:
+    """The name of the stop band; it stands in the middle."""
     first, last = band
     return {"kind": "band", "name": "stop band", "words": f"stop band from {first.frequency:.0f} Hz",
             "f": round(0.5 * (first.frequency + last.frequency), 1), "force": max(first.max_output_force,
@@ -83,24 +83,24 @@ def stated_name(feature: Feature) -> dict[str, Any]:
             "words": f"stated in the paper: {feature.kind} at {feature.frequency:g} Hz, {feature.repeats} repeats"}
 
 
-def _extreme_chapters(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
-                      stop: TurnFlag) -> Iterator[dict[str, Any] | None]:
-    """The chapter of one extremum after the other. Raises `Cancelled`."""
+def _extremum_names(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
+                    stop: TurnFlag) -> Iterator[dict[str, Any] | None]:
+    """The name of one extremum after the other. Raises `Cancelled`."""
     for kind, point in extremes:
-        yield extreme_chapter(kind, point, scene, stop)
+        yield extremum_name(kind, point, scene, stop)
 
 
-#: Chapters of all visitors: a class that looks at one curve settles its dozen extrema once, which takes a second.
-CHAPTERS_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda one: 1000, turns=False)
+#: Names for all visitors: a class that looks at one curve settles its dozen extrema once, which takes a second.
+NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda one: 1000, turns=False)
 
 
-class Chapters:
-    """Names the places of a complete curve in the background; `show` is called with all chapters at once."""
+class PeakNames:
+    """Names the places of a complete curve in the background; `show` is called with all names at once."""
 
     def __init__(self, host: Host, show: Callable[[list[dict[str, Any]]], None]) -> None:
         self._host = host
         self._show = show
-        self._task = Task(host, ANALYSES, lambda *_: None, "Naming the peaks of the curve", host.failed)
+        self._task = Task(host, ANALYSES, say_nothing, "Naming the peaks of the curve", host.failed)
 
     def forget(self) -> None:
         """Show no names, because the curve has changed."""
@@ -112,15 +112,15 @@ class Chapters:
 
         def work(job: Job) -> None:
             band = stop_band(points)
-            found = [] if band is None else [band_chapter(band)]
+            found = [] if band is None else [band_name(band)]
             extremes = extreme_points(points)
             key = without_frequency(scene), tuple((kind, point.frequency) for kind, point in extremes)
-            with closing(CHAPTERS_SHARED.follow(key, partial(_extreme_chapters, extremes, scene), job.stop,
-                                                CpuTime())) as chapters:
-                for chapter in chapters:
+            with closing(NAMES_SHARED.follow(key, partial(_extremum_names, extremes, scene), job.stop,
+                                             CpuTime())) as names:
+                for name in names:
                     job.give_way(lambda: self._host.busy)
                     job.stop.check()
-                    found += [chapter] if chapter else []
+                    found += [name] if name else []
             job.next_tick(self._show, sorted(found, key=lambda one: float(one["f"])))
 
         self._task.start(work)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from host import FakeHost
 
-from app.curve import chapters as chapters_module
-from app.curve.chapters import Chapters, extreme_chapter, extreme_points, stop_band
+from app.curve import peak_names
+from app.curve.peak_names import PeakNames, extreme_points, extremum_name, stop_band
 from granchain_core import CurvePoint, resonance_curve, scene, settle
 from granchain_core.steady.curve.resonance import STOP_BAND_PART, pushes
 
@@ -24,8 +24,8 @@ def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -
     """The paper has 1:1 to 1:5; the 1:5 peak is narrower than this grid's step, so what is asked for is the others."""
     shown: list[list[dict]] = []
     host = FakeHost()
-    chapters = Chapters(host, shown.append)  # type: ignore[arg-type]
-    chapters.name(curve, SEC2)
+    names = PeakNames(host, shown.append)  # type: ignore[arg-type]
+    names.name(curve, SEC2)
     host.run_callbacks_until(lambda: bool(shown), 60.0)
     found = {one["name"]: one["f"] for one in shown[0] if one["kind"] == "peak"}
     assert [f"1:{n}" for n in range(1, 5)] == [name for name in found if name != "1:5"]
@@ -35,7 +35,7 @@ def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -
             pushed = pushes(settle(SEC2.evolve(f=one["f"])).run)
             assert pushed == (1, 1) if one["kind"] == "valley" else f"{pushed[0]}:{pushed[1]}" == one["name"]
     assert "anti-resonance" in {one["name"] for one in shown[0]}
-    chapters.forget()
+    names.forget()
     assert shown[-1] == []
 
 
@@ -56,24 +56,24 @@ def test_a_curve_that_still_rises_has_no_stop_band(curve: list[CurvePoint]) -> N
 
 def test_a_motion_that_is_not_periodic_has_no_name(curve: list[CurvePoint]) -> None:
     wild = next(p for p in curve if p.regime.name == "quasi-periodic")
-    assert extreme_chapter("peak", wild, SEC2) is None
+    assert extremum_name("peak", wild, SEC2) is None
 
 
 def test_a_valley_without_a_push_in_every_period_has_no_name(curve: list[CurvePoint]) -> None:
     third = min(curve, key=lambda p: abs(p.frequency - 1130.0))
-    assert extreme_chapter("valley", third, SEC2) is None
+    assert extremum_name("valley", third, SEC2) is None
 
 
 def test_what_one_visitor_has_named_is_not_computed_for_the_next(curve: list[CurvePoint], monkeypatch: pytest.MonkeyPatch) -> None:
     """A class looks at one curve: its extrema are settled once."""
-    scene_of_its_own = SEC2.evolve(D=SEC2.D * 1.0001)  # nobody has asked for its chapters before
+    scene_of_its_own = SEC2.evolve(D=SEC2.D * 1.0001)  # nobody has asked for its names before
     settled_at: list[float] = []
-    monkeypatch.setattr(chapters_module, "extreme_chapter", lambda kind, point, *_: settled_at.append(point.frequency))
+    monkeypatch.setattr(peak_names, "extremum_name", lambda kind, point, *_: settled_at.append(point.frequency))
     for _ in range(2):
         shown: list[list[dict]] = []
         host = FakeHost()
-        chapters = Chapters(host, shown.append)  # type: ignore[arg-type]
-        chapters.name(curve, scene_of_its_own)
+        names = PeakNames(host, shown.append)  # type: ignore[arg-type]
+        names.name(curve, scene_of_its_own)
         host.run_callbacks_until(lambda shown=shown: bool(shown), 60.0)
         assert [one["kind"] for one in shown[0]] == ["band"]  # nothing else has a name here
     assert settled_at == [point.frequency for _, point in extreme_points(curve)]

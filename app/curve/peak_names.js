@@ -98,33 +98,33 @@ class Room {
   }
 
   // Off the points of the curve, with a shorter name if the whole one finds no such place.
-  putValley(label, chapter) {
-    return [chapter.name, SHORT].some((words) => {
+  putValley(label, valley) {
+    return [valley.name, SHORT].some((words) => {
       label.textContent = words;
-      return this.put(label, chapter, this.offPoints);
+      return this.put(label, valley, this.offPoints);
     });
   }
 }
 
-export class ChapterLabels {
+export class PeakNames {
   constructor(go) {
     this.go = go;
     this.host = document.getElementById("curve");
-    this.root = element("div", { className: "chapters" });
+    this.root = element("div", { className: "peak-names" });
     this.root.setAttribute("role", "group");
     this.root.ariaLabel = "peaks, valleys and stop band of the curve";
     this.host.append(this.root);
-    this.chapters = this.stated = [];
+    this.names = this.stated = [];
     new ResizeObserver(() => this.later()).observe(this.host);
     window.granchain.on("theme", () => this.later());
   }
 
-  // `stated` is what the paper says: name, words and frequency, as those of a chapter.
-  show(chapters, stated) {
-    const both = JSON.stringify([chapters, stated]);
+  // `stated` is what the paper says: kind, words and frequency, as in `names`.
+  show(names, stated) {
+    const both = JSON.stringify([names, stated]);
     if (both === this.both) return;
-    Object.assign(this, { both, chapters, stated });
-    this.labels = [...stated, ...chapters].map(({ kind, name, words, f }) => {
+    Object.assign(this, { both, names, stated });
+    this.labels = [...stated, ...names].map(({ kind, name, words, f }) => {
       const title = `${words}; go to ${f} Hz`;
       return button(name, () => this.go(f), { className: kind, title, ariaLabel: title, hidden: true });
     });
@@ -150,7 +150,7 @@ export class ChapterLabels {
   }
 
   place() {
-    if (!this.chapters.length && !this.stated.length) return;
+    if (!this.names.length && !this.stated.length) return;
     const frame = this.frame();
     if (!frame) return;
     // A peak's name can move aside and a valley's hardly, so valleys come first; not where a peak has no place then.
@@ -164,7 +164,7 @@ export class ChapterLabels {
     this.stated.forEach(({ f }, i) => {
       room.putStated(stated[i], f);
     });
-    const places = this.chapters.map((chapter, i) => [chapter, named[i]]);
+    const places = this.names.map((one, i) => [one, named[i]]);
     const valleys = places.filter(([{ kind }]) => kind === "valley");
     const put = valleysFirst ? valleys.filter(([one, label]) => room.putValley(label, one)) : [];
     const others = places.filter((one) => !put.includes(one));
