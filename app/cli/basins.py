@@ -6,6 +6,8 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .common import chosen_scene, in_background, show_json, show_percent
 from .options import add_json, add_scene, values_from
 from .picture import add_option as add_picture
@@ -44,6 +46,26 @@ def do(arguments: argparse.Namespace) -> None:
     print("share  max_output_force_N  motion")
     for share, one in zip(found.shares, found.attractors, strict=True):
         print(f"{100.0 * share:4.0f}%  {one.max_output_force:18.6g}  {one.regime.sentence}")
+    failed = found.number < 0
+    if failed.any():
+        print(f"{100.0 * failed.mean():4.0f}%  {'':18}  no steady state: {failed.sum()} of {failed.size} starts "
+              f"failed, the first {_why(found, int(failed.argmax()))}")
+
+
+def _why(found: Basins, number: int) -> str:
+    """Where the start with this number is in the plane, and why it has no steady state: it is computed once more."""
+    from granchain_core import NumbersFailed, State, settle
+
+    row, column = divmod(number, len(found.x[1]))
+    start = {"u": np.zeros(found.scene.N), "v": np.zeros(found.scene.N)}
+    for (name, values), place in ((found.x, column), (found.y, row)):
+        start[name[0]][int(name[1:]) - 1] = values[place]
+    where = f"at {found.x[0]} = {found.x[1][column]:g}, {found.y[0]} = {found.y[1][row]:g}"
+    try:
+        in_background(lambda stop: settle(found.scene, State(start["u"], start["v"]), stop=stop))
+    except NumbersFailed as problem:
+        return f"{where}. {problem}"
+    return f"{where}, after it had left an unstable orbit."
 
 
 def _json(found: Basins) -> dict[str, Any]:

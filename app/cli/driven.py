@@ -37,7 +37,7 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
     found = in_background(lambda stop: drive(chosen, signal, stop=stop))
     if found.status != "done":
         say(f"The accuracy asked for, {chosen.accuracy:g}, was not reached: the error may be "
-            f"{found.displacement_error:.1e} of the largest displacement.")
+            f"{found.displacement_error:.1e} of the largest displacement.{_limited_by_samples(found)}")
     if arguments.out:
         from granchain_core.store import save
 
@@ -58,10 +58,19 @@ def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> Signal:
         raise BadInput("The scene has drive = rest, and --drive moves the driver: give one of them; the nearest valid "
                        "value is --set drive=harmonic.")
     found = formula_signal(arguments.drive, chosen.A0)
-    return found if found is not None else with_answers(arguments, lambda given: _measured(arguments.drive, given))
+    if found is None:
+        return with_answers(arguments, lambda given: _measured(arguments.drive, given, arguments.gap))
+    check_no_gap(arguments)
+    return found
 
 
-def _measured(path: str, answers: Answers) -> Signal:
+def check_no_gap(arguments: argparse.Namespace) -> None:
+    """Refuse --gap where no samples are read."""
+    if arguments.gap != "refuse":
+        raise BadInput("--gap is for --drive FILE, the samples of a measured motion.")
+
+
+def _measured(path: str, answers: Answers, gap: str) -> Signal:
     """The signal in a file: its velocity if that was measured, else its displacement."""
     from granchain_core import Signal
     from granchain_core.experiment.reader import read_experiment
@@ -69,19 +78,33 @@ def _measured(path: str, answers: Answers) -> Signal:
 
     series = read_experiment(path, answers, wanted=("series",))
     assert isinstance(series, Series)
+    lines, source = series.lines, series.source or path
+
+    def place(index: int) -> str:
+        return f"Line {lines[index]}"
+
     if series.velocity is not None:
-        return Signal.from_velocity(series.time, series.velocity, f"the velocity in {series.source or path}")
+        return Signal.from_velocity(series.time, series.velocity, f"the velocity in {source}", gap=gap, place=place)
     if series.displacement is not None:
-        return Signal.from_displacement(series.time, series.displacement,
-                                        f"the displacement in {series.source or path}")
+        return Signal.from_displacement(series.time, series.displacement, f"the displacement in {source}", gap=gap,
+                                        place=place)
     raise BadInput(f"{path} has neither velocity nor displacement of the driver; a force is for granchain observe.")
+
+
+def _limited_by_samples(found: Driven) -> str:
+    """That the samples of a measured motion are what limits its accuracy; else nothing."""
+    steps = found.displacement_error - found.interpolation_error
+    if found.interpolation_error <= steps:
+        return ""
+    return (f" The samples limit it: the motion between them adds {found.interpolation_error:.1e}, the steps "
+            f"{steps:.1e}.")
 
 
 def _json(found: Driven) -> dict[str, Any]:
     """A driven motion as one JSON object."""
     return {**scene_json(found.scene), "drive": found.signal.words,
             "duration": float(found.time[-1] - found.time[0]), "status": found.status, **forces_json(found),
-            **errors_json(found), "cost": asdict(found.cost)}
+            **errors_json(found), "interpolation_error": found.interpolation_error, "cost": asdict(found.cost)}
 
 
 def _show(found: Driven) -> None:

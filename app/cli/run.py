@@ -17,7 +17,7 @@ from granchain_core.run.budget import BUDGET
 from .common import chosen_scene, in_background, show_json, show_percent, unbroken
 from .compiling import compiling_beside
 from .data_options import add_answers
-from .driven import do_driven
+from .driven import check_no_gap, do_driven
 from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, warn
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
@@ -39,6 +39,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="another motion of the driver from the start to its end: chirp=f0:f1:T, burst=f:n:T, "
                              "tones=f1:f2:T[:ratio], noise=f0:f1:T[:seed] with A0, or a FILE of its velocity or "
                              "displacement over time")
+    parser.add_argument("--gap", default="refuse", metavar="refuse|zero|interpolate",
+                        help="what to do where samples of --drive FILE are missing")
     add_answers(parser)
     add_resume(parser, "run")
     add_picture(parser)
@@ -51,6 +53,7 @@ def do(arguments: argparse.Namespace) -> None:
     if arguments.drive:
         do_driven(arguments, chosen)
         return
+    check_no_gap(arguments)
     if arguments.out:
         from granchain_core.store import check_writable
 

@@ -2,7 +2,8 @@
 
 The motion is computed with steps that are halved until the stated error is small enough, by the rules of `run`
 (integrate/stated.py). The signal's motion is computed exactly; where it stands for a formula (signal.py), what differs
-from the formula is added to the stated errors.
+from the formula is added to the stated errors. Where it stands for samples, the motion is computed twice more, from the
+samples with even and with odd numbers, and an error by these differences is added.
 """
 
 from __future__ import annotations
@@ -18,7 +19,15 @@ from ..errors import BadInput
 from ..integrate import fixed_step_setting
 from ..integrate.chain_in_pieces import MOST_HALVINGS
 from ..integrate.methods import FIXED_STEP
-from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
+from ..integrate.safety_factors import SAMPLED_DRIVE
+from ..integrate.stated import (
+    Computations,
+    force_differences,
+    least_errors,
+    or_whole_motion,
+    relative_changes,
+    relative_difference,
+)
 from ..laws import LAWS
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
@@ -63,6 +72,9 @@ class Driven(RecordedMotion):
         "done" or "accuracy-not-reached".
     cost : Cost
         Computing time, steps and evaluations.
+    interpolation_error : float
+        What the interpolation between samples of the driver's motion contributes to `displacement_error`; 0 for a
+        formula and for a motion that is meant as it is.
 
     Examples
     --------
@@ -86,6 +98,7 @@ class Driven(RecordedMotion):
     energy_residual: float
     status: str
     cost: Cost
+    interpolation_error: float = 0.0
 
     @property
     def time(self) -> np.ndarray:
@@ -107,14 +120,16 @@ class Driven(RecordedMotion):
     def attributes(self) -> dict[str, Attribute]:
         """The signal, largest forces with their errors, status, energy and cost, and where it comes from."""
         return {**provenance(self.scene, self.cost.method, self.displacement_error), "status": self.status,
-                "drive": self.signal.words, "energy_residual": self.energy_residual,
-                "cost": json.dumps(asdict(self.cost)), **{name: getattr(self, name) for name in MAXIMA},
+                "drive": self.signal.words, "interpolation_error": self.interpolation_error,
+                "energy_residual": self.energy_residual, "cost": json.dumps(asdict(self.cost)),
+                **{name: getattr(self, name) for name in MAXIMA},
                 **dict(zip(RUN_ERRORS, self.force_errors.row, strict=True))}
 
     def summary(self) -> list[str]:
         """The signal, largest forces and errors."""
+        between = f", {self.interpolation_error:.1e} of it between samples" if self.signal.coarser else ""
         return [f"driver: {self.signal.words}", *said_forces(self),
-                f"{len(self.time)} knots; displacements: relative error {self.displacement_error:.1e}; "
+                f"{len(self.time)} knots; displacements: relative error {self.displacement_error:.1e}{between}; "
                 f"{self.status.replace('-', ' ')}"]
 
 
@@ -139,7 +154,8 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     Returns
     -------
     Driven
-        The motion at every knot. Its `status` is "done", or "accuracy-not-reached".
+        The motion at every knot. Its `status` is "done", or "accuracy-not-reached", also where the samples of a
+        measured motion are too far apart for the accuracy.
 
     Raises
     ------
@@ -165,7 +181,8 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
         raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_RECORDED:.0e} values; give a "
                        "shorter signal or fewer beads.")
     began, begin = clock.perf_counter(), rest(scene) if start is None else checked_start(scene, start)
-    chain = MovedChain(scene, signal, Stop() if stop is None else stop)
+    stop = Stop() if stop is None else stop
+    chain = MovedChain(scene, signal, stop)
     before, first, shown = chain.run(begin, 0), chain.maxima, Computations(scene.cuts_tension)
     shown.begin(fixed_step_setting())
     for halvings in range(1, MOST_HALVINGS + 1):
@@ -183,7 +200,14 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     scales = chain.scaled.scales
     stated = shown.final(bool(shown.stated[0] <= scene.accuracy))
     largest = float(np.abs(now.displacement).max()) * scales.length
-    error, *errors = stated + formula_errors(scene, signal, shown.growth, largest, maxima * scales.force)
+    between = np.zeros(4)
+    for coarser in signal.coarser:
+        coarse = MovedChain(scene, coarser, stop, chain.counts)
+        half = coarse.run(begin, halvings)
+        between = np.maximum(between, sampling_differences((signal.time, now.displacement, maxima),
+                                                           (coarser.time, half.displacement, coarse.maxima)))
+    between = or_whole_motion(SAMPLED_DRIVE / (2.0**signal.order - 1.0) * between)
+    error, *errors = stated + between + formula_errors(scene, signal, shown.growth, largest, maxima * scales.force)
     done = error <= scene.accuracy
     balance = residual(now.energy)
     assert balance is not None, "the chain has an account"
@@ -192,7 +216,8 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
                   now.force * scales.force, inward, outward, elastic,
                   force_errors=ForceErrors.of(np.array(errors)), displacement_error=float(error),
                   energy_residual=balance, status="done" if done else "accuracy-not-reached",
-                  cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP))
+                  cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP),
+                  interpolation_error=float(between[0]))
 
 
 def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: float, maxima: np.ndarray) -> np.ndarray:
@@ -214,3 +239,17 @@ def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: fl
         change[0] += scene.D * deep * signal.velocity_error
     known = np.array([displacement, *maxima])
     return np.divide([behind, *change], known, out=np.zeros(4), where=known > 0.0)
+
+
+def sampling_differences(full: tuple[np.ndarray, np.ndarray, np.ndarray],
+                         half: tuple[np.ndarray, np.ndarray, np.ndarray]) -> np.ndarray:
+    """Relative differences (4,) of a motion by half of the samples: of displacements, then of the largest forces.
+
+    `full` is the motion by all samples, `half` that by every second one: times (T,), displacements (T, N) and largest
+    input, output and elastic output force (3,), in any unit. Largest forces may agree by chance, so their difference
+    counts as that of the displacements at least.
+    """
+    (times, moved, maxima), (half_times, half_moved, half_maxima) = full, half
+    _, mine, others = np.intersect1d(times, half_times, assume_unique=True, return_indices=True)
+    difference = relative_difference(moved[mine], half_moved[others])
+    return np.array([difference, *np.maximum(difference, relative_changes(maxima, half_maxima))])

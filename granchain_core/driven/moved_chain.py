@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..integrate import Counts
 from ..integrate.chain_in_pieces import ChainInPieces
 from ..kernels.effects.driver import Moved
 from ..scaling import scale_chain
@@ -17,9 +18,9 @@ from .signal import Signal
 class MovedChain(ChainInPieces):
     """A scene's chain whose driver moves as a signal says, with the energy account."""
 
-    def __init__(self, scene: Scene, signal: Signal, stop: Stop) -> None:
+    def __init__(self, scene: Scene, signal: Signal, stop: Stop, counts: Counts | None = None) -> None:
         driven = scale_chain(scene, account=True)
         scaled = replace(driven, slots=driven.slots._replace(driver=Moved(np.zeros(3))))
         pieces = signal.quadratics() / driven.scales.length / driven.scales.phi ** np.arange(3)
         overlap = float(np.ptp(signal.displacement)) / driven.scales.length
-        super().__init__(scaled, signal.time, pieces, overlap, stop)
+        super().__init__(scaled, signal.time, pieces, overlap, stop, counts)

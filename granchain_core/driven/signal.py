@@ -5,6 +5,9 @@ motion is computed exactly. A formula u(t) is given at KNOTS places in a period 
 velocities there are chosen so that the displacement is the formula's at the knots, and within 4e-8 of the amplitude
 between them; the velocity is off by up to h² v''/12, which is (2π/KNOTS)²/12 = 2e-5 of it. A signal knows this error,
 and `drive` adds what follows from it to the errors that it states.
+
+What a measured motion does between its samples is not known. Such a signal has two coarser ones, made from every second
+sample, and `drive` states an error by the differences from their motions.
 """
 
 from __future__ import annotations
@@ -16,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
+from ..gaps import Gaps, sample_number, with_zeros
 from ..input_checks import unknown_name
 from ..text import number_in
 
@@ -47,6 +51,12 @@ class Signal:
         Description of the signal.
     velocity_error, displacement_error : float
         Largest difference from a formula at any time [m/s] and [m]; 0 for a motion that is given at knots.
+    coarser : tuple of Signal
+        The same motion from samples with even numbers, and from those with odd numbers; empty for a formula and for a
+        motion that is meant as it is.
+    order : float
+        How the motion comes nearer to what was measured as samples become closer: 1 (velocities that jump) to 2
+        (smooth ones). It is judged by every second and every fourth sample.
 
     Examples
     --------
@@ -62,11 +72,44 @@ class Signal:
     words: str
     velocity_error: float = 0.0
     displacement_error: float = 0.0
+    coarser: tuple[Signal, ...] = ()
+    order: float = 2.0
 
     @classmethod
-    def from_velocity(cls, time: object, velocity: object, words: str = "given velocity",
-                      start: float = 0.0) -> Signal:
-        """A motion from its velocity [m/s] at ascending times [s], at the displacement `start` [m] at the first."""
+    def from_velocity(cls, time: object, velocity: object, words: str = "given velocity", start: float = 0.0, *,
+                      exact: bool = False, gap: str = "refuse",
+                      place: Callable[[int], str] = sample_number) -> Signal:
+        """A motion from its velocity at ascending times; between two of them the velocity is a straight line.
+
+        Parameters
+        ----------
+        time, velocity : array_like, shape (T,)
+            Times [s] and velocities [m/s].
+        words : str
+            Description of the signal.
+        start : float
+            Displacement at the first time [m].
+        exact : bool
+            Whether the motion is meant to be this broken line, at any spacing. If not, the velocities are samples: a
+            gap is refused, and `drive` states the error of the lines between the samples.
+        gap : str
+            Treatment of a gap between samples, a spacing of more than 1.5 times the usual one: "refuse", "zero" (no
+            velocity in it) or "interpolate" (a straight line across it).
+        place : callable, optional
+            The place of a sample in its source from its index, for messages.
+
+        Raises
+        ------
+        BadInput
+            The arrays do not fit together, are not finite or are too long, times do not ascend, or there is a gap.
+
+        Examples
+        --------
+        >>> from granchain_core import Signal
+        >>> ramp = Signal.from_velocity([0.0, 1e-3, 5e-3], [0.0, 1e-3, 1e-3], exact=True)
+        >>> ramp.displacement.tolist()
+        [0.0, 5e-07, 4.5e-06]
+        """
         t, v = (np.asarray(one, dtype=float) for one in (time, velocity))
         if t.ndim != 1 or t.shape != v.shape or len(t) < 2:
             raise BadInput("A motion of the driver needs times and as many velocities, two at least.")
@@ -74,23 +117,66 @@ class Signal:
             raise BadInput(f"{len(t)} knots are more than {MOST_KNOTS}; give a shorter signal or a lower frequency.")
         if not (np.isfinite(t).all() and np.isfinite(v).all()) or (np.diff(t) <= 0.0).any():
             raise BadInput("Times and velocities of the driver must be finite, and times must ascend.")
-        moved = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (v[1:] + v[:-1]))])
-        return cls(t, start + moved, v, words)
+        if exact:
+            return cls._with_lines(t, v, words, start)
+        gaps, put_in = Gaps.of(t, place), np.zeros(0, dtype=int)
+        treated = gaps.treated(gap, "a straight line across it", "velocity")
+        if treated and gap == "zero":
+            t, v, put_in = with_zeros(t, v, gaps.before, gaps.usual)
+        words += f", {treated}" if treated else ""
+        return _of_samples(len(t), put_in, lambda kept: cls._with_lines(t[kept], v[kept], words, start))
 
     @classmethod
-    def from_displacement(cls, time: object, displacement: object, words: str = "given displacement") -> Signal:
-        """A motion from its displacement [m] at ascending times [s], by a cubic spline with eight knots a sample.
+    def from_displacement(cls, time: object, displacement: object, words: str = "given displacement", *,
+                          exact: bool = False, gap: str = "refuse",
+                          place: Callable[[int], str] = sample_number) -> Signal:
+        """A motion from its displacement at ascending times, by a cubic spline with eight knots a sample.
 
         It begins at 0, wherever the first sample is: a driver that stands in bead 1 at time 0 would be another start.
-        """
-        from scipy.interpolate import CubicSpline
 
+        Parameters
+        ----------
+        time, displacement : array_like, shape (T,)
+            Times [s] and displacements [m].
+        words : str
+            Description of the signal.
+        exact : bool
+            Whether the motion is meant to be this spline, at any spacing. If not, the displacements are samples: a
+            gap is refused, and `drive` states the error of the spline between the samples.
+        gap : str
+            Treatment of a gap between samples, a spacing of more than 1.5 times the usual one: "refuse" or
+            "interpolate" (the spline across it). There is no zero: a driver that stood still would jump at the end.
+        place : callable, optional
+            The place of a sample in its source from its index, for messages.
+
+        Raises
+        ------
+        BadInput
+            The arrays do not fit together, are not finite or are too long, times do not ascend, or there is a gap.
+        """
         t, u = (np.asarray(one, dtype=float) for one in (time, displacement))
         if t.ndim != 1 or t.shape != u.shape or len(t) < 4 or not (np.isfinite(t).all() and np.isfinite(u).all()) \
                 or (np.diff(t) <= 0.0).any():
             raise BadInput("A motion of the driver needs at least four finite displacements at ascending times.")
+        if exact:
+            return cls._with_spline(t, u, words)
+        treated = Gaps.of(t, place).treated(gap, "a smooth curve across it")
+        words += f", {treated}" if treated else ""
+        return _of_samples(len(t), np.zeros(0, dtype=int), lambda kept: cls._with_spline(t[kept], u[kept], words))
+
+    @classmethod
+    def _with_lines(cls, t: np.ndarray, v: np.ndarray, words: str, start: float) -> Signal:
+        """The motion whose velocity is a broken line, from checked arrays."""
+        moved = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (v[1:] + v[:-1]))])
+        return cls(t, start + moved, v, words)
+
+    @classmethod
+    def _with_spline(cls, t: np.ndarray, u: np.ndarray, words: str) -> Signal:
+        """The motion along a cubic spline of displacements, from checked arrays."""
+        from scipy.interpolate import CubicSpline
+
         knots = np.interp(np.arange(_PIECES * (len(t) - 1) + 1) / _PIECES, np.arange(len(t)), t)
-        return cls.from_velocity(knots, CubicSpline(t, u).derivative()(knots), words)
+        return cls.from_velocity(knots, CubicSpline(t, u).derivative()(knots), words, exact=True)
 
     @classmethod
     def of(cls, velocity: Callable[[np.ndarray], np.ndarray], displacement: Callable[[np.ndarray], np.ndarray],
@@ -104,9 +190,9 @@ class Signal:
         exact, at_knots = velocity(time), displacement(time)
         found = exact
         for _ in range(_CORRECTIONS):
-            moved = cls.from_velocity(time, found, words, float(at_knots[0]))
+            moved = cls._with_lines(time, found, words, float(at_knots[0]))
             found = found - np.gradient(moved.displacement - at_knots, time[1])
-        signal = cls.from_velocity(time, found, words, float(at_knots[0]))
+        signal = cls._with_lines(time, found, words, float(at_knots[0]))
         # the error of a smooth velocity is largest at the knots or midway, and its integral between them: within a
         # tenth of an interval times it, as h² v'' (1/12 − s (1 − s)/2) h ds adds up to 0.0080 h³ v'' at most
         midway = velocity(time[:-1] + 0.5 * time[1])
@@ -192,6 +278,34 @@ class Signal:
         """Coefficients (T − 1, 3) of the displacement in every interval, constant term first, in m and s."""
         step = np.diff(self.time)
         return np.stack([self.displacement[:-1], self.velocity[:-1], 0.5 * np.diff(self.velocity) / step], axis=1)
+
+    def displacement_at(self, time: np.ndarray) -> np.ndarray:
+        """Displacement at any times from the first knot to the last [m]."""
+        at = np.clip(np.searchsorted(self.time, time, "right") - 1, 0, len(self.time) - 2)
+        constant, linear, quadratic = self.quadratics()[at].T
+        since = time - self.time[at]
+        return np.asarray(constant + since * (linear + since * quadratic))
+
+
+def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signal]) -> Signal:
+    """The signal of so many samples, with its coarser ones; `of` makes the signal of the samples with given indices.
+
+    The first and the last sample and the zeros that were `put_in` are always kept. There are two signals by every
+    second sample since one of them may be like the full one by chance: of the velocity of a sine with four samples a
+    period, at its extremes and zeros, the extremes alone give the same lines.
+    """
+    full, measured = of(np.arange(count)), np.delete(np.arange(count), put_in)
+
+    def by_every(nth: int) -> tuple[tuple[Signal, ...], float]:
+        """Signals by every nth sample, and how far the displacement of one of them is from the full signal's."""
+        found = tuple(of(np.unique(np.concatenate([measured[first::nth], measured[[0, -1]], put_in])))
+                      for first in range(nth))
+        return found, max(float(np.abs(one.displacement_at(full.time) - full.displacement).max()) for one in found)
+
+    (coarser, second), (_, fourth) = by_every(2), by_every(4)
+    # differences of order p from a spacing h: C h^p (2^p − 1) and C h^p (4^p − 1), whose ratio is 2^p + 1
+    falls = fourth / second - 1.0 if second > 0.0 else 4.0
+    return replace(full, coarser=coarser, order=math.log2(min(max(falls, 2.0), 4.0)))
 
 
 #: Formulas by name: what their numbers are, and how many may be left out at the end.

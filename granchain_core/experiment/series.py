@@ -16,7 +16,8 @@ class Series(Noted):
     """A measured time series: time (T,) [s] from 0 and, where measured, velocity [m/s] and forces [N], else None.
 
     `displacement` is the shaker's [m]. `units` are those of the file by quantity, `lines` (T,) its line of every sample
-    where it is a text, and `began` the time of the first sample in it [s].
+    where it is a text, and `began` the time of the first sample in it [s]. `left_out` are the titles of columns of a
+    text that were not read.
     """
 
     time: np.ndarray
@@ -30,6 +31,7 @@ class Series(Noted):
     units: dict[str, str] = field(default_factory=dict)
     lines: Sequence[int] = ()
     began: float = 0.0
+    left_out: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -139,8 +139,9 @@ def read_text_table(grid: TextGrid, answers: Answers, wanted: Sequence[str], sou
     left = [guess.title or str(guess.number) for i, guess in enumerate(guesses) if i not in used]
     layout += f"; left out: {', '.join(left)}" if left else ""
     note = note_of(" ".join((*parts.preface, *grid.comments))[:500], answers.note)
-    return in_si(values, chosen, asked, [number for number, _ in parts.data], layout, wanted, answers.source or source,
-                 note, bool(answers.columns))
+    found = in_si(values, chosen, asked, [number for number, _ in parts.data], layout, wanted, answers.source or source,
+                  note, bool(answers.columns))
+    return replace(found, left_out=tuple(left)) if isinstance(found, Series) else found
 
 
 def _guess(place: int, parts: _Parts) -> Guess:

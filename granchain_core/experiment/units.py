@@ -39,9 +39,11 @@ _NAMES = {
     "velocity": "v v0 velocity speed shaker_velocity geschwindigkeit vitesse",
     "displacement": "a0 u0 amplitude displacement shaker_displacement drive_displacement weg auslenkung",
     "acceleration": "acceleration accel shaker_acceleration beschleunigung",
-    "input_force": "input_force force_in f_in max_input_force",
-    "output_force": "output_force force_out f_out",
+    "input_force": "input_force in_force force_in f_in fin max_input_force",
+    "output_force": "output_force out_force force_out f_out fout",
 }
+#: Names of quantities where the unit is one of force; of a shaker, input and output may be anything else.
+_OF_FORCE = {"input": "input_force", "in": "input_force", "output": "output_force", "out": "output_force"}
 _QUANTITY = {name: quantity for quantity, names in _NAMES.items() for name in names.split()}
 _ALIASES = {
     "hz": "Hz", "HZ": "Hz", "hertz": "Hz", "1/s": "Hz", "s-1": "Hz", "khz": "kHz", "KHz": "kHz", "RPM": "rpm",
@@ -128,7 +130,8 @@ def _quantity(name: str, unit: str | None) -> str | None:
     if len(bare) == 1 and bare.isupper():  # T may be a temperature, V a voltage
         return None
     word = _word(bare)
-    found = _QUANTITY.get(word) or _QUANTITY.get(re.sub(r"_?\d+$", "", word))
+    known = {**_QUANTITY, **_OF_FORCE} if dimension == "force" else _QUANTITY
+    found = known.get(word) or known.get(re.sub(r"_?\d+$", "", word))
     if found is None or dimension in (None, "voltage", QUANTITIES[found]):
         return found
     return dimension if word == "amplitude" and dimension in ("velocity", "acceleration", "force") else None

@@ -23,3 +23,6 @@ RUN_FORCES_THAT_JUMP = 3.0
 #: Largest forces on a periodic orbit, in place of both factors above: only two computations are compared, and their
 #: change is enlarged by 1/(1 − the contraction factor) as well (`orbit_force_errors`).
 ORBIT_FORCES = 2.0
+#: What the samples of a driver's measured motion leave out: on top of the larger of the differences from every second
+#: sample over 2^p − 1, with an order p of 1 to 2. Found by trial.
+SAMPLED_DRIVE = 2.5

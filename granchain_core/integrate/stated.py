@@ -51,6 +51,14 @@ def force_differences(now: np.ndarray, before: np.ndarray, jumps: bool) -> np.nd
     return (RUN_FORCES_THAT_JUMP if jumps else RUN_FORCES) * relative_changes(now, before)
 
 
+def or_whole_motion(stated: np.ndarray) -> np.ndarray:
+    """Stated errors of several quantities; where that of the first, the displacements, is no longer useful, the motion.
+
+    Two computations that differ so much may have parted, and their difference then says nothing of the error.
+    """
+    return stated if stated[0] <= _LARGEST_USEFUL_ERROR else np.maximum(stated, _WHOLE_MOTION)
+
+
 @dataclass(eq=False)
 class Computations:
     """The errors of several computations of one motion, for several quantities at once.
@@ -96,9 +104,7 @@ class Computations:
 
     def final(self, done: bool) -> np.ndarray:
         """What is stated where no finer computation follows."""
-        if done or self.stated[0] <= _LARGEST_USEFUL_ERROR:
-            return self.stated
-        return np.maximum(self.stated, _WHOLE_MOTION)
+        return self.stated if done else or_whole_motion(self.stated)
 
     def _see_growth(self, coarser: Setting, difference: float) -> None:
         typical = typical_error(coarser)

@@ -57,10 +57,13 @@ def read_force_csv(text: str | bytes, time_unit: str | None = None, force_unit: 
     assert isinstance(series, Series)
     if series.input_force is None:
         raise BadInput(f"The file has no input force: {series.understood}.")
-    lines = series.lines
+    lines, understood = series.lines, series.understood
+    if series.output_force is None and series.left_out and not (answers and answers.columns):
+        understood = (f"No comparison with a measured output force, as no column is known as one (left out: "
+                      f"{', '.join(series.left_out)[:200]}); {understood}")
     record = ForceRecord(series.time + series.began, series.input_force, series.output_force,
                          lambda i: f"Line {lines[i]}")
-    return replace(checked(record), understood=series.understood)
+    return replace(checked(record), understood=understood)
 
 
 def _unit(dimension: str, asked: str | None) -> str:

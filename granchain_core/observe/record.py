@@ -15,28 +15,19 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import BadInput
+from ..gaps import Gaps, sample_number, with_zeros
 from ..scene import Scene
 from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE
 from ..text import number_in
 
-#: A spacing of more than this factor times the median one is a gap.
-GAP = 1.5
-#: What may be done with gaps: refuse them, take the force as zero in them, or draw the cubic across.
-GAPS = ("refuse", "zero", "interpolate")
 #: Fewest samples over the shortest pulse of this strength.
 PULSE_SAMPLES = 4
 #: A force whose smallest modulus is above this part of its largest may have a sensor's offset, and a note says so.
 _NEAR_ZERO = 0.02
-#: Zero force that is put into a gap begins and ends at most this part of the gap beside its neighbours.
-_PART_OF_GAP = 0.4
 #: Fewest samples in all.
 FEWEST = 8
 #: Duration of a collision of two free beads of mass m with peak force F, over √(m/2) K^{−1/3} F^{−1/6}.
 _HERTZ = HERTZ_DURATION * HERTZ_FORCE ** (1.0 / 6.0)
-
-
-def _number(index: int) -> str:
-    return f"Sample {index}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +41,7 @@ class ForceRecord:
     time: np.ndarray
     force: np.ndarray
     output: np.ndarray | None = None
-    place: Callable[[int], str] = _number
+    place: Callable[[int], str] = sample_number
     understood: str = ""
     notes: tuple[str, ...] = field(default=())
     put_in: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=int))
@@ -71,7 +62,7 @@ class ForceRecord:
         kept = np.unique(np.append(measured[::2], measured[-1]))
         gaps = np.unique(np.searchsorted(kept, self.put_in)) - 1
         spacing = 2.0 * float(np.median(np.diff(self.time[measured])))
-        time, force, put_in = _with_zeros(self.time[kept], self.force[kept], gaps, spacing)
+        time, force, put_in = with_zeros(self.time[kept], self.force[kept], gaps, spacing)
         return ForceRecord(time, force, put_in=put_in), kept, np.delete(np.arange(len(time)), put_in)
 
     def cubics(self) -> np.ndarray:
@@ -127,8 +118,6 @@ def prepared(record: ForceRecord, scene: Scene, offset: float | str = 0.0, gap: 
     `offset` is a force in N, or "median" for the median of all samples, which is the sensor's zero where the driver is
     out of contact more than half of the time. Raises `BadInput` naming the sample.
     """
-    if gap not in GAPS:
-        raise BadInput(f"gap {str(gap)[:30]!r} is not one of {', '.join(GAPS)}.")
     notes = []
     zero = _offset(record, offset)
     if zero != 0.0:
@@ -157,33 +146,18 @@ def _offset(record: ForceRecord, offset: float | str) -> float:
 
 def _bridged(record: ForceRecord, gap: str, notes: list[str]) -> ForceRecord:
     """Samples with their gaps treated; zero force ends one usual spacing beside a gap's two neighbours."""
-    steps, usual = np.diff(record.time), record.spacing
-    gaps = np.flatnonzero(steps > GAP * usual)
-    if not len(gaps):
+    gaps = Gaps.of(record.time, record.place)
+    treated = gaps.treated(gap, "a smooth curve across it", "force")
+    if not treated:
         return record
-    at = int(gaps[0])
-    where = (f"{record.place(at + 1)}: {steps[at]:.4g} s after the sample before, where {usual:.4g} s is usual")
-    if gap == "refuse":
-        more = f" (and {len(gaps) - 1} more)" if len(gaps) > 1 else ""
-        raise BadInput(f"{where}: a gap{more}; choose zero (no force in it) or interpolate (a smooth curve across it).")
-    what = "taken as zero force" if gap == "zero" else "interpolated"
-    notes.append(f"{len(gaps)} gap{'s' if len(gaps) > 1 else ''} {what}, the first at {record.time[at]:.6g} s")
+    notes.append(treated)
     if gap == "interpolate":
         return record
     if record.output is not None:
-        raise BadInput(f"{where}: a gap in a record with an output force can only be interpolated, since there is no "
-                       "output force for samples that are put in.")
-    time, force, put_in = _with_zeros(record.time, record.force, gaps, usual)
+        raise BadInput(f"{gaps.where}: a gap in a record with an output force can only be interpolated, since there is "
+                       "no output force for samples that are put in.")
+    time, force, put_in = with_zeros(record.time, record.force, gaps.before, gaps.usual)
     return ForceRecord(time, force, None, record.place, record.understood, put_in=put_in)
-
-
-def _with_zeros(time: np.ndarray, force: np.ndarray, gaps: np.ndarray,
-                spacing: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Samples with zero force in the gaps after these, and the indices of the zeros; it ends a spacing beside them."""
-    beside = np.minimum(spacing, _PART_OF_GAP * (time[gaps + 1] - time[gaps]))
-    inside = np.sort(np.concatenate([time[gaps] + beside, time[gaps + 1] - beside]))
-    places = np.searchsorted(time, inside)
-    return np.insert(time, places, inside), np.insert(force, places, 0.0), places + np.arange(len(places))
 
 
 def shortest_pulse(scene: Scene, force: float) -> float:

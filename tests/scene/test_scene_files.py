@@ -99,7 +99,7 @@ def test_a_file_needs_no_parent(tmp_path: Path) -> None:
     ('parent = "sec2"\n[chain]\nstart_velocity = [{ place = 1 }]', "has no velocity [m/s]."),
     ('parent = "sec2"\n[chain]\nreference_overlap = 0', "reference_overlap must be a finite number above 0"),
     ('parent = "sec2"\n[ranges]\nf = [3.0, 2.0]', "the range of f must be two ascending numbers"),
-    ("parent = ", "is not TOML"), ("#" * (MOST_BYTES + 1), f"at most {MOST_BYTES} bytes"),
+    ("parent = ", "mine.toml: the text is not TOML; invalid value (at "), ("#" * (MOST_BYTES + 1), f"at most {MOST_BYTES} bytes"),
     ("a = " + "[" * 5000, "is not TOML"),
 ])
 def test_a_mistake_has_one_sentence(text: str, said: str, tmp_path: Path) -> None:
