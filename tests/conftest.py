@@ -28,6 +28,9 @@ QUICK = (
     "architecture", "public", "scene", "experiment", "dashboard", "session", "integrate", "kernels/equations",
     "kernels/effects", "kernels/rk4", "kernels/dop853", "parts", "pages", "curve",
 )
+#: Files in these folders that are left to the whole suite: they build a wheel, start servers and notebooks, or settle a
+#: scene at hundreds of frequencies, and take a fifth of the time together.
+NOT_QUICK = ("public/test_wheel.py", "public/test_dashboard.py", "session/test_export.py", "dashboard/test_scales.py")
 #: Folders whose tests may have a server in another thread, with documents of its own.
 SERVERS = ("serve", "public", "browser")
 
@@ -81,7 +84,8 @@ def pytest_collection() -> Iterator[None]:
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Iterator[None]:
     """Mark the quick tests; once the chosen ones are known, order them for the workers."""
-    quick = {path for path in {item.path for item in items} if any(path.is_relative_to(HERE / one) for one in QUICK)}
+    quick = {path for path in {item.path for item in items} if any(path.is_relative_to(HERE / one) for one in QUICK)
+             and path.relative_to(HERE).as_posix() not in NOT_QUICK}
     for item in items:
         if item.path in quick:
             item.add_marker(pytest.mark.quick)
