@@ -16,18 +16,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import fixed_step_setting
-from ..integrate.chain_in_pieces import MOST_HALVINGS
+from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import SAMPLED_DRIVE
-from ..integrate.stated import (
-    Computations,
-    force_differences,
-    least_errors,
-    or_whole_motion,
-    relative_changes,
-    relative_difference,
-)
+from ..integrate.stated import or_whole_motion, relative_changes, relative_difference
 from ..laws import LAWS
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
@@ -183,22 +175,9 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     began, begin = clock.perf_counter(), rest(scene) if start is None else checked_start(scene, start)
     stop = Stop() if stop is None else stop
     chain = MovedChain(scene, signal, stop)
-    before, first, shown = chain.run(begin, 0), chain.maxima, Computations(scene.cuts_tension)
-    shown.begin(fixed_step_setting())
-    for halvings in range(1, MOST_HALVINGS + 1):
-        setting = fixed_step_setting(2**halvings)
-        now, maxima = chain.run(begin, halvings), chain.maxima
-        differences = [relative_difference(now.displacement, before.displacement),
-                       *force_differences(maxima, first, scene.forces_jump)]
-        least = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
-        shown.add(setting, chain.steps(halvings), np.array(differences), least)
-        if progress is not None:
-            progress(halvings / MOST_HALVINGS)
-        if shown.stated[0] <= scene.accuracy or shown.rounded:
-            break
-        before, first = now, maxima
+    now, maxima, halvings, stated, growth = refined(
+        chain, begin, lambda done: None if progress is None else progress(done / MOST_HALVINGS))
     scales = chain.scaled.scales
-    stated = shown.final(bool(shown.stated[0] <= scene.accuracy))
     largest = float(np.abs(now.displacement).max()) * scales.length
     between = np.zeros(4)
     for coarser in signal.coarser:
@@ -207,7 +186,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
         between = np.maximum(between, sampling_differences((signal.time, now.displacement, maxima),
                                                            (coarser.time, half.displacement, coarse.maxima)))
     between = or_whole_motion(SAMPLED_DRIVE / (2.0**signal.order - 1.0) * between)
-    error, *errors = stated + between + formula_errors(scene, signal, shown.growth, largest, maxima * scales.force)
+    error, *errors = stated + between + formula_errors(scene, signal, growth, largest, maxima * scales.force)
     done = error <= scene.accuracy
     balance = residual(now.energy)
     assert balance is not None, "the chain has an account"

@@ -5,6 +5,9 @@ A measured force pushes it (observe/pushed_chain.py), or its driver moves as a s
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import NamedTuple
+
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
@@ -20,6 +23,8 @@ from ..scaling import ScaledChain
 from ..state import State
 from ..stop import Stop
 from .counts import Counts
+from .methods import fixed_step_setting
+from .stated import Computations, force_differences, least_errors, relative_difference
 from .stepper import empty_samples
 
 #: More steps than this are refused: minutes of computing.
@@ -92,3 +97,39 @@ class ChainInPieces:
                                 f"{self._time[done - 1]:.6g} s; look at the force there, or lower the damping.",
                                 "not-finite")
         return samples
+
+
+class Refined(NamedTuple):
+    """The finest of several runs: its samples and largest forces, how often its steps were halved, how errors grew.
+
+    `errors` (4,) are the stated relative errors by the steps: of displacements, then of the largest forces.
+    """
+
+    samples: Samples
+    maxima: np.ndarray
+    halvings: int
+    errors: np.ndarray
+    growth: float
+
+
+def refined(chain: ChainInPieces, start: State, told: Callable[[int], None]) -> Refined:
+    """Runs with steps halved until the error is as small as the scene asks for, or finer steps would not help.
+
+    `told` is called with the number of halvings after each.
+    """
+    scene, computations = chain.scaled.scene, Computations(chain.scaled.scene.cuts_tension)
+    computations.begin(fixed_step_setting())
+    before, first = chain.run(start, 0), chain.maxima
+    for halvings in range(1, MOST_HALVINGS + 1):
+        setting = fixed_step_setting(2**halvings)
+        now, maxima = chain.run(start, halvings), chain.maxima
+        differences = [relative_difference(now.displacement, before.displacement),
+                       *force_differences(maxima, first, scene.forces_jump)]
+        least = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
+        computations.add(setting, chain.steps(halvings), np.array(differences), least)
+        told(halvings)
+        done = bool(computations.stated[0] <= scene.accuracy)
+        if done or computations.rounded:
+            break
+        before, first = now, maxima
+    return Refined(now, maxima, halvings, computations.final(done), computations.growth)

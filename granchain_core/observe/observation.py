@@ -18,11 +18,10 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..integrate import fixed_step_setting
-from ..integrate.chain_in_pieces import MOST_HALVINGS
+from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR
-from ..integrate.stated import Computations, force_differences, least_errors, relative_changes, relative_difference
+from ..integrate.stated import relative_changes, relative_difference
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns, time_axis
 from ..result import RUN_ERRORS, Cost, ForceErrors, said_forces
 from ..scene import Scene
@@ -208,21 +207,8 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else checked_start(scene, start)
     chain = PushedChain(scene, record, stop)
-    before, first, shown = chain.run(begin, 0), chain.maxima, Computations(scene.cuts_tension)
-    shown.begin(fixed_step_setting())
-    for halvings in range(1, MOST_HALVINGS + 1):
-        setting = fixed_step_setting(2**halvings)
-        now, maxima = chain.run(begin, halvings), chain.maxima
-        differences = [relative_difference(now.displacement, before.displacement),
-                       *force_differences(maxima, first, scene.forces_jump)]
-        least = least_errors(setting, chain.scaled, chain.longest_step(halvings), chain.jumps, maxima)
-        shown.add(setting, chain.steps(halvings), np.array(differences), least)
-        if progress is not None:
-            progress(halvings / (MOST_HALVINGS + 1))
-        if shown.stated[0] <= scene.accuracy or shown.rounded:
-            break
-        before, first = now, maxima
-    integration = shown.final(bool(shown.stated[0] <= scene.accuracy))
+    now, maxima, halvings, integration, _ = refined(
+        chain, begin, lambda done: None if progress is None else progress(done / (MOST_HALVINGS + 1)))
     thin, kept, of_thin = record.thinned()
     thinned = PushedChain(scene, thin, stop, chain.counts)
     coarse = thinned.run(begin, halvings)
