@@ -6,19 +6,19 @@ import functools
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-from ..kernels.compiling.jit import kernel
+from ..kernels.compiling.jit import brief_kernel
 from ..kernels.simd.subnormals import flush_subnormals, restore_subnormals
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 
-@kernel
+@brief_kernel
 def _flush():  # type: ignore[no-untyped-def]
     return flush_subnormals()  # type: ignore[call-arg]
 
 
-@kernel
+@brief_kernel
 def _restore(before):  # type: ignore[no-untyped-def]
     restore_subnormals(before)  # type: ignore[call-arg]
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .compiling.jit import by_slot, internal, kernel
+from .compiling.jit import brief_kernel, by_slot, internal
 from .effects.energy_account import EnergyAccount, account_ends
 from .equations.motion import contact_force, stored_energy
 from .forces.largest import ForceLog
@@ -57,7 +57,7 @@ def _(account, slots, row, y, dy, samples):
     samples.energy[row, 2] = y[y.size - 1] + lost
 
 
-@kernel
+@brief_kernel
 def first_not_finite(y, bodies):
     """Number of the first bead whose displacement or w is not finite, or 0."""
     for i in range(1, bodies - 1):

@@ -155,11 +155,11 @@ def agree(one: Regime, other: Regime) -> bool:
     return abs(a - b) <= max(STANDARD_ERRORS * math.hypot(error_a, error_b), _EXPONENT_DIFFERENCE)
 
 
-def _windows(strobes: np.ndarray) -> np.ndarray:
-    """For every period the largest changes over it in three windows in a row, (periods, 3); none for a short record."""
+def _windows(strobes: np.ndarray, longest: int = LONGEST_PERIOD) -> np.ndarray:
+    """Largest changes over 1, 2, … `longest` periods in three windows in a row, (longest, 3); none for a short record."""
     if len(strobes) < SLOW_RECORD:
         return np.zeros((0, 3))
-    seen = np.zeros((LONGEST_PERIOD, 3))
+    seen = np.zeros((longest, 3))
     periodicity.window_changes(np.ascontiguousarray(strobes), _SLOW_WINDOW, np.zeros(2), seen)
     return seen
 
@@ -169,7 +169,8 @@ def converging(strobes: np.ndarray) -> bool:
 
     On a closed curve or a strange attractor their largest value does not change, or some grow while others shrink.
     """
-    return _converging(_windows(strobes))
+    # most irregular motions show growth over one or two periods, and the other fourteen need not be looked at
+    return not _some_grow(_windows(strobes, 2)) and _converging(_windows(strobes))
 
 
 def departing(strobes: np.ndarray) -> bool:
@@ -177,13 +178,12 @@ def departing(strobes: np.ndarray) -> bool:
     return _departing(_windows(strobes))
 
 
+def _some_grow(seen: np.ndarray) -> bool:
+    return any(second < _SHRINK_FACTOR * third for _, second, third in seen)
+
+
 def _converging(seen: np.ndarray) -> bool:
-    some = False
-    for a, b, c in seen:
-        if b < _SHRINK_FACTOR * c:
-            return False
-        some = some or _shrinks(a, b, c)
-    return some
+    return not _some_grow(seen) and any(_shrinks(*row) for row in seen)
 
 
 def _departing(seen: np.ndarray) -> bool:

@@ -1,6 +1,6 @@
 """The one place that decides how kernels are compiled; cache.py decides where the compiled code is kept.
 
-* `nogil`, so that threads really run kernels side by side.
+* `nogil`, so that threads really run kernels side by side; not for brief kernels (`brief_kernel`).
 * No `nnan`/`ninf`: a NaN must stay visible. Only `nsz arcp contract reassoc`: sums are vectorised and `x + 0.0` folds
   away, but `x * 0.0` does not, so the code for an absent effect must not multiply by zero.
 * Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by a hash of all
@@ -78,6 +78,16 @@ class Internal:
 def kernel(function):
     """Decorator for compiled, cached kernels on floats and arrays that Python calls."""
     compiled = numba.njit(nogil=True, **_OPTIONS)(function)
+    keep_on_disk(compiled)
+    return compiled
+
+
+def brief_kernel(function):
+    """`kernel` for one that takes some microseconds: it keeps the interpreter's lock.
+
+    To give the lock away and to wait for it again takes longer than such a kernel where another thread wants it too.
+    """
+    compiled = numba.njit(nogil=False, **_OPTIONS)(function)
     keep_on_disk(compiled)
     return compiled
 

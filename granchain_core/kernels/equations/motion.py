@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import check_effects, inline_llvm, internal, kernel
+from ..compiling.jit import brief_kernel, check_effects, inline_llvm, internal
 from ..effects.batch_values import batch_values
 from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
 from ..effects.dissipation import dashpot_force, keep_primitive, shifted, velocity
@@ -135,7 +135,7 @@ def write_w(slots, y, dy, forces):
         y[bodies + i] = shifted(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
 
 
-@kernel
+@brief_kernel
 def place(slots, theta, y, dy, forces, from_velocity):
     """Evaluate the equations at drive phase θ: the driver's place in y, the slope in dy, the forces.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..compiling.jit import inline_llvm, internal, kernel
+from ..compiling.jit import brief_kernel, inline_llvm, internal
 from ..simd.functions import choose_peak, larger
 from ..simd.vector import load_batch, positive_mask, store
 
@@ -76,7 +76,7 @@ def keep_largest_forces(peaks, out):
         out[q] = peaks[row_of(q)]
 
 
-@kernel
+@brief_kernel
 def reset_peaks(peaks):
     """Reset the largest value and the last ones."""
     for i in range(INPUT_JUMP):
@@ -84,7 +84,7 @@ def reset_peaks(peaks):
     peaks[INPUT_JUMP], peaks[OUTPUT_JUMP] = 0.0, 0.0
 
 
-@kernel
+@brief_kernel
 def next_period(peaks):
     """Reset the largest value but keep the last ones: a maximum may lie across the end of a period."""
     for row in range(0, INPUT_JUMP, ROWS):

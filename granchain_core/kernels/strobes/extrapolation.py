@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from math import sqrt
 
-from ..compiling.jit import internal, kernel
+from ..compiling.jit import brief_kernel, internal
 
 #: Differences used; k differences remove k − 1 slow modes.
 ORBITS = 8
@@ -34,7 +34,7 @@ def subtract(a, factor, b):
         a[i] -= factor * b[i]
 
 
-@kernel
+@brief_kernel
 def reduced_rank(states, basis, triangle, limit):
     """The limit (2, bodies) of states (k + 1, 2, bodies); basis (k, 2·bodies) and triangle (k, k) are workspaces."""
     count, bodies = states.shape[0] - 2, states.shape[2]

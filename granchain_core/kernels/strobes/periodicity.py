@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import internal, kernel
+from ..compiling.jit import brief_kernel, internal, kernel
 
 #: [period n, followed, quasi-periodic] Longest period that a batch tests, in drive periods, and longest period of an
 #: orbit that is looked for beside a motion, in a batch or alone. A longer one is settled alone.
@@ -155,7 +155,7 @@ def earlier_decay(strobes, scale, n, rounding, change):
     return decay if 0.0 < decay < 1.0 else -1.0
 
 
-@kernel
+@brief_kernel
 def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
     """The shortest period of a record of strobes and the decay towards it, as `Detected`.
 
@@ -213,7 +213,7 @@ def nearest_neighbours(strobes, scale, nearest):
                 nearest[p] = min(nearest[p], change_between(strobes, scale, half + p, q))
 
 
-@kernel
+@brief_kernel
 def record_changes(strobes, n, scale, out):
     """The last out.size changes over n periods of a record, oldest first."""
     largest_of(strobes, scale)

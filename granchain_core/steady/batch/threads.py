@@ -14,8 +14,9 @@ from ...cores import usable_cores
 from ...errors import Cancelled
 from ...stop import Stop
 
-#: Time between two checks whether the computation is still wanted [s].
-_INTERVAL = 0.05
+#: Time between two looks at what the threads have found, and whether it is still wanted [s]. Waking up for each result
+#: would take the interpreter's lock from the threads hundreds of times a second.
+_INTERVAL = 0.005
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -48,25 +49,28 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
     """
     shared: _Shared[Item] = _Shared(items, pause)
     found: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    a_thread_ended = threading.Event()
     count = workers or usable_cores()
-    threads = [threading.Thread(target=_share, args=(work, shared, found), daemon=True, name=f"core-{i}")
-               for i in range(count)]
+    threads = [threading.Thread(target=_share, args=(work, shared, found, a_thread_ended), daemon=True,
+                                name=f"core-{i}") for i in range(count)]
     for thread in threads:
         thread.start()
     try:
         while count > 0:
+            a_thread_ended.wait(_INTERVAL)
+            a_thread_ended.clear()
+            while not found.empty():
+                if stop:
+                    return
+                item = found.get()
+                if isinstance(item, Exception):
+                    raise item
+                if item is None:
+                    count -= 1
+                else:
+                    yield item
             if stop:
                 return
-            try:
-                item = found.get(timeout=_INTERVAL)
-            except queue.Empty:
-                continue
-            if isinstance(item, Exception):
-                raise item
-            if item is None:
-                count -= 1
-            else:
-                yield item
     finally:
         ended.set()
         for thread in threads:
@@ -74,8 +78,8 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
 
 
 def _share(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterator[Item],
-           found: queue.SimpleQueue[Any]) -> None:
-    """One thread's share; ends with None, or with the problem that ended it."""
+           found: queue.SimpleQueue[Any], ended: threading.Event) -> None:
+    """One thread's share; ends with None, or with the problem that ended it, and sets `ended`."""
     try:
         for result in work(items):
             found.put(result)
@@ -84,3 +88,4 @@ def _share(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterator[I
     except Exception as problem:  # raised again by the thread that reads the queue
         found.put(problem)
     found.put(None)
+    ended.set()
