@@ -24,7 +24,7 @@ from .kernels.effects.foundation import Foundation
 from .kernels.effects.preload import Preload
 from .kernels.effects.tension import new_tension_cut
 from .kernels.equations.body_forces import add_force_slope
-from .kernels.equations.motion import Forces, Slots, place
+from .kernels.equations.motion import Forces, Slots, evaluate_at_phase
 from .laws import LAWS, require_complete
 from .scene import Scene
 from .scene.effects import ACCOUNT, ALWAYS, EFFECTS, effects_of
@@ -41,7 +41,7 @@ _DAMPING_LIMIT = 1.39
 #: The largest speed of a bead over that of what pushes it: a light bead leaves a heavy one twice as fast.
 _FASTEST = 2.0
 #: Called for every point of a curve.
-_PLACE = Entries(place)
+_EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
 #: Fewest steps in one drive period, however slowly the chain moves.
 _FEWEST_STEPS_PER_PERIOD = 16
 #: More steps than this in one drive period are refused: one period would take a good part of a minute.
@@ -129,7 +129,7 @@ class ScaledChain:
         displacement, velocity = self.rows(y)
         displacement[:] = state.displacement / self.scales.length
         velocity[:] = state.velocity / self.scales.velocity
-        _PLACE(types_of(self.slots), self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
+        _EVALUATE_AT_PHASE(types_of(self.slots), self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
         y[0] = 0.0
         return y
 
@@ -139,7 +139,7 @@ class ScaledChain:
         The second half of y is w, not velocity; v is recovered from w and the overlaps.
         """
         slope = np.zeros_like(y)
-        _PLACE(types_of(self.slots), self.slots, 0.0, y.copy(), slope, self.forces(), False)
+        _EVALUATE_AT_PHASE(types_of(self.slots), self.slots, 0.0, y.copy(), slope, self.forces(), False)
         return State(self.rows(y)[0] * self.scales.length, self.rows(slope)[0] * self.scales.velocity)
 
     @cached_property

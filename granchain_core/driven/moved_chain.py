@@ -8,7 +8,7 @@ import numpy as np
 
 from ..integrate import Counts
 from ..integrate.chain_in_pieces import ChainInPieces
-from ..kernels.effects.driver import Moved
+from ..kernels.effects.driver import PrescribedMotion
 from ..scaling import scale_chain
 from ..scene import Scene
 from ..stop import Stop
@@ -20,7 +20,7 @@ class MovedChain(ChainInPieces):
 
     def __init__(self, scene: Scene, signal: Signal, stop: Stop, counts: Counts | None = None) -> None:
         driven = scale_chain(scene, account=True)
-        scaled = replace(driven, slots=driven.slots._replace(driver=Moved(np.zeros(3))))
+        scaled = replace(driven, slots=driven.slots._replace(driver=PrescribedMotion(np.zeros(3))))
         pieces = signal.quadratics() / driven.scales.length / driven.scales.phi ** np.arange(3)
         overlap = float(np.ptp(signal.displacement)) / driven.scales.length
         super().__init__(scaled, signal.time, pieces, overlap, stop, counts)

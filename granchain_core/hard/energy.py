@@ -173,7 +173,7 @@ def jump_push() -> float:
     chosen = scene("sec2").evolve(N=4)
     engine = Engine(chosen, adaptive_setting(1e-12), 4)
     engine.grid_index = engine.grid // 4
-    engine.place()
+    engine.evaluate()
     push = chosen.D * chosen.A0
     return abs(float((chosen.masses() * engine.state.velocity).sum()) - push) / push
 
@@ -200,7 +200,7 @@ def switched_picture() -> Picture:
     chosen, beads, samples = scene("sec2").evolve(N=4), 4, 2000
     engine, shown = Engine(chosen, adaptive_setting(1e-12), samples), 100
     engine.grid_index = engine.grid // 4
-    engine.place()  # the driver is at its amplitude now; the beads, and w, are where they were
+    engine.evaluate()  # the driver is at its amplitude now; the beads, and w, are where they were
     ours = engine.record(shown).velocity.sum(axis=1)
     chain = PlainChain.of(chosen)
     naive = rk4(plain_slope(chain), np.zeros(2 * beads), 0.25 * chain.period, chain.period / samples / 2, 2 * shown)

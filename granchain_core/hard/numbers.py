@@ -112,7 +112,7 @@ def converging(method: str, beads: int, rounds: int) -> float:
             engine = Engine(chosen, Setting(method, 1.0, 1e-6), 1)
             row = engine.scaled.bodies
             engine.y[1 : row - 1] = -10.0 ** np.maximum(np.linspace(0.0, 2.0 * last, beads), last)
-            engine.place()
+            engine.evaluate()
             before, began = engine.counts.rhs, time.thread_time()
             engine.periods(2, watch=False)
             best[i] = min(best[i], (time.thread_time() - began) / (engine.counts.rhs - before))

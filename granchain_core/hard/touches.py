@@ -14,7 +14,7 @@ import numpy as np
 
 from ..kernels.compiling.jit import kernel
 from ..kernels.dop853.run import located_step
-from ..kernels.dop853.step import ALL_STAGES, STAGES, Cycle, Dop853, Dop853Workspace, evaluate
+from ..kernels.dop853.step import ALL_STAGES, STAGES, Dop853, Dop853Workspace, DriveCycle, evaluate
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.foundation import Foundation
@@ -65,7 +65,7 @@ def touch(cases, driven, work, y, counts, static, chain, found):  # type: ignore
         work.next_step[0] = method.largest_step * cases[n, FIRST]
         work.scale[0], work.scale[1] = 1.0, rate
         evaluate(slots, rate, t, y, work.k[0], work.forces)
-        trajectory = Trajectory(slots, Cycle(rate, period), y, work)
+        trajectory = Trajectory(slots, DriveCycle(rate, period), y, work)
         contact = 0 if driven else 1
         while t < end * (1.0 - 1e-12):
             before = y[contact] - y[contact + 1] + static[contact] > 0.0

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..kernels.dop853.run import Stretch, run_dop853
-from ..kernels.dop853.step import ALL_STAGES, Cycle, Dop853, Dop853Workspace
-from ..kernels.equations.motion import Trajectory, place
+from ..kernels.dop853.run import SampleRange, run_dop853
+from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace, DriveCycle
+from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import Output, Samples, first_not_finite
 from ..kernels.status import DONE
@@ -51,11 +51,11 @@ class Dop853Stepper:
     def trajectory(self, y: np.ndarray) -> Trajectory:
         """The state y with all that its kernels need."""
         scaled = self.scaled
-        return Trajectory(scaled.slots, Cycle(scaled.beta, scaled.period), y, self.work)
+        return Trajectory(scaled.slots, DriveCycle(scaled.beta, scaled.period), y, self.work)
 
-    def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+    def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute driver state and dy/dt for y."""
-        place(self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
+        evaluate_at_phase(self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
@@ -80,8 +80,8 @@ class Dop853Stepper:
     def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: Output) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
-        status, rows = run_dop853(self.method, self.trajectory(y), Stretch(first, points, self.grid, every), samples,
-                                     out)
+        status, rows = run_dop853(self.method, self.trajectory(y), SampleRange(first, points, self.grid, every),
+                                  samples, out)
         return status, rows
 
     def step_at(self, grid_index: int) -> int | None:

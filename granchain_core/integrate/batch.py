@@ -126,7 +126,8 @@ class Batch:
         state.extrapolate_from[member], state.wait_after_undo[member] = 0, _FIRST_PAUSE
         state.slowest_decay[member] = state.slowest_decay_before[member] = 0.0
         state.change_before_extrapolation[member] = 0.0
-        state.fine_record[member], state.tested_period[member], state.due[member] = 0.0, 0, 0
+        state.fine_record[member], state.last_check[member] = 0.0, 0.0
+        state.tested_period[member], state.due[member] = 0, 0
         state.shadow[member] = kernels.NO_SHADOW
 
     def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, contraction: float,

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
 from ..kernels.contact_cubic import ENDS
-from ..kernels.equations.motion import Trajectory, place
+from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
 from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
 from ..kernels.rk4.piecewise import DrivePieces, run_pieces
@@ -82,7 +82,7 @@ class ChainInPieces:
         workspace = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
                                  np.zeros((ENDS, row - 1)), scaled.forces(), None)
         scaled.slots.driver.piece[:] = self._pieces[0]
-        place(scaled.slots, 0.0, y, workspace.k[0], workspace.forces, True)
+        evaluate_at_phase(scaled.slots, 0.0, y, workspace.k[0], workspace.forces, True)
         reset_peaks(self._log.peaks)
         samples = empty_samples(scaled, len(self._spans) + 1)
         nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)

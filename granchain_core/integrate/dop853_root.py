@@ -6,7 +6,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..kernels.compiling.jit import unknown_slots
-from ..kernels.dop853.run import Stretch
+from ..kernels.dop853.run import SampleRange
 from ..kernels.dop853.step import ALL_STAGES
 from ..kernels.dop853_root.chain import STATE_ROWS, Dop853RootWorkspace, Stages
 from ..kernels.dop853_root.run import run_dop853_root
@@ -37,7 +37,7 @@ class Dop853RootStepper(Dop853Stepper):
                 out: Output) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         status, rows = run_dop853_root(self.method, self._vectors, self.trajectory(y),
-                                  Stretch(first, points, self.grid, every), samples, out)
+                                  SampleRange(first, points, self.grid, every), samples, out)
         return status, rows
 
     def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:

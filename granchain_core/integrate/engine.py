@@ -87,21 +87,21 @@ class Engine:
         first, second = self.scaled.rows(self.y)
         first[:], second[:] = displacement, other
         self.elapsed = 0.0
-        self.place(from_velocity)
+        self.evaluate(from_velocity)
         self.stepper.prepare(self.y)
         self.reset_peaks()
 
-    def place(self, from_velocity: bool = False) -> None:
+    def evaluate(self, from_velocity: bool = False) -> None:
         """Recompute driver state and dy/dt for y."""
         if self.scaled.slots.tension is not None:  # flags of the last step
             self.scaled.slots.tension.force_free[:] = 0
-        self.stepper.place(2 * np.pi * self.grid_index / self.grid, self.y, from_velocity)
+        self.stepper.evaluate_at_phase(2 * np.pi * self.grid_index / self.grid, self.y, from_velocity)
 
     @property
     def state(self) -> State:
         """The present state in SI."""
         scaled = self.scaled
-        self.place(from_velocity=False)
+        self.evaluate(from_velocity=False)
         displacement, velocity = scaled.rows(self.y)[0], scaled.rows(self.stepper.work.k[0])[0]
         return State(displacement * scaled.scales.length, velocity * scaled.scales.velocity,
                      self.grid_index / self.grid)

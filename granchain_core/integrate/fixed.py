@@ -19,7 +19,7 @@ import numpy as np
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.contact_cubic import ENDS
-from ..kernels.equations.motion import Trajectory, place
+from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
 from ..kernels.naive import naive_motion
 from ..kernels.rk4.long_chain import LongChain
@@ -39,7 +39,7 @@ _LARGEST_TABLE = 200_000
 _TABLES_KEPT = 4
 # Kernels that are called many times a second: a branch runs thousands of single periods.
 _RUN_STEPS = Entries(run_steps)
-_PLACE = Entries(place)
+_EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
 
 
 class FixedStep:
@@ -111,9 +111,10 @@ class FixedStep:
         return Trajectory(self.scaled.slots, DriveTable(self.drive, 2.0 * np.pi / self.grid, self.h), y,
                           self.work)
 
-    def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+    def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute driver state and dy/dt for y."""
-        _PLACE(self._structure, self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
+        slots, work = self.scaled.slots, self.work
+        _EVALUATE_AT_PHASE(self._structure, slots, theta, y, work.k[0], work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
         """Advance from step `first`, filling the samples; returns status and number of rows filled."""
@@ -184,7 +185,7 @@ class FixedStep:
 class FixedStepInVelocity(FixedStep):
     """Steps of a method in (u, v), whose equations have no energy account."""
 
-    def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+    def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the slope in step with y; velocities are part of it."""
         slots = self.scaled.slots
         velocity = slots.driver.amplitude * slots.driver.beta * np.cos(theta)

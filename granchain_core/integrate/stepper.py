@@ -35,7 +35,7 @@ class Stepper(Protocol):
     def trajectory(self, y: np.ndarray) -> Trajectory:
         """The state y with all that the method's kernels need."""
 
-    def place(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+    def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the driver and the slope in step with y at drive phase `theta`."""
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:

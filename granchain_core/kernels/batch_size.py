@@ -13,6 +13,7 @@ import os
 
 import llvmlite.binding
 import numba
+from numba.core.codegen import get_host_cpu_features
 
 from ..errors import BadInput
 
@@ -23,10 +24,14 @@ CHOICES = (4, 8)
 
 
 def has_avx512() -> bool:
-    """Whether kernels are compiled for a machine with AVX-512: this one, or the one that Numba's settings name."""
+    """Whether kernels are compiled for a machine with AVX-512: this one, or the one that Numba's settings name.
+
+    Where they name a processor without its features (`NUMBA_CPU_NAME` alone), Numba keeps those of this machine; then
+    four scenes are chosen, which are right on every processor.
+    """
     if numba.config.CPU_FEATURES is not None:
         return "+avx512f" in numba.config.CPU_FEATURES.split(",")
-    return numba.config.CPU_NAME is None and bool(llvmlite.binding.get_host_cpu_features().get("avx512f", False))
+    return numba.config.CPU_NAME is None and "+avx512f" in get_host_cpu_features().split(",")
 
 
 def processor() -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-# What a kernel returns. 2 to 5 are failures; 6 asks for larger arrays; −1 never leaves the kernels.
+# What a kernel returns.
 #: It went to its end.
 DONE = 0
 #: The stop flag was set.
@@ -15,9 +15,10 @@ STEP_TOO_SMALL = 3
 CHATTER = 4
 #: A period took more steps than are worth waiting for.
 TOO_MANY_STEPS = 5
-#: The array that records the run is too small for it.
+#: The array that records the run is too small for it: it is computed again with a larger one.
 FULL = 6
-#: A step of the flow was aimed at a release, but the contact does not open there: the step is tried again.
+#: A step of the flow was aimed at a release, but the contact does not open there: the step is tried again. It stays
+#: among the kernels.
 LOST = -1
 
 #: More events in a period than this, times the number of contacts, are CHATTER.

@@ -10,9 +10,9 @@ from ..errors import BadInput
 from ..integrate import Engine, adaptive_setting
 from ..integrate.adaptive import Dop853Stepper
 from ..kernels.dop853.tableau import STAGES
-from ..kernels.effects.contact import Held
+from ..kernels.effects.contact import FrozenContacts
 from ..kernels.effects.dissipation import LinearDashpot
-from ..kernels.flow.attempt import ContactStatus, Course
+from ..kernels.flow.attempt import ContactStatus, FlowProblem
 from ..kernels.flow.run import run_flow
 from ..kernels.flow.saltation import VelocityTangent, new_velocity_tangent
 from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
@@ -86,7 +86,7 @@ class StroboscopicMap:
         events = np.zeros((EVENTS_PER_CONTACT * (row - 1) * self.periods, 2))
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64), events,
                                        np.zeros(1, dtype=np.int64))
-        held = self.engine.stepper.work.forces._replace(held=Held(self._contacts.closed))
+        held = self.engine.stepper.work.forces._replace(held=FrozenContacts(self._contacts.closed))
         self._work = self.engine.stepper.work._replace(forces=held)
 
     def inner(self, y: np.ndarray) -> np.ndarray:
@@ -138,8 +138,9 @@ class StroboscopicMap:
         engine.start_scaled(x)
         self._work.next_step[0] = min(0.1, engine.scaled.period / STAGES)
         trajectory = engine.stepper.trajectory(engine.y)._replace(workspace=self._work)
-        status, done, trace = run_flow(engine.stepper.method, Course(trajectory, self._contacts, tangent), self.periods,
-                                       engine.counts.array, engine.stop.flag)
+        problem = FlowProblem(trajectory, self._contacts, tangent)
+        status, done, trace = run_flow(engine.stepper.method, problem, self.periods, engine.counts.array,
+                                       engine.stop.flag)
         engine.raise_for(status, done)
         return float(trace)
 

@@ -90,7 +90,7 @@ def exponents(engine: Engine, blocks: int, block: int,
     growth, strobes = np.zeros(count), np.zeros((count, 2, engine.scaled.beads))
     for period in range(count):
         shadow.y[:row] = engine.y[:row] + offset
-        shadow.place()
+        shadow.evaluate()
         strobes[period] = engine.periods(1)[0][1]
         shadow.periods(1)
         offset = shadow.y[:row] - engine.y[:row]

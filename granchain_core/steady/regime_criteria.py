@@ -156,7 +156,7 @@ def agree(one: Regime, other: Regime) -> bool:
 
 
 def _windows(strobes: np.ndarray, longest: int = LONGEST_PERIOD) -> np.ndarray:
-    """Largest changes over 1, 2, … `longest` periods in three windows in a row, (longest, 3); none for a short record."""
+    """Largest changes over 1, 2, … periods in three windows in a row, (longest, 3); none for a short record."""
     if len(strobes) < SLOW_RECORD:
         return np.zeros((0, 3))
     seen = np.zeros((longest, 3))

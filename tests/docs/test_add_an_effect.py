@@ -82,12 +82,12 @@ engine = Engine(one, fixed_step_setting(), 1)
 lo, work = engine.scaled, engine.stepper.work
 engine.start(State(np.array([3.0, 2.0, 1.0]) * lo.scales.length, np.array([1.0, -0.5, 2.0]) * lo.scales.velocity))
 y, dy, h = engine.y.copy(), work.k[0].copy(), 1e-5
-engine.place()
+engine.evaluate()
 found = [acceleration(lo.slots, y, dy, work.forces.e, i, -1, False) for i in range(1, 4)]
 there = []
 for sign in (1.0, -1.0):
     moved = y + sign * h * dy
-    engine.stepper.place(sign * h * lo.beta, moved, False)
+    engine.stepper.evaluate_at_phase(sign * h * lo.beta, moved, False)
     there.append(work.k[0][1:4].copy())
 exact = (there[0] - there[1]) / (2.0 * h)
 print(np.abs(found - exact).max() / np.abs(exact).max())

@@ -91,7 +91,7 @@ def test_drive_phase_is_exact_after_many_periods(method):
     runner.periods(10_000, watch=False)
     kept = runner.record(8)
     assert runner.grid_index == 0
-    runner.place()
+    runner.evaluate()
     assert runner.y[0] == 0.0
     # the settled motion has the drive's period exactly, so both recorded periods are one to the settling's rounding
     same = 1e-3 if method.startswith("dop853") else 1e-9

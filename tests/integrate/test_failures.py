@@ -9,7 +9,7 @@ from granchain_core import NumbersFailed, run, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.failure import Failure
 from granchain_core.kernels.flow import run as flow
-from granchain_core.kernels.flow.attempt import Course
+from granchain_core.kernels.flow.attempt import FlowProblem
 from granchain_core.kernels.status import CHATTER, DONE, TOO_MANY_STEPS
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
@@ -101,7 +101,7 @@ def test_a_period_of_too_many_steps_is_no_step_that_shrank(monkeypatch: pytest.M
     monkeypatch.setattr(flow, "flow_step", step)
     stroboscopic_map = StroboscopicMap(scene("sec2"), 1)
     engine = stroboscopic_map.engine
-    status, done, _ = flow.run_flow.py_func(engine.stepper.method, Course(engine.stepper.trajectory(engine.y), stroboscopic_map._contacts, None), 1,
+    status, done, _ = flow.run_flow.py_func(engine.stepper.method, FlowProblem(engine.stepper.trajectory(engine.y), stroboscopic_map._contacts, None), 1,
                                             engine.counts.array, engine.stop.flag)
     assert (status, done) == (TOO_MANY_STEPS, 0)
     assert failure(status).error.status == "too-many-steps"

@@ -28,7 +28,7 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch.run import batch_steps
-from granchain_core.kernels.flow.attempt import Course
+from granchain_core.kernels.flow.attempt import FlowProblem
 from granchain_core.kernels.flow.run import run_flow
 from granchain_core.kernels.flow.tangent import new_tangent
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
@@ -98,7 +98,7 @@ def flow_types(knobs: dict) -> tuple:
     """Types of the arguments of the flow with tangents for section 2's chain with these knobs."""
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=3, **knobs), 1)
     e = stroboscopic_map.engine
-    course = Course(e.stepper.trajectory(e.y)._replace(workspace=stroboscopic_map._work), stroboscopic_map._contacts,
+    course = FlowProblem(e.stepper.trajectory(e.y)._replace(workspace=stroboscopic_map._work), stroboscopic_map._contacts,
                     new_tangent(np.eye(6), e.scaled.bodies, 0))
     return tuple(map(numba.typeof, (e.stepper.method, course, 1, e.counts.array, e.stop.flag)))
 

@@ -10,6 +10,7 @@ import sys
 import llvmlite.binding
 import numba
 import pytest
+from llvmlite.binding.targets import FeatureMap
 
 from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.kernels import batch_size
@@ -46,7 +47,7 @@ def test_both_sizes_of_a_batch_give_the_same_curve() -> None:
     ("+avx2,+avx512f,+fma", None, {}, True),
     ("+avx2,-avx512f", None, {"avx512f": True}, False),
     ("+avx512fp16", "icelake-server", {"avx512f": True}, False),
-    # they name a processor: its features are not known, and four scenes are right on every one
+    # they name a processor: Numba keeps this machine's features, and four scenes are right on every one
     (None, "znver3", {"avx512f": True}, False),
     # they name nothing: this machine
     (None, None, {"avx512f": True}, True),
@@ -58,9 +59,30 @@ def test_avx512_is_that_of_the_machine_the_kernels_are_compiled_for(
         monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(numba.config, "CPU_FEATURES", features)
     monkeypatch.setattr(numba.config, "CPU_NAME", name)
-    monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", lambda: host)
+    monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", lambda: FeatureMap(host))
     assert batch_size.has_avx512() == wide
     assert batch_size.size_from(None) == (8 if wide else 4)
+
+
+@pytest.mark.quick
+def test_without_avx_in_numbas_settings_there_is_no_avx512(monkeypatch: pytest.MonkeyPatch) -> None:
+    """NUMBA_ENABLE_AVX=0: Numba takes these instructions away, and LLVM ends the process if a kernel has one."""
+    monkeypatch.setattr(numba.config, "CPU_FEATURES", None)
+    monkeypatch.setattr(numba.config, "CPU_NAME", None)
+    monkeypatch.setattr(numba.config, "ENABLE_AVX", 0)
+    monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", lambda: FeatureMap({"avx512f": True}))
+    assert not batch_size.has_avx512()
+
+
+@pytest.mark.quick
+def test_a_machine_that_tells_no_features_has_no_avx512(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unknown() -> FeatureMap:
+        raise RuntimeError
+
+    monkeypatch.setattr(numba.config, "CPU_FEATURES", None)
+    monkeypatch.setattr(numba.config, "CPU_NAME", None)
+    monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", unknown)
+    assert not batch_size.has_avx512()
 
 
 @pytest.mark.quick

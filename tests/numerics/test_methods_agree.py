@@ -16,7 +16,7 @@ from granchain_core.integrate.batch import NEVER, Batch, can_share_batch
 from granchain_core.integrate.dop853_root import Dop853RootStepper
 from granchain_core.integrate.methods import FIXED_STEP
 from granchain_core.kernels.compiling.jit import unknown_slots
-from granchain_core.kernels.effects.driver import Moved
+from granchain_core.kernels.effects.driver import PrescribedMotion
 from granchain_core.kernels.rk4.long_chain import LongChain
 from granchain_core.scaling import scale_chain
 from granchain_core.scene.effects import EFFECTS
@@ -120,8 +120,8 @@ def test_a_method_that_left_an_effect_out_would_be_noticed(name: str, beads: int
     assert difference(bare[::_SAMPLES], true[::_SAMPLES]) > 2.0 * _BATCH_ERROR
 
 
-@pytest.mark.parametrize("driver", [Moved(np.zeros(3)), None])
-def test_dop853_root_refuses_other_drives(driver: Moved | None) -> None:
+@pytest.mark.parametrize("driver", [PrescribedMotion(np.zeros(3)), None])
+def test_dop853_root_refuses_other_drives(driver: PrescribedMotion | None) -> None:
     """One with a given motion, and none at all, which pieces of chains have."""
     scaled = scale_chain(scene("sec2"))
     with pytest.raises(BadInput, match="with a driver that is harmonic or at rest"):

@@ -27,7 +27,7 @@ from granchain_core.hard.touches import (
 )
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.dop853.run import located_step
-from granchain_core.kernels.dop853.step import STAGES, Cycle, Dop853, evaluate
+from granchain_core.kernels.dop853.step import STAGES, Dop853, DriveCycle, evaluate
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.foundation import Foundation
@@ -48,7 +48,7 @@ def two_touches(rate, gaps, tolerance, work, y, counts, static, chain, times):
     y[5], y[6] = -rate, rate
     work.next_step[0], work.scale[0], work.scale[1], t = 0.1 * end, 1.0, rate, 0.0
     evaluate(slots, rate, t, y, work.k[0], work.forces)
-    trajectory = Trajectory(slots, Cycle(rate, 4.0 * end), y, work)
+    trajectory = Trajectory(slots, DriveCycle(rate, 4.0 * end), y, work)
     while t < end * (1.0 - 1e-12):
         status, h, _ = located_step(Dop853(tolerance, 0.25 * end), trajectory, t, end, counts)
         if status != 0:

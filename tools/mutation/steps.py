@@ -11,8 +11,8 @@ _BRACKET, _CUBIC = "kernels/dop853/bracket.py", "kernels/contact_cubic.py"
 _SAMPLING, _ENGINE = "kernels/rk4/run.py", "integrate/engine.py"
 
 MOTION = (
-    Mutant("motion-without-last-contact", _MOTION, "for c in range(bodies - 1):\n        d = pressed(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
-           "for c in range(bodies - 2):\n        d = pressed(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
+    Mutant("motion-without-last-contact", _MOTION, "for c in range(bodies - 1):\n        d = closed_overlap(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
+           "for c in range(bodies - 2):\n        d = closed_overlap(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
            "the wall's contact is not summed", k.MOTION),
     Mutant("contact-force-elastic-only", _MOTION, "e[c] + damped)",
            "e[c])", "forces are reported without their damping", k.MOTION),
@@ -110,8 +110,8 @@ ADAPTIVE = (
 )
 
 CLOCK = (
-    Mutant("t-plus-dt", _ENGINE, "self.stepper.place(2 * np.pi * self.grid_index / self.grid,",
-           "self.stepper.place(2 * np.pi * self.elapsed,", "the drive's phase is summed up, not counted", k.CONTINUATION),
+    Mutant("t-plus-dt", _ENGINE, "self.stepper.evaluate_at_phase(2 * np.pi * self.grid_index / self.grid,",
+           "self.stepper.evaluate_at_phase(2 * np.pi * self.elapsed,", "the drive's phase is summed up, not counted", k.CONTINUATION),
     Mutant("phase-of-start-forgotten", _ENGINE, "self.grid_index = round(at) % self.samples * (self.grid // self.samples)",
            "self.grid_index = 0", "a start inside a period begins at phase 0", k.CONTINUATION),
     Mutant("sample-clock-restarts", _ENGINE, "self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid",

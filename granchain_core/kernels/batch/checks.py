@@ -61,9 +61,9 @@ _SLOWEST_REPORTED_DECAY = 0.9999
 _SLOWEST_ASSUMED_DECAY = 0.98
 #: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
 CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
-#: Columns of `fine_record`: the orbit's period and decay, the coarse run's three largest forces (from FINE_FORCES on),
-#: orbits between two extrapolations, extrapolations so far; and their number.
-FINE_PERIOD, FINE_DECAY, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_COLUMNS = 0, 1, 2, 5, 6, 7
+#: Columns of `fine_record`: the orbit's period and contraction, the coarse run's three largest forces (from FINE_FORCES
+#: on), orbits between two extrapolations, extrapolations so far; and their number.
+FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_COLUMNS = 0, 1, 2, 5, 6, 7
 
 
 @internal
@@ -199,12 +199,12 @@ def check_fine(state, member):
     If changes are not smaller after an extrapolation, it is undone, and the member is not extrapolated again.
     """
     fine, count, last_check = state.fine_record[member], state.strobe_count[member], state.last_check[member]
-    n, decay = int(fine[FINE_PERIOD]), fine[FINE_DECAY]
+    n, contraction = int(fine[FINE_PERIOD]), fine[FINE_CONTRACTION]
     record = state.strobes[member, count - 1 - n : count]
     largest_of(record, state.scale)
     change = change_between(record, state.scale, n, 0)
-    last_check[CHECK_PERIOD], last_check[CHECK_DECAY] = n, decay
-    last_check[CHECK_DISTANCE] = change * decay / (1.0 - decay)
+    last_check[CHECK_PERIOD], last_check[CHECK_DECAY] = n, contraction
+    last_check[CHECK_DISTANCE] = change * contraction / (1.0 - contraction)
     proved = change < state.change_before_extrapolation[member] or state.change_before_extrapolation[member] == 0.0
     state.change_before_extrapolation[member] = 0.0
     if not proved:
@@ -222,7 +222,7 @@ def check_fine(state, member):
     fine[FINE_EXTRAPOLATIONS] += 1.0
     copy(state.strobes[member, count - 1, 0], state.state_before[member, 0])
     copy(state.strobes[member, count - 1, 1], state.state_before[member, 1])
-    if extrapolate_member(state, member, n, decay, change):
+    if extrapolate_member(state, member, n, contraction, change):
         state.change_before_extrapolation[member] = change
     state.next_check[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
     return False

@@ -12,8 +12,17 @@ STROBES_KEPT = 432
 
 
 @internal
+def is_finite_member(y, member):
+    """Whether every number of a member's state is finite."""
+    finite = True
+    for i in range(y.shape[0]):
+        finite = finite and np.isfinite(y[i, member])
+    return finite
+
+
+@internal
 def keep_member_strobe(strobes, strobe_count, first_strobe, y, member):
-    """Append the state to the strobes, dropping their older half if they are full; returns whether it is finite."""
+    """Append the state to the strobes, dropping their older half if they are full."""
     bodies = y.shape[0] // 2
     if strobe_count[member] == strobes.shape[1]:
         half = strobes.shape[1] // 2
@@ -23,12 +32,10 @@ def keep_member_strobe(strobes, strobe_count, first_strobe, y, member):
         strobe_count[member] = half
         for q in range(2):
             first_strobe[q, member] = max(0, first_strobe[q, member] - half)
-    finite, row = True, strobe_count[member]
+    row = strobe_count[member]
     for i in range(bodies):
         strobes[member, row, 0, i], strobes[member, row, 1, i] = y[i, member], y[bodies + i, member]
-        finite = finite and np.isfinite(y[i, member]) and np.isfinite(y[bodies + i, member])
     strobe_count[member] += 1
-    return finite
 
 
 @internal

@@ -21,6 +21,7 @@ from ..simd.vector import load_batch, store
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .contact_correction import correct_contacts
 from .period_end import end_period
+from .record import is_finite_member
 from .step import Values, batch_step, watch_batch_ends
 
 #: `shadow` of a member that has none, and of one that is a shadow itself.
@@ -147,7 +148,7 @@ def take_steps(members, state, count):
 def bring_back(state, member):
     """Record how far a member and its shadow have parted in a period, and bring the shadow back."""
     y, shadow, rows = state.y, state.shadow[member], state.y.shape[0]
-    if not (np.isfinite(y[1, member]) and np.isfinite(y[1, shadow])):
+    if not (is_finite_member(y, member) and is_finite_member(y, shadow)):
         state.growth[member, :] = np.nan
         state.due[member] = 1
         return
@@ -182,7 +183,7 @@ def run_batch(members, state, stop, check):
             for member in range(BATCH_SIZE):
                 if due[member] != 0:
                     due[member] = 0
-                    return (DONE if np.isfinite(state.y[1, member]) else NOT_FINITE), member
+                    return (DONE if is_finite_member(state.y, member) else NOT_FINITE), member
             some_due = False
         if stop[0] != 0:
             return CANCELLED, -1

@@ -189,7 +189,7 @@ watch_jumps.absent_for(*SMOOTH_LAWS)
 
 
 @inline_llvm
-def watch_jump(law, own, h, approach, before, row, peaks, peak):
+def watch_jump(law, own_damping, h, approach, before, row, peaks, peak):
     """Follow the jump of one contact; overlap and rate a step ago are rows of `before`, and become those of now."""
     overlap, rate = approach
     overlap_before, rate_before = load_batch(before, row), load_batch(before, row + 1)
@@ -197,7 +197,8 @@ def watch_jump(law, own, h, approach, before, row, peaks, peak):
     store(before, row + 1, rate)
     zero, was, now = blank(overlap), positive_mask(overlap_before), positive_mask(overlap)
     if now & ~was != 0:
-        _, closing = closing_rate(overlap_before, overlap, rate_before, rate + own * clip(overlap), own, h)
+        undamped = rate + own_damping * clip(overlap)
+        _, closing = closing_rate(overlap_before, overlap, rate_before, undamped, own_damping, h)
         closed = gate(zero - overlap_before, gate(overlap, law.coefficient * closing))
         store(peaks, peak, larger(load_batch(peaks, peak), closed))
     if ~now & ~was & positive_mask(rate_before) & positive_mask(zero - rate) != 0:

@@ -20,6 +20,9 @@ from ..batch_size import BATCH_SIZE, processor
 
 #: Sources that decide where compiled code is stored but do not change it.
 _KEEPERS = ("compiling/cache.py", "compiling/compile_lock.py", "compiling/entry.py", "compiling/sources.py")
+#: Settings of Numba (environment variables with NUMBA_ before them) that change machine code and are not among the
+#: names of its own cache: optimisation level, bounds checks, debug information, vectorisers, AVX.
+_SETTINGS = ("OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX")
 #: The folder that all kernels of this package are in.
 FOLDER = Path(__file__).parents[1]
 
@@ -27,8 +30,8 @@ FOLDER = Path(__file__).parents[1]
 def sources_hash(folder: Path = FOLDER) -> str:
     """Hash of everything that determines the kernels' machine code.
 
-    That is their parsed sources except `_KEEPERS`, the versions of Numba and llvmlite, the optimisation level, the
-    processor and the batch's size.
+    That is their parsed sources except `_KEEPERS`, the versions of Numba and llvmlite, the processor, the batch's size,
+    and those settings of Numba that change the code (`_SETTINGS`).
     """
     return _hash_of_all(folder, hash_of_code)
 
@@ -39,7 +42,8 @@ def wording_hash(folder: Path = FOLDER) -> str:
 
 
 def _hash_of_all(folder: Path, hash_of: Callable[[Path], str]) -> str:
-    compiler = f"{numba.__version__} {llvmlite.__version__} {numba.config.OPT!r}"
+    settings = [getattr(numba.config, name) for name in _SETTINGS]
+    compiler = f"{numba.__version__} {llvmlite.__version__} {settings!r}"
     digest = hashlib.sha256(f"{compiler} {processor()} {BATCH_SIZE}".encode())
     for path in sorted(folder.rglob("*.py")):
         name = path.relative_to(folder).as_posix()

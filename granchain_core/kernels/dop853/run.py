@@ -68,7 +68,7 @@ _NEAR_END = 1e-9
 _FIRST_STEP = 2.0
 
 
-class Stretch(NamedTuple):
+class SampleRange(NamedTuple):
     """What a run covers: `points` points of a grid of `grid` points a period, from number `first` on.
 
     With `every` = n > 0 each n-th grid point is recorded, the first one too; with 0 none.

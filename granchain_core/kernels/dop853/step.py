@@ -58,7 +58,7 @@ RESOLUTION = 2.2e-16
 PERIOD_END = 1e-13
 
 
-class Cycle(NamedTuple):
+class DriveCycle(NamedTuple):
     """The driver's cycle in scaled time: its rate β, and its period 2π/β."""
 
     beta: float

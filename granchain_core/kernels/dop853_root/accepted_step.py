@@ -10,7 +10,7 @@ from ..dop853.step import RESOLUTION
 from ..dop853.tableau import DENSE_EVALUATIONS, STAGES
 from ..flow.event_time import nonnegative_root
 from ..simd.sums import largest_of, rough_sixteenth
-from ..simd.vector import at, splat, with_first
+from ..simd.vector import at, splat8, with_first
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .chain import ROOT, TIME, Point, powers, transform_at
 from .changes import StepInXi, changes_in, first_change, size_in_xi
@@ -104,7 +104,7 @@ def accepted_attempt(constants, begin, chosen, dt, units):
         q = nonnegative_root(at(begin.rates.overlap, chosen), constants.power)
         pace, _, _ = powers(constants.power, q)
         h, limited = size_in_xi(constants.power, q, at(begin.rates.rate, chosen), dt)
-    start, status = Point(begin.point.u, begin.point.w, with_first(splat(begin.t), q)), DONE
+    start, status = Point(begin.point.u, begin.point.w, with_first(splat8(begin.t), q)), DONE
     while True:
         error, end, end_rates = attempt(constants.values, constants.driver, constants.work, transform, start,
                                         begin.rates, h, units)

@@ -16,7 +16,7 @@ from ..forces.largest import SAMPLE, note_closing
 from ..rk4.short_chain import chain_values, load_row
 from ..samples import first_not_finite, keep
 from ..simd.sums import rough_sixteenth
-from ..simd.vector import at, blank, positive_mask, splat, store, with_first
+from ..simd.vector import at, blank, positive_mask, splat8, store, with_first
 from ..status import (
     CANCELLED,
     CHATTER,
@@ -87,7 +87,7 @@ def begin_of_run(constants, t, y, bodies):
     for i in range(bodies):
         work.state[DISPLACEMENT, i], work.state[W, i] = y[i], y[bodies + i]
     width = work.chain.width
-    point = Point(load_row(width, work.state, DISPLACEMENT), load_row(width, work.state, W), splat(t))
+    point = Point(load_row(width, work.state, DISPLACEMENT), load_row(width, work.state, W), splat8(t))
     rates = rates_at(values, constants.driver, no_transform(values, 1.0 + blank(point.u)), point)
     bits = positive_mask(rates.overlap) & ((1 << (bodies - 1)) - 1)
     for c in range(bodies - 1):
@@ -101,7 +101,7 @@ def with_driver_in_place(constants, begin):
     """`StepBegin` with the driver where its phase has it, and the rates there."""
     driver, values, theta = constants.driver, constants.values, constants.beta * begin.t
     point = Point(with_first(begin.point.u, driver_displacement(driver, theta)),
-                  with_first(begin.point.w, driver_velocity(driver, theta)), splat(begin.t))
+                  with_first(begin.point.w, driver_velocity(driver, theta)), splat8(begin.t))
     rates = rates_at(values, driver, no_transform(values, begin.closed), point)
     constants.out.counts[EVALUATIONS] += 1
     forces = begin.forces

@@ -8,7 +8,7 @@ from ..compiling.jit import inline_llvm
 from ..dop853.tableau import DENSE_WEIGHTS, E3, E5, STAGES, A
 from ..flow.event_time import smooth_power
 from ..simd.sums import sum_of, weighted_rows
-from ..simd.vector import at, load_like, splat, store, with_first
+from ..simd.vector import at, load_like, splat8, store, with_first
 from .chain import ROOT, TIME, Point, powers, rates_at
 
 
@@ -30,7 +30,7 @@ def keep_slope(work, law, transform, q, rates, row):
     pace, _, _ = powers(power, q)
     pace = 1.0 - transform.active + transform.active * pace
     rise = transform.active / power * at(rates.rate, transform.contact)
-    slope = Point(rates.du * pace, rates.dw * pace, with_first(splat(pace), rise))
+    slope = Point(rates.du * pace, rates.dw * pace, with_first(splat8(pace), rise))
     store(work.slopes.u, row, slope.u)
     store(work.slopes.w, row, slope.w)
     store(work.slopes.clock, row, slope.clock)

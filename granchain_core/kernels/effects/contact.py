@@ -25,7 +25,7 @@ class Chain(NamedTuple):
     stiffness: np.ndarray
 
 
-class Held(NamedTuple):
+class FrozenContacts(NamedTuple):
     """Slot of contacts whose state is fixed while a step is tried: closed (N+1,) is 0 where one stays open."""
 
     closed: np.ndarray
@@ -38,12 +38,12 @@ def positive_part(overlap):
 
 
 @by_slot
-def pressed(held, c, overlap):
+def closed_overlap(held, c, overlap):
     """[δ]_+ of contact c, 0 where `held` keeps it open. Absent: the overlap's sign says whether it is closed."""
     return positive_part(overlap)
 
 
-@pressed.of(Held)
+@closed_overlap.of(FrozenContacts)
 def _(held, c, overlap):
     return positive_part(overlap) if held.closed[c] != 0 else 0.0
 

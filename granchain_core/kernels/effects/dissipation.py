@@ -7,7 +7,7 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
 Values     coefficient: λ = D (A₀/δ_r)^a/(mφ), at an overlap of one length unit where a > 0
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
 Terms      damping, damping_slope, dashpot_force, onset_force, dashpot_slope, primitive, times_primitive,
-           unit_primitive = G/λ, velocity and its inverse shifted (absent: v = w); keep_primitive, put_primitive and
+           unit_primitive = G/λ, v_from_w and its inverse w_from_v (absent: v = w); keep_primitive, put_primitive and
            put_prescribed_primitive write into the array of G
 """
 
@@ -245,23 +245,23 @@ def _(law, G, source, target):
 
 
 @by_slot
-def velocity(law, inverse_mass, w, G, i):
+def v_from_w(law, inverse_mass, w, G, i):
     """v_i = w_i + (G_{i-1} − G_i)/m_i, the inverse of the change of variables."""
     return w
 
 
-@velocity.of(*LAWS)
+@v_from_w.of(*LAWS)
 def _(law, inverse_mass, w, G, i):
     return w + inverse_mass[i] * (G[i - 1] - G[i])
 
 
 @by_slot
-def shifted(law, inverse_mass, v, G, i):
+def w_from_v(law, inverse_mass, v, G, i):
     """w_i = v_i − (G_{i-1} − G_i)/m_i."""
     return v
 
 
-@shifted.of(*LAWS)
+@w_from_v.of(*LAWS)
 def _(law, inverse_mass, v, G, i):
     return v - inverse_mass[i] * (G[i - 1] - G[i])
 

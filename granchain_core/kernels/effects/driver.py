@@ -1,10 +1,10 @@
 """The driver, body 0, with a prescribed motion.
 
 Equation   Harmonic: u_0 = A sin θ,  θ = 2πft;  v_0 = β A cos θ
-           Moved: u_0 = p_0 + p_1 θ + p_2 θ² between two knots, θ the time since the first of them
-Source     Zhang et al. 2016, eqs. (1) and (2); Moved: chirps, bursts, tones, noise, measured motion (driven/signal.py)
+           PrescribedMotion: u_0 = p_0 + p_1 θ + p_2 θ² between two knots, θ the time since the first of them
+Source     Zhang et al. 2016, eqs. (1) and (2); chirps, bursts, tones, noise, measured motion: driven/signal.py
 Values     Harmonic: amplitude: 1 in scaled units, 0 for a driver at rest; beta = 2πf/φ
-           Moved: piece (3,), which rk4/piecewise.py fills before each piece. The velocity is a straight line
+           PrescribedMotion: piece (3,), which rk4/piecewise.py fills before each piece. The velocity is a straight line
            there, so that the acceleration, which the energy account needs, does not depend on the time
 Absent     bead 1 has nothing on its left: body 0 stands BODY_FAR_AWAY away and its contact never closes
 """
@@ -30,7 +30,7 @@ class Harmonic(NamedTuple):
     beta: float
 
 
-class Moved(NamedTuple):
+class PrescribedMotion(NamedTuple):
     """Slot of a driver with a given motion."""
 
     piece: np.ndarray
@@ -48,7 +48,7 @@ def harmonic_displacement(driver, theta):
     return driver.amplitude * sin(theta)
 
 
-@driver_displacement.of(Moved)
+@driver_displacement.of(PrescribedMotion)
 def _(driver, theta):
     p = driver.piece
     return p[0] + theta * (p[1] + theta * p[2])
@@ -66,7 +66,7 @@ def harmonic_velocity(driver, theta):
     return driver.amplitude * driver.beta * cos(theta)
 
 
-@driver_velocity.of(Moved)
+@driver_velocity.of(PrescribedMotion)
 def _(driver, theta):
     return driver.piece[1] + 2.0 * theta * driver.piece[2]
 
@@ -83,6 +83,6 @@ def harmonic_acceleration(driver, u0):
     return -driver.beta * driver.beta * u0
 
 
-@driver_acceleration.of(Moved)
+@driver_acceleration.of(PrescribedMotion)
 def _(driver, u0):
     return 2.0 * driver.piece[2]

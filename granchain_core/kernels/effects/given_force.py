@@ -24,7 +24,7 @@ from .dissipation import put_prescribed_primitive
 from .driver import (
     BODY_FAR_AWAY,
     Harmonic,
-    Moved,
+    PrescribedMotion,
     driver_acceleration,
     driver_displacement,
     driver_velocity,
@@ -75,7 +75,7 @@ def prescribe_primitive(driver, slots, y, G):
     """Copy the input force's G to the contact of the observer. Absent: nothing."""
 
 
-prescribe_primitive.absent_for(Harmonic, Moved, Sampled)
+prescribe_primitive.absent_for(Harmonic, PrescribedMotion, Sampled)
 
 
 @prescribe_primitive.of(ObserverCoupling)
@@ -88,7 +88,7 @@ def prescribe_force(driver, dy, e):
     """Put the given force into the contact it acts in. Absent: nothing."""
 
 
-prescribe_force.absent_for(Harmonic, Moved)
+prescribe_force.absent_for(Harmonic, PrescribedMotion)
 
 
 @prescribe_force.of(Sampled)

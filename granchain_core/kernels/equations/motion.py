@@ -22,8 +22,8 @@ import numpy as np
 
 from ..compiling.jit import brief_kernel, check_effects, inline_llvm, internal
 from ..effects.batch_values import batch_values
-from ..effects.contact import elastic_energy, elastic_force, positive_part, pressed
-from ..effects.dissipation import dashpot_force, keep_primitive, shifted, velocity
+from ..effects.contact import closed_overlap, elastic_energy, elastic_force, positive_part
+from ..effects.dissipation import dashpot_force, keep_primitive, v_from_w, w_from_v
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.energy_account import account_rates
 from ..effects.given_force import prescribe_force, prescribe_primitive
@@ -72,8 +72,8 @@ class Forces(NamedTuple):
 class Trajectory(NamedTuple):
     """What is integrated: the chain's slots, the drive, state y (M,) and the method's workspace.
 
-    `drive` is a `Cycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py). M is twice
-    the number of bodies N + 2, and two more with an energy account.
+    `drive` is a `DriveCycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py). M is
+    twice the number of bodies N + 2, and two more with an energy account.
     """
 
     slots: Slots
@@ -95,13 +95,13 @@ def motion(slots, u0, v0, y, dy, forces):
     y[0] = u0
     dy[0] = v0
     for c in range(bodies - 1):
-        d = pressed(forces.held, c, overlap(slots.preload, y, c))
+        d = closed_overlap(forces.held, c, overlap(slots.preload, y, c))
         e[c] = elastic_force(stiffness[c], d)
         keep_primitive(slots.dissipation, G, c, d)
     keep_force_free_primitive(slots.tension, slots, y, G)
     prescribe_primitive(slots.driver, slots, y, G)
     for i in range(1, bodies - 1):
-        dy[i] = velocity(slots.dissipation, inverse_mass, y[bodies + i], G, i)
+        dy[i] = v_from_w(slots.dissipation, inverse_mass, y[bodies + i], G, i)
     cut_tension(slots.tension, slots, y, dy, e)
     prescribe_force(slots.driver, dy, e)
     for i in range(1, bodies - 1):
@@ -132,12 +132,12 @@ def write_w(slots, y, dy, forces):
         keep_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
     prescribe_primitive(slots.driver, slots, y, forces.G)
     for i in range(1, bodies - 1):
-        y[bodies + i] = shifted(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
+        y[bodies + i] = w_from_v(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)
 
 
 @brief_kernel
-def place(slots, theta, y, dy, forces, from_velocity):
-    """Evaluate the equations at drive phase θ: the driver's place in y, the slope in dy, the forces.
+def evaluate_at_phase(slots, theta, y, dy, forces, from_velocity):
+    """Evaluate the equations at drive phase θ: the driver's displacement in y, the slope in dy, the forces.
 
     With `from_velocity` the second row of y holds v and becomes w.
     """

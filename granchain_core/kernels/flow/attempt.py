@@ -1,9 +1,9 @@
 """One attempt at a step of the flow: Dormand–Prince 8 in the time in which the motion is smooth, and its first event.
 
-Which contacts are closed is part of the state (`Held` in the workspace's forces) and does not change within a step, so
-that neither the motion's nor the tangents' slopes jump there. An onset is located from before it, where nothing is
-singular yet. The time of a release is estimated, the step ends there in a time variable that is the root of the
-distance, and Newton's method on the resulting overlap corrects the estimate.
+Which contacts are closed is part of the state (`FrozenContacts` in the workspace's forces) and does not change within a
+step, so that neither the motion's nor the tangents' slopes jump there. An onset is located from before it, where
+nothing is singular yet. The time of a release is estimated, the step ends there in a time variable that is the root of
+the distance, and Newton's method on the resulting overlap corrects the estimate.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class ContactStatus(NamedTuple):
     logged: np.ndarray
 
 
-class Course(NamedTuple):
+class FlowProblem(NamedTuple):
     """A trajectory that is followed from contact event to contact event, with its tangents or None."""
 
     trajectory: Trajectory

@@ -31,25 +31,26 @@ def between_0_and_1(s):
 
 
 @inline_llvm
-def closing_rate(before, after, rate, open_rate, own, h):
+def closing_rate(before, after, rate, open_rate, own_damping, h):
     """(fraction, δ̇) at which an overlap that was `before` ≤ 0 and is `after` > 0 a step of size h later was zero.
 
-    `rate` is δ̇ before the step. `open_rate` is δ̇ after it with the contact's own damping undone: δ̇ + own·δ with
-    own = λ(1/m_c + 1/m_{c+1}). Without that damping the rate is smooth across the closing and is taken as a parabola,
-    whose integral is the overlap's change. Newton's method finds the crossing, and is kept within the step: where the
-    rate is almost zero there, it would leave it, and the parabola means nothing outside. For numbers and vectors.
+    `rate` is δ̇ before the step. `open_rate` is δ̇ after it with the contact's own damping undone: δ̇ + own_damping·δ
+    with own_damping = λ(1/m_c + 1/m_{c+1}). Without that damping the rate is smooth across the closing and is taken as
+    a parabola, whose integral is the overlap's change. Newton's method finds the crossing, and is kept within the step:
+    where the rate is almost zero there, it would leave it, and the parabola means nothing outside. For numbers and
+    vectors.
     """
     s = before / (before - after)
     closed = 0.5 * (1.0 - s) * after
     for _ in range(2):
-        bend = 6.0 * ((after + own * h * closed - before) / h - 0.5 * (rate + open_rate))
+        bend = 6.0 * ((after + own_damping * h * closed - before) / h - 0.5 * (rate + open_rate))
         for _ in range(2):
             delta = before + h * s * (rate + s * (0.5 * (open_rate - rate + bend) - s * (bend * (1.0 / 3.0))))
             s = between_0_and_1(s - delta / (h * (rate + s * (open_rate - rate + bend - s * bend))))
         there = rate + s * (open_rate - rate + bend - s * bend)
         left = 1.0 - s
         # ∫δ over the closed part, over h: the trapezium with its slopes at both ends
-        closed = left * (0.5 * after - left * h * (open_rate - own * after - there) * (1.0 / 12.0))
+        closed = left * (0.5 * after - left * h * (open_rate - own_damping * after - there) * (1.0 / 12.0))
     return s, there
 
 
@@ -101,8 +102,9 @@ def watch_crossing(law, slots, c, before, end, span, log):
     """Record whether contact c, open at the start of the step, closed in it or touched."""
     after, h, last = approach_of(slots, end, c), span.h, slots.chain.stiffness.size - 1
     if after.overlap > 0.0:
-        own = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])
-        s, jump = closing_rate(before.overlap, after.overlap, before.rate, after.rate + own * after.overlap, own, h)
+        own_damping = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])
+        undamped = after.rate + own_damping * after.overlap
+        s, jump = closing_rate(before.overlap, after.overlap, before.rate, undamped, own_damping, h)
         note_closing(law, jump, c, last, span.theta + s * span.dtheta, log)
     elif before.rate > 0.0 and after.rate < 0.0:
         jump = brief_touch(before.overlap, after.overlap, before.rate, after.rate, h)

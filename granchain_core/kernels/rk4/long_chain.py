@@ -17,7 +17,7 @@ from ..effects.dissipation import LAWS, dashpot_force, primitive
 from ..effects.preload import batch_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
-from ..simd.vector import VECTOR_WIDTH, from_left, from_right, load, positive_mask, splat, store, with_first
+from ..simd.vector import VECTOR_WIDTH, from_left, from_right, load, positive_mask, splat8, store, with_first
 from .step import tabulated_displacement, tabulated_velocity
 
 
@@ -80,11 +80,11 @@ def steps_without_events(simd, trajectory, j, count, peaks):
 def first_stage(simd, slots, u0, h):
     """The slope at the step's start: begins acc and the mid-step state; returns whether a contact changed since."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
-    here, e_before = with_first(load(now, 0), u0), splat(0.0)
+    here, e_before = with_first(load(now, 0), u0), splat8(0.0)
     G_before, changed = primitive(law, e_before), np.int64(0)
     half, sixth = 0.5 * h, h / 6.0
     for b in range(blocks):
-        ahead = load(now, b + 1) if b + 1 < blocks else splat(0.0)
+        ahead = load(now, b + 1) if b + 1 < blocks else splat8(0.0)
         overlap = batch_overlap(simd.preload, here, from_right(here, ahead), b)
         signs = positive_mask(overlap)
         changed |= signs ^ simd.signs[b]
@@ -109,11 +109,11 @@ def first_stage(simd, slots, u0, h):
 def later_stage(simd, slots, u0, y, out, h, forward, weight):
     """A later stage at state y: out = now + forward·h·slope, acc += weight·h·slope."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
-    here, e_before = with_first(load(y, 0), u0), splat(0.0)
+    here, e_before = with_first(load(y, 0), u0), splat8(0.0)
     G_before = primitive(law, e_before)
     reach, share = forward * h, weight * h
     for b in range(blocks):
-        ahead = load(y, b + 1) if b + 1 < blocks else splat(0.0)
+        ahead = load(y, b + 1) if b + 1 < blocks else splat8(0.0)
         d = positive_part(batch_overlap(simd.preload, here, from_right(here, ahead), b))
         e, G = elastic_force(load(simd.stiffness, b), d), primitive(law, d)
         inverse = load(simd.inverse_mass, b)

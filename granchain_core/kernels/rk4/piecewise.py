@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import by_slot, kernel
-from ..effects.driver import Moved, driver_displacement, driver_velocity
+from ..effects.driver import PrescribedMotion, driver_displacement, driver_velocity
 from ..effects.given_force import Sampled
 from ..equations.motion import Trajectory, motion
 from ..forces.largest import watch_state
@@ -42,7 +42,7 @@ def _(driver, slots, y, workspace):
     pass
 
 
-@begin_piece.of(Moved)
+@begin_piece.of(PrescribedMotion)
 def _(driver, slots, y, workspace):
     motion(slots, driver_displacement(driver, 0.0), driver_velocity(driver, 0.0), y, workspace.k[0], workspace.forces)
 

@@ -3,7 +3,7 @@
 LLVM puts eight doubles into one register of 512 bits, two of 256 or four of 128, depending on the machine. Arithmetic,
 square root, maximum and comparison are single LLVM instructions with the same flags as in the scalar kernels; a NaN
 stays a NaN. `load`, `load16` and `load32` read one row of a C-ordered array (rows, 8), (rows, 16) or (rows, 32);
-`load_batch` reads a row of a batch, whose width depends on the machine (width.py).
+`load_batch` reads a row of a batch, whose width depends on the machine (batch_size.py).
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def aligned(rows: int, width: int = VECTOR_WIDTH) -> np.ndarray:
 
 
 @intrinsic
-def splat(typingctx, value):
+def splat8(typingctx, value):
     """A vector of eight doubles, all equal to `value`."""
 
     def codegen(context, builder, sig, args):

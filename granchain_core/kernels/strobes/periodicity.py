@@ -201,6 +201,17 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
     return Detected(0, 0.0, 0.0, approached, approach_decay, approach_change)
 
 
+@internal
+def is_nearer(strobes, scale, now, then, distance):
+    """Whether two states are nearer to each other than `distance`; most are not in their first beads."""
+    for q in range(2):
+        limit = distance * scale[q]
+        for i in range(strobes.shape[2]):
+            if not abs(strobes[now, q, i] - strobes[then, q, i]) < limit:
+                return False
+    return True
+
+
 @kernel
 def nearest_neighbours(strobes, scale, nearest):
     """Distance of every state in the later half of a record from the nearest one in the earlier half."""
@@ -209,8 +220,8 @@ def nearest_neighbours(strobes, scale, nearest):
     for p in range(nearest.size):
         nearest[p] = np.inf
         for q in range(half):
-            if abs(strobes[half + p, 0, 0] - strobes[q, 0, 0]) < nearest[p] * scale[0]:
-                nearest[p] = min(nearest[p], change_between(strobes, scale, half + p, q))
+            if is_nearer(strobes, scale, half + p, q, nearest[p]):
+                nearest[p] = change_between(strobes, scale, half + p, q)
 
 
 @brief_kernel

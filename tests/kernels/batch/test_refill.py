@@ -94,3 +94,24 @@ def test_steady_states_of_more_scenes_than_places_are_those_of_each_alone(draft:
     for one in scenes:
         (alone,) = batch_results(iter([one]), Stop(), draft)
         assert fingerprint(together[one.f]) == fingerprint(alone), one.f
+
+
+@pytest.mark.parametrize("rows", ["displacement", "w"])
+def test_a_bead_far_from_the_driver_that_is_not_finite_is_reported(rows: str) -> None:
+    """A NaN spreads four beads in a step, so at the end of a period the first bead may still be finite."""
+    chosen = scene("sec2").evolve(N=200, f=3000.0)
+    batch, scaled = Batch(chosen, Stop()), scale_chain(chosen)
+    assert 4 * scaled.steps_per_period() < chosen.N, "the first bead must not have heard of it"
+    start = np.zeros(2 * scaled.bodies)
+    start[200 if rows == "displacement" else scaled.bodies + 200] = np.nan
+    batch.put(2, scaled, start, 1.0, return_at=1, earliest=NEVER)
+    member, finite = batch.run()
+    assert member == 2 and np.isfinite(batch.state.y[1, 2]) and not finite
+
+
+def test_a_lane_keeps_no_check_of_its_last_member() -> None:
+    chosen = scene("sec2").evolve(N=3)
+    batch = Batch(chosen, Stop())
+    batch.state.last_check[:] = 7.0
+    batch.put(1, scale_chain(chosen), np.zeros(10), 1.0, return_at=1)
+    assert not batch.state.last_check[1].any()

@@ -16,7 +16,7 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 
 #: Kernels of a few seconds, which any engine needs, and those of the two methods of whole runs.
-PLACE, METHODS = "engine.place()", "engine.periods(1); engine.record(2)"
+PLACE, METHODS = "engine.evaluate()", "engine.periods(1); engine.record(2)"
 PROGRAM = """
 import json, sys
 from numba.core.dispatcher import Dispatcher
@@ -141,5 +141,5 @@ def test_the_kernels_of_whole_runs_are_loaded_from_disk_too(tmp_path: Path) -> N
         engine.periods(1)
         engine.record(2)
     hits, misses = hits_and_misses(None, touched(tmp_path / "one"), METHODS)
-    assert hits >= 3  # run_steps, run_dop853, place
+    assert hits >= 3  # run_steps, run_dop853, evaluate_at_phase
     assert misses == 0

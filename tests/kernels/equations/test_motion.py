@@ -12,7 +12,7 @@ from chains import LAWS
 
 from granchain_core import scene
 from granchain_core.kernels.compiling.jit import kernel
-from granchain_core.kernels.equations.motion import contact_force, motion, place
+from granchain_core.kernels.equations.motion import contact_force, evaluate_at_phase, motion
 from granchain_core.scaling import scale_chain
 
 #: law, tension, kappa, preload, wall: all structures, each wall often enough
@@ -129,12 +129,12 @@ def test_rest_without_overlap_is_an_equilibrium_and_preload_keeps_it_one():
 
 @pytest.mark.parametrize("law", LAWS)
 def test_a_velocity_goes_into_w_and_comes_back(law):
-    """`place` turns v into w = v − (G_left − G_right)/m, and the slope's first half is v again."""
+    """`evaluate_at_phase` turns v into w = v − (G_left − G_right)/m, and the slope's first half is v again."""
     chosen = scene("sec2").evolve(N=5, dissipation=law)
     u, v = random_state(chosen, 1)
     scaled, theta, expected, _, _ = evaluated(chosen, u, v, 0.2 / chosen.f)
     y, dy = expected.copy(), np.zeros_like(expected)
     y[scaled.bodies + 1 : -1] = v / scaled.scales.velocity
-    place(scaled.slots, theta, y, dy, scaled.forces(), True)
+    evaluate_at_phase(scaled.slots, theta, y, dy, scaled.forces(), True)
     np.testing.assert_allclose(y, expected, atol=1e-14 * np.abs(expected).max())  # the same sums, rounded
     np.testing.assert_allclose(dy[1:6], v / scaled.scales.velocity, atol=1e-14 * np.abs(expected).max())
