@@ -13,7 +13,7 @@ import os
 
 import llvmlite.binding
 import numba
-from numba.core.codegen import get_host_cpu_features
+from numba.core import codegen
 
 from ..errors import BadInput
 
@@ -31,7 +31,13 @@ def has_avx512() -> bool:
     """
     if numba.config.CPU_FEATURES is not None:
         return "+avx512f" in numba.config.CPU_FEATURES.split(",")
-    return numba.config.CPU_NAME is None and "+avx512f" in get_host_cpu_features().split(",")
+    return numba.config.CPU_NAME is None and "+avx512f" in _host_features().split(",")
+
+
+def _host_features() -> str:
+    """Features of this machine that Numba uses; none if it does not tell."""
+    told: str = getattr(codegen, "get_host_cpu_features", str)()
+    return told
 
 
 def processor() -> str:

@@ -11,6 +11,7 @@ import llvmlite.binding
 import numba
 import pytest
 from llvmlite.binding.targets import FeatureMap
+from numba.core import codegen
 
 from granchain_core import BadInput, resonance_curve, scene
 from granchain_core.kernels import batch_size
@@ -83,6 +84,14 @@ def test_a_machine_that_tells_no_features_has_no_avx512(monkeypatch: pytest.Monk
     monkeypatch.setattr(numba.config, "CPU_NAME", None)
     monkeypatch.setattr(llvmlite.binding, "get_host_cpu_features", unknown)
     assert not batch_size.has_avx512()
+
+
+@pytest.mark.quick
+def test_where_numba_does_not_tell_its_features_a_batch_has_four_scenes(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(numba.config, "CPU_FEATURES", None)
+    monkeypatch.setattr(numba.config, "CPU_NAME", None)
+    monkeypatch.delattr(codegen, "get_host_cpu_features")
+    assert batch_size.size_from(None) == 4
 
 
 @pytest.mark.quick

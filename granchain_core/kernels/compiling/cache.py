@@ -64,7 +64,8 @@ def cache_folder() -> Path | None:
     """The folder of the compiled kernels; None, with one message, where nothing can be kept.
 
     It is in $GRANCHAIN_CACHE, else in the user's cache. Where that cannot be written, kernels that are there already
-    are used; where there are none, a folder in the temporary directory is, if nobody else can write to it.
+    are used if they are this user's or the administrator's; else a folder in the temporary directory is, if nobody else
+    can write to it.
     """
     base, problem = _chosen_base(), "there is no home folder"
     if base is not None:
@@ -78,7 +79,9 @@ def cache_folder() -> Path | None:
         except OSError as denied:
             problem = f"{base}: {denied.strerror or denied}"
             if _holds_kernels(base / name):
-                return base / name
+                if _is_trusted(base / name):
+                    return base / name
+                problem = f"{base} belongs to another user, and its files would be run"
     return _temporary_folder(problem)
 
 
@@ -113,6 +116,12 @@ def _holds_kernels(folder: Path) -> bool:
         return any(folder.rglob("*.nbc"))
     except OSError:
         return False
+
+
+def _is_trusted(folder: Path) -> bool:
+    """Whether only this user or the administrator can have written a folder: its files are unpickled and run."""
+    found = folder.stat()
+    return not hasattr(os, "getuid") or (found.st_uid in (0, os.getuid()) and not found.st_mode & stat.S_IWOTH)
 
 
 def _temporary_folder(problem: str) -> Path | None:
@@ -162,6 +171,9 @@ def say_once(sentence: str) -> None:
     _LOG.warning(sentence)
 
 
+if numba.config.DISABLE_JIT:
+    raise RuntimeError("NUMBA_DISABLE_JIT is set, but the kernels exist in compiled form only; unset it. To step "
+                       "through a kernel in a debugger, call its `py_func`.")
 CACHE_FOLDER = cache_folder()
 
 

@@ -259,6 +259,35 @@ def test_a_temporary_folder_of_another_owner_is_not_used(denied: Path, tmp_path:
     assert used(denied, FOLDER)[0]["folder"] == "None"
 
 
+@pytest.mark.parametrize("whose", ["ours", "anybody may write", "another user's"])
+def test_kernels_in_a_folder_that_cannot_be_written_are_run_if_nobody_else_wrote_them(
+        whose: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its files are unpickled; a checksum in a file says nothing of who has written it."""
+    if whose == "another user's" and os.getuid() != 0:
+        pytest.skip("only root can give a folder away")
+
+    def denied(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    folder = tmp_path / f"kernels-{cache.sources_hash()}"
+    folder.mkdir()
+    (folder / "one.nbc").write_bytes(b"")
+    folder.chmod(0o777 if whose == "anybody may write" else 0o755)
+    if whose == "another user's":
+        os.chown(folder, 12345, 12345)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(tmp_path))
+    monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache, "_temporary_folder", lambda problem: Path(problem))
+    chosen = cache.cache_folder()
+    assert (chosen == folder) if whose == "ours" else "its files would be run" in str(chosen)
+
+
+def test_without_the_compiler_nothing_is_imported(tmp_path: Path) -> None:
+    done = subprocess.run([sys.executable, "-c", "import granchain_core.integrate"], capture_output=True, text=True,
+                          env={**os.environ, "PYTHONPATH": str(ROOT), "NUMBA_DISABLE_JIT": "1"}, timeout=300, check=False)
+    assert done.returncode != 0 and "NUMBA_DISABLE_JIT is set" in done.stderr.splitlines()[-1]
+
+
 def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path: Path) -> None:
     own, old, young = (tmp_path / f"kernels-{name}" for name in (cache.sources_hash(), "0" * 12, "1" * 12))
     foreign = tmp_path / "kernels-of-mine"
