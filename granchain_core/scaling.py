@@ -170,8 +170,11 @@ class ScaledChain:
         struck = float(np.abs(self.scene.velocities_at_start()).max()) / self.scales.velocity
         speed = _FASTEST * max(struck, self.beta if self.scene.is_driven else 0.0)
         beads = np.arange(1, self.beads + 1)
-        return (-float(np.min(add_force_slope(self.slots, beads, 0.0, 1.0, speed, 1.0, 0.0, 1.0))),
-                -float(np.min(add_force_slope(self.slots, beads, 0.0, 1.0, speed, 0.0, 1.0, 1.0))))
+        slopes = [add_force_slope(self.slots, beads, 0.0, 1.0, speed, *direction, 1.0)
+                  for direction in ((1.0, 0.0), (0.0, 1.0))]
+        # a number where there is no such force; np.min would take longer than all the rest
+        stiffness, damping = (-float(slope if isinstance(slope, float) else slope.min()) for slope in slopes)
+        return stiffness, damping
 
     @property
     def _struck(self) -> float:

@@ -49,7 +49,7 @@ from .scaling import scale_chain
 from .scene import Scene, scene
 from .scene.effects import effects_of
 from .state import rest
-from .steady.lyapunov import exponents
+from .steady.lyapunov import growth_along
 from .steady.regime_criteria import SLOW_RECORD, converging, find_period, return_distance
 from .stop import Stop
 
@@ -93,7 +93,7 @@ def _curve(short: Scene) -> None:
     """A curve: located jumps, the shadow of irregular motions, and the batch if the scene can use it."""
     if short.forces_jump:
         Engine(short, fixed_step_setting(), 1).record(1)
-    exponents(Engine(short, following_setting(short.cuts_tension), 1), 1, 1)
+    growth_along(Engine(short, following_setting(short.cuts_tension), 1), 1)
     if can_share_batch(short):
         block = Batch(short, Stop())
         scaled = scale_chain(short)

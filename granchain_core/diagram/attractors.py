@@ -21,7 +21,7 @@ from ..scene import Scene
 from ..scene.given import require_scene
 from ..state import State, rest
 from ..steady.batch.job import Start
-from ..steady.exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
+from ..steady.exponent_measurements import MEASURED_PERIODS, TURNING_PERIODS
 from ..steady.regime_criteria import find_period, grows, is_neutral, rounding_of
 from ..steady.settling.regime_decisions import REMEMBERED
 from ..steady.steady_state import SteadyState
@@ -227,7 +227,7 @@ def _regime(regimes: list[Regime]) -> Regime:
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     periods = min((one.lyapunov_periods for one in regimes if one.lyapunov_periods is not None),
-                  default=EXPONENT_BLOCKS * PERIODS_IN_BLOCK)
+                  default=MEASURED_PERIODS - TURNING_PERIODS)
     if regimes[0].period is not None or not known:
         return regimes[0]
     mean, error = sum(value for value, _ in known) / len(known), math.sqrt(sum(e**2 for _, e in known)) / len(known)

@@ -13,7 +13,7 @@ from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene, scene
 from ..state import State
 from ..steady.curve.resonance_curve import iter_curve
-from ..steady.lyapunov import exponents
+from ..steady.lyapunov import growth_along
 from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time
 from .naive_solvers import plain_slope, rk4
@@ -101,7 +101,7 @@ def two_exponents(blocks: int) -> tuple[float, tuple[float, float], tuple[float,
     engine.periods(100)
     stroboscopic_map = StroboscopicMap(chosen, 1)
     x = stroboscopic_map.inner(engine.y)
-    found, _, _ = exponents(engine, blocks, 10)
+    found = growth_along(engine, (blocks + 1) * 10)[0][10:].reshape(blocks, 10).mean(axis=1)
     vector = np.ones(len(x)) / np.sqrt(len(x))
     growth = np.zeros((blocks + 1) * 10)
     for p in range(len(growth)):

@@ -12,15 +12,17 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..regime import Regime
+from .lyapunov import block_means
 from .regime_criteria import agree, clearly_chaotic, needs_more_periods, regime_from_exponents
 
-#: [chaotic, quasi-periodic] Blocks in a measurement of the exponent. The standard error of the mean is computed from
-#: them.
+#: [chaotic, quasi-periodic] Overlapping blocks in a measurement of the exponent (`block_means` in lyapunov.py). The
+#: standard error of the mean is computed from them. One that is continued has as many blocks, which are longer.
 EXPONENT_BLOCKS = 10
-#: [chaotic, quasi-periodic] Drive periods in a block, and more in a measurement that is continued. It has the same
-#: number of longer blocks: on a closed curve the means of successive blocks swing up and down, and the swing falls as
-#: 1/periods.
-PERIODS_IN_BLOCK = 20
+#: [chaotic, quasi-periodic] Drive periods of a measurement of the exponent, and of each continuation.
+MEASURED_PERIODS = 220
+#: [chaotic, quasi-periodic] First drive periods of a measurement with a new neighbour, which do not count: it turns into
+#: the leading direction.
+TURNING_PERIODS = 20
 
 
 @dataclass(eq=False)
@@ -28,15 +30,22 @@ class ExponentMeasurements:
     """Measurements of one motion so far.
 
     `latest` is the regime that the last complete measurement shows, `complete` the number of them; `unfinished` holds
-    the exponents (B,) of one whose error is too large for a decision. `offset` (2(N+2),), scaled, leads to the
-    neighbouring trajectory where the last one ended: the next one goes on with it, since a new neighbour would have to
-    turn into the leading direction again.
+    the growth (P,) in the periods of one whose error is too large for a decision. `offset` (2(N+2),), scaled, leads to
+    the neighbouring trajectory where the last one ended, if the next one begins there and goes on with it.
     """
 
     latest: Regime | None = None
     complete: int = 0
     offset: np.ndarray | None = None
     unfinished: np.ndarray = field(default_factory=lambda: np.zeros(0))
+
+    def interrupted(self) -> None:
+        """Other periods pass before the next measurement, which needs a new neighbour.
+
+        The old offset does not lie along the closed curve at another place of it, and may need hundreds of periods to
+        turn there again.
+        """
+        self.offset = None
 
     @property
     def approach_rate(self) -> float:
@@ -49,22 +58,22 @@ class ExponentMeasurements:
             return 0.0
         return max(0.0, -latest.lyapunov[0])
 
-    def add(self, exponents: np.ndarray, strobes: np.ndarray, periods_run: int, last: bool = False) -> Regime | None:
-        """The regime, if more exponents decide it.
+    def add(self, growth: np.ndarray, offset: np.ndarray, strobes: np.ndarray, periods_run: int,
+            last: bool = False) -> Regime | None:
+        """The regime, if the growth (P,) in `MEASURED_PERIODS` more periods decides it.
 
-        `exponents` are `EXPONENT_BLOCKS` mean exponents of successive blocks of `PERIODS_IN_BLOCK` periods, `strobes`
-        (P, 2, N) the last ones of a motion that has run `periods_run` periods. With `last` the measurement is not
-        continued, however large its error.
+        `offset` leads to the neighbouring trajectory at their end. `strobes` (P, 2, N) are the last ones of a motion
+        that has run `periods_run` periods. With `last` the measurement is not continued, however large its error.
         """
-        measured = np.concatenate([self.unfinished, exponents])
-        periods = PERIODS_IN_BLOCK * len(measured)
-        blocks = measured.reshape(EXPONENT_BLOCKS, -1).mean(axis=1)
+        continued, turning = len(self.unfinished) > 0, TURNING_PERIODS if self.offset is None else 0
+        measured = np.concatenate([self.unfinished, growth[turning:]])
+        periods, blocks, self.offset = len(measured), block_means(measured, EXPONENT_BLOCKS), offset
         if needs_more_periods(blocks, periods) and not last:
             self.unfinished = measured
             return None
         self.unfinished = np.zeros(0)
         before, self.latest = self.latest, regime_from_exponents(blocks, periods, strobes, periods_run)
         self.complete += 1
-        as_long_as_two = self.latest.name == "quasi-periodic" and len(measured) > EXPONENT_BLOCKS
+        as_long_as_two = self.latest.name == "quasi-periodic" and continued
         agreed = before is not None and agree(self.latest, before)
         return self.latest if clearly_chaotic(blocks) or as_long_as_two or agreed else None

@@ -1,6 +1,7 @@
-"""The largest Lyapunov exponent of the stroboscopic map from a neighbouring trajectory.
+"""The largest Lyapunov exponent of the stroboscopic map from a neighbouring trajectory, and its mean over blocks.
 
-Source     Benettin, Galgani & Strelcyn 1976, Phys. Rev. A 14, 2338
+Source     Benettin, Galgani & Strelcyn 1976, Phys. Rev. A 14, 2338; overlapping blocks with windows: Welch 1967, IEEE
+           Trans. Audio Electroacoust. 15, 70
 """
 
 from __future__ import annotations
@@ -21,44 +22,54 @@ from ..scaling import ScaledChain
 _DISTANCE = 1e-8
 
 
-def put_with_shadow(batch: Batch, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, blocks: int,
-                    block: int, offset: np.ndarray | None = None) -> None:
-    """Make a scene a member of a batch for `exponents_of`, its shadow in another lane, from the scaled state y.
+def put_with_shadow(batch: Batch, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, periods: int,
+                    offset: np.ndarray | None = None) -> None:
+    """Make a scene a member of a batch for `growth_of`, its shadow in another lane, from the scaled state y.
 
     The shadow begins at y + `offset` (2(N+2),), where an earlier measurement ended, or in a random direction.
     """
     begin = _offset(scaled.bodies) if offset is None else offset
-    batch.put_pair(member, shadow, scaled, y, begin, _DISTANCE, (blocks + 1) * block)
+    batch.put_pair(member, shadow, scaled, y, begin, _DISTANCE, periods)
+
+
+def block_means(growth: np.ndarray, blocks: int) -> np.ndarray:
+    """Mean growth per period (blocks,) in blocks of equal length that overlap by half, weighted by Hann windows.
+
+    On a closed curve a distance swings, so that a plain mean is wrong by as much as the swing at its two ends, over the
+    number of periods. The windows go to zero there. They add up to 1 between the first and the last block, so no period
+    counts more than another; a remainder is left out at the beginning. Two neighbouring blocks correlate by 1/6 where
+    the periods are independent (`OVERLAP_FACTOR` in regime_criteria.py).
+    """
+    half = len(growth) // (blocks + 1)
+    halves = growth[len(growth) - half * (blocks + 1) :].reshape(blocks + 1, half)
+    rising = np.sin(np.pi * (np.arange(half) + 0.5) / (2 * half)) ** 2 / half
+    return np.asarray(halves[:-1] @ rising + halves[1:] @ rising[::-1])
 
 
 @dataclass(frozen=True, eq=False)
-class MeasuredExponents:
+class MeasuredGrowth:
     """What a member with a shadow has shown.
 
-    `exponents` (blocks,) are mean exponents per period, `strobes` (P, 2, N) displacement and w at the ends of the
-    periods, `maxima` (16, 3) the largest forces of the last periods, `y` (2(N+2),) the last state, all scaled; `offset`
-    (2(N+2),) leads from there to the shadow.
+    `growth` (P,) is the logarithm of the distance's growth in each period, `strobes` (P, 2, N) displacement and w at
+    the ends of the periods, `maxima` (16, 3) the largest forces of the last periods, `y` (2(N+2),) the last state, all
+    scaled; `offset` (2(N+2),) leads from there to the shadow.
     """
 
-    exponents: np.ndarray
+    growth: np.ndarray
     strobes: np.ndarray
     maxima: np.ndarray
     y: np.ndarray
     offset: np.ndarray
 
 
-def exponents_of(batch: Batch, member: int, block: int) -> MeasuredExponents:
-    """The exponents of a member that is due and has kept its shadow.
-
-    In the first block, which does not count, the shadow turns to the leading direction.
-    """
+def growth_of(batch: Batch, member: int) -> MeasuredGrowth:
+    """What a member that is due, and has kept its shadow, has shown."""
     growth = batch.growth(member)
     periods, state = len(growth), batch.state
     strobes = state.strobes[member, : periods + 1]
     last = np.arange(periods - LONGEST_PERIOD + 1, periods + 1) % STROBES_KEPT
-    return MeasuredExponents(growth[block:].reshape(-1, block).mean(axis=1), strobes[1:, :, 1:-1].copy(),
-                             state.maxima[member, last, :3].copy(), strobes[-1].ravel().copy(),
-                             state.y[:, state.shadow[member]] - state.y[:, member])
+    return MeasuredGrowth(growth.copy(), strobes[1:, :, 1:-1].copy(), state.maxima[member, last, :3].copy(),
+                          strobes[-1].ravel().copy(), state.y[:, state.shadow[member]] - state.y[:, member])
 
 
 @functools.cache
@@ -74,16 +85,16 @@ def _offset(bodies: int) -> np.ndarray:
     return offset
 
 
-def exponents(engine: Engine, blocks: int, block: int,
-              offset: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean exponent per period of each block of `block` periods, after one block to turn into the leading direction.
+def growth_along(engine: Engine, periods: int,
+                 offset: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Logarithm of the growth (P,) of the distance to a neighbouring trajectory in each of so many periods.
 
-    `engine` is at phase 0 and goes on; returns the exponents (blocks,), its strobes (P, 2, N) and the
-    last offset (2(N+2),) of the neighbouring trajectory (`shadow`), with which the next measurement may begin: without
-    one it begins in a random direction. In each period the usual kernel runs both; then the distance between them is
-    measured, and the neighbour is put back to the first distance.
+    `engine` is at phase 0 and goes on; returns the growth, its strobes (P, 2, N) and the last offset (2(N+2),) of the
+    neighbouring trajectory (`shadow`), with which the next measurement may begin: without one it begins in a random
+    direction, and needs some periods to turn into the leading one. In each period the usual kernel runs both; then the
+    distance between them is measured, and the neighbour is put back to the first distance.
     """
-    row, count = 2 * engine.scaled.bodies, (blocks + 1) * block
+    row, count = 2 * engine.scaled.bodies, periods
     shadow = Engine(engine.scaled.scene, engine.setting, engine.samples, stop=engine.stop)
     shadow.start(engine.state)
     offset = _offset(engine.scaled.bodies) if offset is None else offset
@@ -97,4 +108,4 @@ def exponents(engine: Engine, blocks: int, block: int,
         distance = max(float(np.linalg.norm(offset)), 1e-300)
         growth[period] = np.log(distance / _DISTANCE)
         offset *= _DISTANCE / distance
-    return growth[block:].reshape(blocks, block).mean(axis=1), strobes, offset
+    return growth, strobes, offset

@@ -21,6 +21,9 @@ STANDARD_ERRORS = 3.0
 #: [period n] Longest period that is tested for a chain alone, in drive periods. Orbits locked to the drive among
 #: quasi-periodic motions may be that long.
 LONGEST_LOCKED_PERIOD = 60
+#: [chaotic, quasi-periodic] Variance of the mean of ten overlapping blocks (`block_means` in lyapunov.py), over that of
+#: ten independent ones with the variance that they show. Neighbours correlate by 1/6: (1 + 0.3)/(1 − 1/30).
+OVERLAP_FACTOR = 1.35
 #: [chaotic, quasi-periodic] Logarithm of the factor by which a distance may grow or shrink once, and not again, on a
 #: closed curve; a mean exponent over P periods is judged to this over P. Up to 4 was seen.
 _BOUNDED_GROWTH = 6.0
@@ -95,10 +98,12 @@ def is_neutral(mean: float, error: float, periods: int) -> bool:
     return abs(mean) <= limit and uncertain < _LARGEST_NEUTRAL_EXPONENT
 
 
-def _mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
+def mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
+    """Mean of the exponents of overlapping blocks, and its standard error."""
     values = exponents.tolist()  # ten numbers: an array would take longer
     mean = math.fsum(values) / len(values)
-    return mean, math.sqrt(math.fsum((one - mean) ** 2 for one in values) / (len(values) - 1) / len(values))
+    variance = math.fsum((one - mean) ** 2 for one in values) / (len(values) - 1)
+    return mean, math.sqrt(OVERLAP_FACTOR * variance / len(values))
 
 
 def needs_more_periods(exponents: np.ndarray, periods: int) -> bool:
@@ -106,20 +111,20 @@ def needs_more_periods(exponents: np.ndarray, periods: int) -> bool:
 
     The mean is neither clearly positive nor clearly negative, and `is_neutral` does not hold.
     """
-    mean, error = _mean_and_error(exponents)
+    mean, error = mean_and_error(exponents)
     return (mean >= -STANDARD_ERRORS * error and not grows(mean, error, periods)
             and not is_neutral(mean, error, periods))
 
 
 def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarray, periods_run: int) -> Regime:
-    """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of successive blocks of `periods` in all.
+    """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of overlapping blocks of `periods` in all.
 
     Chaotic: the mean is above three standard errors and a least value (`grows`). Quasi-periodic: it is not
     distinguished from zero (`is_neutral`), the section comes back near itself (`return_limit`), and the record is long
     enough to show that changes neither shrink nor grow. Anything else is unsettled. Where `is_neutral` holds the regime
     has the numbers on which the other two conditions rest, met or not.
     """
-    mean, error = _mean_and_error(exponents)
+    mean, error = mean_and_error(exponents)
     if grows(mean, error, periods):
         return Regime(name="chaotic", period=None, decay=None, distance=None, periods_run=periods_run,
                       lyapunov=(mean, error), lyapunov_periods=periods)
@@ -138,7 +143,7 @@ def clearly_chaotic(exponents: np.ndarray) -> bool:
     After 400 periods a growth of 0.05 a period has multiplied a distance by 5e8.
     """
     halves = exponents[: len(exponents) // 2], exponents[len(exponents) // 2 :]
-    return all(mean > max(STANDARD_ERRORS * error, CLEAR_GROWTH) for mean, error in map(_mean_and_error, halves))
+    return all(mean > max(STANDARD_ERRORS * error, CLEAR_GROWTH) for mean, error in map(mean_and_error, halves))
 
 
 def agree(one: Regime, other: Regime) -> bool:

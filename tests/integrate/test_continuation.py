@@ -15,7 +15,7 @@ from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.kernels.status import STEPS_BETWEEN_STOP_CHECKS
 from granchain_core.scaling import scale_chain
 from granchain_core.state import rest
-from granchain_core.steady.lyapunov import exponents
+from granchain_core.steady.lyapunov import growth_along
 from granchain_core.stop import Stop
 
 #: Methods of three kinds, and the error of each with the setting of `engine`.
@@ -152,9 +152,9 @@ def test_stop_flag_ends_a_lyapunov_exponent_soon():
     STEPS_BETWEEN_STOP_CHECKS steps of both.
     """
     stop = Stop()
-    exponents(Engine(scene("sec2").evolve(f=1e5, N=300), fixed_step_setting(), 1), 1, 1)  # compiling asks no flag
+    growth_along(Engine(scene("sec2").evolve(f=1e5, N=300), fixed_step_setting(), 1), 2)  # compiling asks no flag
     slow = Engine(scene("sec2").evolve(f=0.5, N=300), fixed_step_setting(16), 1, stop=stop)
-    assert steps_after_the_flag(slow, stop, lambda: exponents(slow, 1, 1)) <= 2 * 2 * STEPS_BETWEEN_STOP_CHECKS
+    assert steps_after_the_flag(slow, stop, lambda: growth_along(slow, 2)) <= 2 * 2 * STEPS_BETWEEN_STOP_CHECKS
 
 
 @pytest.mark.parametrize("beads", [11, 300])

@@ -21,7 +21,7 @@ import numpy as np
 from granchain_core import CurvePoint, Scene, State, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.state import rest
-from granchain_core.steady.lyapunov import exponents
+from granchain_core.steady.lyapunov import growth_along
 
 #: Frequencies [Hz] at which the period-1 branch of section 2 changes its stability (`granchain branch sec2`).
 PLACES = (146.42, 233.52, 255.80, 511.94, 832.5, 889.0, 1235.6, 1304.9)
@@ -70,7 +70,7 @@ def truth(chosen: Scene, start: State | None) -> str:
             return f"period {repeats[0]}"
         if not _on_its_way(strobes):
             break
-    means = [exponents(engine, 100, 20)[0] for _ in range(2)]
+    means = [growth_along(engine, 2020)[0][20:].reshape(100, 20).mean(axis=1) for _ in range(2)]
     if all(m.mean() > max(0.01, 4.0 * m.std(ddof=1) / 10.0) for m in means):
         return "chaotic"
     return "quasi-periodic" if all(abs(m.mean()) < ZERO for m in means) and not _on_its_way(strobes) else "undecided"

@@ -12,7 +12,8 @@ from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scaling import ScaledChain, scale_chain
-from granchain_core.steady.lyapunov import MeasuredExponents, exponents, exponents_of, put_with_shadow
+from granchain_core.steady.lyapunov import MeasuredGrowth, block_means, growth_along, growth_of, put_with_shadow
+from granchain_core.steady.regime_criteria import mean_and_error
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.stop import Stop
 
@@ -20,18 +21,17 @@ CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `ri
 QUASI = scene("sec2").evolve(f=1640.0)
 
 
-def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, blocks: int = 10) -> list[MeasuredExponents | None]:
-    """The exponents of scenes, each in two lanes of a batch, over blocks of 20 periods; None where they are not finite.
-    """
-    found: list[MeasuredExponents | None] = [None] * len(scenes)
+def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, periods: int = 220) -> list[MeasuredGrowth | None]:
+    """What scenes show, each in two lanes of a batch; None where the growth is not finite."""
+    found: list[MeasuredGrowth | None] = [None] * len(scenes)
     for lane in range(BATCH_SIZE):
         batch.empty(lane)
     for number, (scaled, y) in enumerate(scenes):
-        put_with_shadow(batch, 2 * number, 2 * number + 1, scaled, y, blocks, 20)
+        put_with_shadow(batch, 2 * number, 2 * number + 1, scaled, y, periods)
     for _ in scenes:
         lane, finite = batch.run()
         if finite and np.isfinite(batch.growth(lane)).all():
-            found[lane // 2] = exponents_of(batch, lane, 20)
+            found[lane // 2] = growth_of(batch, lane)
         batch.empty(lane)
         batch.empty(lane + 1)
     return found
@@ -59,8 +59,8 @@ def by_shadow(shown: Scene, state: State) -> list[tuple[float, float]]:
     scaled = scale_chain(shown)
     (pair,) = in_pairs([(scaled, scaled.from_si(state))], Batch(shown, Stop()))
     assert pair is not None
-    found = exponents(engine, 10, 20)[0], pair.exponents
-    return [(float(growth.mean()), float(growth.std(ddof=1) / np.sqrt(10))) for growth in found]
+    found = growth_along(engine, 220)[0], pair.growth
+    return [mean_and_error(block_means(growth[20:], 10)) for growth in found]
 
 
 def test_a_chaotic_chain_has_the_exponent_of_its_tangent_flow() -> None:
@@ -89,12 +89,12 @@ def test_exponents_of_a_scene_do_not_depend_on_those_beside_it(lost: float) -> N
     y = scaled.from_si(run_until_settled(QUASI, None, None).engine.state)
     slower = scale_chain(QUASI.evolve(f=QUASI.f / 9.0))
     batch = Batch(QUASI, Stop())
-    alone = in_pairs([(scaled, y)], batch, 5)[0]
-    assert alone is not None and np.isfinite(alone.exponents).all()
-    beside = in_pairs([(slower, 0.5 * y), (scaled, y)], batch, 5)
-    broken = in_pairs([(slower, lost * y), (scaled, y)], batch, 5)
+    alone = in_pairs([(scaled, y)], batch, 120)[0]
+    assert alone is not None and np.isfinite(alone.growth).all()
+    beside = in_pairs([(slower, 0.5 * y), (scaled, y)], batch, 120)
+    broken = in_pairs([(slower, lost * y), (scaled, y)], batch, 120)
     assert broken[0] is None and beside[0] is not None
-    for other in (beside[1], broken[1], in_pairs([(scaled, y)], batch, 5)[0]):
+    for other in (beside[1], broken[1], in_pairs([(scaled, y)], batch, 120)[0]):
         assert other is not None
-        for name in ("exponents", "strobes", "maxima", "y"):
+        for name in ("growth", "strobes", "maxima", "y"):
             np.testing.assert_array_equal(getattr(other, name), getattr(alone, name))

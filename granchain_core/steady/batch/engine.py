@@ -29,8 +29,8 @@ from ...scene import Scene
 from ...scene.driven import refuse_undriven
 from ...state import rest
 from ...stop import Stop
-from ..exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
-from ..lyapunov import exponents_of, put_with_shadow
+from ..exponent_measurements import MEASURED_PERIODS
+from ..lyapunov import growth_of, put_with_shadow
 from ..regime_criteria import find_period
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, is_almost_periodic, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
@@ -118,8 +118,7 @@ class _JobsInBatch:
         """
         if job.measuring:
             shadow = self.shadows[member] = self.free.pop()
-            put_with_shadow(self.batch, member, shadow, job.scaled, job.y, EXPONENT_BLOCKS, PERIODS_IN_BLOCK,
-                            job.measurements.offset)
+            put_with_shadow(self.batch, member, shadow, job.scaled, job.y, MEASURED_PERIODS, job.measurements.offset)
             return
         if job.coarse is None:
             return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.periods_run)
@@ -167,9 +166,9 @@ class _JobsInBatch:
 
     def _decide_by_exponent(self, job: BatchJob, member: int) -> SteadyState | None:
         """The result of a job whose Lyapunov exponents were measured, or None where it goes on."""
-        seen = exponents_of(self.batch, member, PERIODS_IN_BLOCK)
+        seen = growth_of(self.batch, member)
         job.periods_run += len(seen.strobes)
-        job.y, job.measuring, job.measurements.offset = seen.y, False, seen.offset
+        job.y, job.measuring = seen.y, False
         job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as a chain settled alone is judged
         regime = replace(find_period(job.record), periods_run=job.periods_run)
         if regime.period is not None:
@@ -179,7 +178,7 @@ class _JobsInBatch:
             self.waiting.append(job)
             return None
         goes_on = job.periods_run < MOST_PERIODS and job.affordable
-        decided = job.measurements.add(seen.exponents, job.record, job.periods_run, last=not goes_on)
+        decided = job.measurements.add(seen.growth, seen.offset, job.record, job.periods_run, last=not goes_on)
         latest = job.measurements.latest
         if decided is not None:
             near_an_orbit = decided.name == "quasi-periodic" and is_almost_periodic(job.record)
@@ -189,6 +188,7 @@ class _JobsInBatch:
             return None
         approach_rate = job.measurements.approach_rate
         if goes_on and approach_rate * (MOST_PERIODS - job.periods_run) > -math.log(SETTLED_DISTANCE):
+            job.measurements.interrupted()
             self.waiting.append(job)  # it comes to its orbit within its budget, if there is one
             return None
         if approach_rate == 0.0 and job.measurements.complete < MOST_MEASUREMENTS:

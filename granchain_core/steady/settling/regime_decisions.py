@@ -14,8 +14,8 @@ import numpy as np
 from ...integrate import Engine
 from ...regime import Regime
 from ...scene import Scene
-from ..exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK, ExponentMeasurements
-from ..lyapunov import exponents
+from ..exponent_measurements import MEASURED_PERIODS, ExponentMeasurements
+from ..lyapunov import growth_along
 from ..regime_criteria import changes, converging, departing
 from .nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, NEAR_AN_ORBIT, NearbyOrbit, orbit_of, orbits_beside, seen_modulus
 
@@ -29,7 +29,7 @@ REMEMBERED = 420
 #: [chaotic, quasi-periodic] A batch, or a motion that is not followed further (`run`): most measurements of the
 #: exponent.
 MOST_MEASUREMENTS = 3
-#: [chaotic, quasi-periodic] A chain alone: most parts of one measurement, each of `EXPONENT_BLOCKS` blocks.
+#: [chaotic, quasi-periodic] A chain alone: most parts of one measurement, each of `MEASURED_PERIODS`.
 _MOST_PARTS = 8
 #: [period n] A chain alone: up to this many beads multipliers confirm every claim of `settled`, in longer chains only
 #: unconfirmed ones.
@@ -122,8 +122,15 @@ class Decisions:
         return Decision(state=further)
 
     def _measure(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
-        """The regime, if the Lyapunov exponent of the next periods decides it."""
+        """The regime, if the Lyapunov exponent of the next periods decides it: of two measurements at most."""
+        self._measurements.interrupted()
         decided, passed = _measured(engine, strobes, regime, self._measurements)
+        latest = self._measurements.latest
+        if decided is None and latest is not None and latest.name != "unsettled":
+            further = replace(regime, periods_run=regime.periods_run + len(passed))
+            record = np.concatenate([strobes, passed])[-REMEMBERED:]
+            decided, more = _measured(engine, record, further, self._measurements)
+            passed = np.concatenate([passed, more])
         return Decision(decided, strobes=passed if decided is None else None)
 
 
@@ -159,9 +166,9 @@ def _measured(engine: Engine, strobes: np.ndarray, regime: Regime,
     """The regime, if one more measurement of the Lyapunov exponent decides it, and the strobes (P, 2, N) it ran."""
     passed = strobes[:0]
     for part in range(_MOST_PARTS):
-        found, more, measurements.offset = exponents(engine, EXPONENT_BLOCKS, PERIODS_IN_BLOCK, measurements.offset)
+        growth, more, offset = growth_along(engine, MEASURED_PERIODS, measurements.offset)
         passed = np.concatenate([passed, more])
-        decided = measurements.add(found, np.concatenate([strobes, passed])[-REMEMBERED:],
+        decided = measurements.add(growth, offset, np.concatenate([strobes, passed])[-REMEMBERED:],
                                    regime.periods_run + len(passed), last=part == _MOST_PARTS - 1)
         if not len(measurements.unfinished):
             break
