@@ -1,7 +1,6 @@
 """The largest Lyapunov exponent of the stroboscopic map from a neighbouring trajectory, and its mean over blocks.
 
-Source     Benettin, Galgani & Strelcyn 1976, Phys. Rev. A 14, 2338; overlapping blocks with windows: Welch 1967, IEEE
-           Trans. Audio Electroacoust. 15, 70
+Source     Benettin, Galgani & Strelcyn 1976, Phys. Rev. A 14, 2338; overlapping blocks with windows: Welch 1967
 """
 
 from __future__ import annotations

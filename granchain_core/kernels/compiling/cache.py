@@ -78,10 +78,8 @@ def cache_folder() -> Path | None:
             return base / name
         except OSError as denied:
             problem = f"{base}: {denied.strerror or denied}"
-            if _holds_kernels(base / name):
-                if _is_trusted(base / name):
-                    return base / name
-                problem = f"{base} belongs to another user, and its files would be run"
+            if _holds_kernels(base / name) and _is_trusted(base / name):
+                return base / name
     return _temporary_folder(problem)
 
 
@@ -157,12 +155,10 @@ def _note_use(base: Path, used: Path) -> None:
     os.utime(used)
     for folder in base.iterdir():
         if _VERSIONS.fullmatch(folder.name) and folder != used:
-            try:
+            with contextlib.suppress(OSError):  # another process may remove it as well
                 found = folder.lstat()
-            except OSError:  # another process removes it as well
-                continue
-            if stat.S_ISDIR(found.st_mode) and time.time() - found.st_mtime > _MONTH:
-                shutil.rmtree(folder, ignore_errors=True)
+                if stat.S_ISDIR(found.st_mode) and time.time() - found.st_mtime > _MONTH:
+                    shutil.rmtree(folder, ignore_errors=True)
 
 
 @functools.cache
@@ -172,8 +168,7 @@ def say_once(sentence: str) -> None:
 
 
 if numba.config.DISABLE_JIT:
-    raise RuntimeError("NUMBA_DISABLE_JIT is set, but the kernels exist in compiled form only; unset it. To step "
-                       "through a kernel in a debugger, call its `py_func`.")
+    raise RuntimeError("NUMBA_DISABLE_JIT is set, but kernels must be compiled; unset it (`py_func` can be debugged).")
 CACHE_FOLDER = cache_folder()
 
 

@@ -122,15 +122,9 @@ class Decisions:
         return Decision(state=further)
 
     def _measure(self, engine: Engine, strobes: np.ndarray, regime: Regime) -> Decision:
-        """The regime, if the Lyapunov exponent of the next periods decides it: of two measurements at most."""
+        """The regime, if the Lyapunov exponent of the next periods decides it."""
         self._measurements.interrupted()
         decided, passed = _measured(engine, strobes, regime, self._measurements)
-        latest = self._measurements.latest
-        if decided is None and latest is not None and latest.name != "unsettled":
-            further = replace(regime, periods_run=regime.periods_run + len(passed))
-            record = np.concatenate([strobes, passed])[-REMEMBERED:]
-            decided, more = _measured(engine, record, further, self._measurements)
-            passed = np.concatenate([passed, more])
         return Decision(decided, strobes=passed if decided is None else None)
 
 
