@@ -20,8 +20,8 @@ from .regime_criteria import agree, clearly_chaotic, needs_more_periods, regime_
 EXPONENT_BLOCKS = 10
 #: [chaotic, quasi-periodic] Drive periods of a measurement of the exponent, and of each continuation.
 MEASURED_PERIODS = 220
-#: [chaotic, quasi-periodic] First drive periods of a measurement with a new neighbour, which do not count: it turns into
-#: the leading direction.
+#: [chaotic, quasi-periodic] First drive periods of a measurement with a new neighbour, which do not count: it turns
+#: into the leading direction.
 TURNING_PERIODS = 20
 
 
