@@ -28,19 +28,20 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch.run import batch_steps
+from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.flow.attempt import FlowProblem
 from granchain_core.kernels.flow.run import run_flow
 from granchain_core.kernels.flow.tangent import new_tangent
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
 from granchain_core.kernels.samples import Output
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
+from granchain_core.scaling import scale_chain
+from granchain_core.scene.effects import EFFECTS
 from granchain_core.stop import Stop
 
 #: The types of the arguments by case and kernel, and those of the flow by case.
 Types = tuple[dict[str, dict[str, tuple]], dict[str, tuple]]
-EFFECTS = {"dissipation": {"dissipation": "linear"}, "foundation": {"kappa": 0.001}, "preload": {"F0": 1.0}}
-NOTHING = {"dissipation": "none"}
-EVERYTHING = {knob: value for knobs in EFFECTS.values() for knob, value in knobs.items()}
+NOTHING = {knob: value for effect in EFFECTS for knob, value in effect.off.items()}
 #: Instructions by what they do; a multiplication and an addition in one count as both.
 KINDS = {"mul": "multiply", "add": "add", "sub": "add", "fmadd": "both", "fmsub": "both", "fnmadd": "both",
          "fnmsub": "both", "sqrt": "root", "div": "divide", "rsqrt14": "root", "max": "choose", "min": "choose",
@@ -98,9 +99,9 @@ def flow_types(knobs: dict) -> tuple:
     """Types of the arguments of the flow with tangents for section 2's chain with these knobs."""
     stroboscopic_map = StroboscopicMap(scene("sec2").evolve(N=3, **knobs), 1)
     e = stroboscopic_map.engine
-    course = FlowProblem(e.stepper.trajectory(e.y)._replace(workspace=stroboscopic_map._work), stroboscopic_map._contacts,
-                    new_tangent(np.eye(6), e.scaled.bodies, 0))
-    return tuple(map(numba.typeof, (e.stepper.method, course, 1, e.counts.array, e.stop.flag)))
+    problem = FlowProblem(e.stepper.trajectory(e.y)._replace(workspace=stroboscopic_map._work), stroboscopic_map._contacts,
+                          new_tangent(np.eye(6), e.scaled.bodies, 0))
+    return tuple(map(numba.typeof, (e.stepper.method, problem, 1, e.counts.array, e.stop.flag)))
 
 
 def argument_types(knobs: dict) -> dict[str, tuple]:
@@ -112,18 +113,37 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.members, block.state, 4)))}
 
 
+def with_effect(knobs: dict) -> dict:
+    """Knobs of section 2's chain without any effect, and with these."""
+    return {**{knob: value for knob, value in NOTHING.items() if not (knob == "k" and "kappa" in knobs)}, **knobs}
+
+
+def vector_effects() -> dict[str, dict]:
+    """The usual knobs, by slot, of every effect in the table that vectors have code for: a new effect is among them."""
+    slots = {effect.slot: scale_chain(scene("sec2").evolve(**with_effect(dict(effect.usual)))).slots for effect in EFFECTS}
+    return {effect.slot: with_effect(dict(effect.usual)) for effect in EFFECTS
+            if getattr(slots[effect.slot], effect.slot) is not None and not unknown_slots(slots[effect.slot], "rk4")}
+
+
 def cases() -> dict[str, dict]:
     """Knobs by case: nothing, and one effect alone."""
-    return {"nothing": NOTHING, **{effect: {**NOTHING, **knobs} for effect, knobs in EFFECTS.items()}}
+    return {"nothing": NOTHING, **vector_effects()}
 
 
-FLOWS = {"nothing": NOTHING, "everything": EVERYTHING}
+def everything() -> dict:
+    """Knobs of section 2's chain with all of these effects."""
+    return with_effect({knob: value for effect in EFFECTS if effect.slot in vector_effects() for knob, value in effect.usual.items()})
+
+
+def flows() -> dict[str, dict]:
+    """Knobs by case of the flow."""
+    return {"nothing": NOTHING, "everything": everything()}
 
 
 def types_by_case() -> Types:
     """The types of all kernels' arguments."""
     return ({case: argument_types(knobs) for case, knobs in cases().items()},
-            {case: flow_types(knobs) for case, knobs in FLOWS.items()})
+            {case: flow_types(knobs) for case, knobs in flows().items()})
 
 
 def main() -> None:
@@ -131,9 +151,9 @@ def main() -> None:
     # A loop is read once: how many of its first rounds the compiler writes out is its own choice, case by case.
     llvmlite.binding.set_option("machine_code", "-unroll-allow-peeling=false")
     kernels = {"chain": run_short_chain, "batch": batch_steps}
-    signatures, flows = pickle.loads(sys.stdin.buffer.read())
+    signatures, of_flow = pickle.loads(sys.stdin.buffer.read())
     found = {name: {case: counts(kernel, signatures[case][name]) for case in signatures} for name, kernel in kernels.items()}
-    found["flow"] = {case: products(run_flow, flows[case]) for case in flows}
+    found["flow"] = {case: products(run_flow, of_flow[case]) for case in of_flow}
     print(json.dumps(found))
 
 

@@ -7,15 +7,17 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.kernels.equations.motion import Slots
 from granchain_core.scaling import scale_chain
+from granchain_core.scene.effects import ALWAYS, EFFECTS
 
 pytestmark = pytest.mark.quick
 
 
-@pytest.mark.parametrize("absent", ["dissipation", "tension", "foundation", "preload", "account"])
+@pytest.mark.parametrize("absent", [name for name in Slots._fields if name not in ALWAYS])
 def test_absent_effect_has_an_empty_slot(absent):
     """The slot of an effect that a scene does not have is None, not zero."""
-    bare = scene("sec2").evolve(dissipation="none", k=0.0, F0=0.0)
+    bare = scene("sec2").evolve(**{knob: value for effect in EFFECTS for knob, value in effect.off.items()})
     assert getattr(scale_chain(bare).slots, absent) is None
 
 

@@ -1,4 +1,4 @@
-"""An absent effect leaves no trace in the code of short chains, batches and the flow: damping, foundation and preload.
+"""An absent effect leaves no trace in the code of short chains, batches and the flow: each effect with code in vectors.
 
 What is counted is code for a processor whose registers hold a whole vector of eight doubles. It is compiled for that
 processor wherever the test runs, and not run. With narrower registers the compiler has too few of them for a step and
@@ -20,7 +20,7 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from machine_code import Types, types_by_case
+from machine_code import Types, types_by_case, vector_effects
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
@@ -85,6 +85,17 @@ def added(kernel: str, effect: str) -> dict:
 def test_the_code_is_vector_code(kernel):
     """Guards the counts below: the kernels must be vectorised."""
     assert code()[kernel]["nothing"]["packed"]["multiply"] > 100
+
+
+@x86
+@pytest.mark.parametrize("kernel", KERNELS)
+@pytest.mark.parametrize("effect", vector_effects())
+def test_every_effect_of_the_table_adds_code_that_is_not_there_without_it(kernel, effect):
+    """Its multiplications or additions, for each root in the code; none of the bare kernel's go."""
+    bare, more = code()[kernel]["nothing"]["packed"], code()[kernel][effect]["packed"]
+    a_root = [{kind: case[kind] / case["root"] for kind in ("multiply", "add")} for case in (bare, more)]
+    assert any(a_root[1][kind] > a_root[0][kind] for kind in a_root[0])
+    assert all(a_root[1][kind] >= 0.99 * a_root[0][kind] for kind in a_root[0])
 
 
 @x86
