@@ -30,6 +30,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def do(arguments: argparse.Namespace) -> None:
     """Find the steady states of a setting."""
     from granchain_core import attractors, save
+    from granchain_core.diagram.attractor import failed_sentence
     from granchain_core.diagram.attractors import MOST_STATES
     from granchain_core.input_checks import check_range
 
@@ -49,10 +50,11 @@ def do(arguments: argparse.Namespace) -> None:
         return
     print("share        max_output_force_N  stable  starts  motion")
     for one in found:
-        share = "–" if not arguments.random_states else f"{100.0 * one.share:.0f} ± {100.0 * one.share_error:.0f} %"
-        print(f"{share:>11}  {one.max_output_force:18.6g}  {_stability(one):>6}  {len(one.origins):6d}  "
+        print(f"{one.share_words:>11}  {one.max_output_force:18.6g}  {_stability(one):>6}  {len(one.origins):6d}  "
               f"{one.regime.sentence}")
     say(f"{chosen.name}: {len(found)} found from rest, both sweeps and {arguments.random_states} random states.")
+    for sentence in failed_sentence(found.failed):
+        say(f"{sentence}. The shares count them.")
 
 
 def _stability(one: Attractor) -> str:
@@ -60,12 +62,11 @@ def _stability(one: Attractor) -> str:
 
 
 def _json(found: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
-    """All steady states as one JSON object; shares are null where no random state was tried."""
-    tried = arguments.random_states > 0
+    """All steady states as one JSON object; shares are null where no random state was drawn."""
     return {"scene": found.scene.name, "knobs": found.scene.knobs, "random_states": arguments.random_states,
-            "seed": arguments.seed, "attractors": [{
+            "seed": arguments.seed, "failed": [origin.name for origin in found.failed], "attractors": [{
                 "regime": one.regime.name, "period": one.regime.period, "stable": one.stable,
                 **forces_json(one), "error_estimate": one.force_errors.output,
                 "error_estimate_elastic": one.force_errors.elastic, "error_estimate_input": one.force_errors.input,
-                "share": one.share if tried else None, "share_error": one.share_error if tried else None,
+                "share": one.share, "share_error": one.share_error,
                 "starts": [origin.name for origin in one.origins]} for one in found]}
