@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -178,15 +179,27 @@ def _correlations(found: Fit) -> list[tuple[str, str, float]]:
 
 
 def _rows(found: Fit) -> list[str]:
-    """A line for every datum that has a frequency, and for every record of several; samples of a force have none."""
-    from granchain_core.fit import RecordsTarget
+    """A line for every datum of a curve, every feature, and every record of several; one series has none."""
+    from granchain_core.fit import CurveTarget, FeatureTarget, RecordsTarget
 
     target, evaluation = found.target, found.evaluation
     if isinstance(target, RecordsTarget):
         return [f"{one.frequency:10.6g} Hz  χ² {float((evaluation.residuals[place] ** 2).sum()):10.5g} of "
-                f"{place.stop - place.start} samples  {regime}" for one, place, regime in target.parts(evaluation)]
-    frequencies = [float(f) for f in target.frequencies]
-    named = evaluation.regimes if len(evaluation.regimes) == len(frequencies) else [""] * len(frequencies)
-    return [f"{f:10.6g} Hz  model {model:10.5g}  {residual:+6.2f} standard deviations  {regime}"
-            for f, model, residual, regime in zip(frequencies, evaluation.model, evaluation.residuals, named,
-                                                  strict=bool(frequencies))]
+                f"{place.stop - place.start} samples  {_in_words(regime)}"
+                for one, place, regime in target.parts(evaluation)]
+    if isinstance(target, CurveTarget):
+        rows = zip(target.frequencies, target.measured.force, evaluation.model, evaluation.residuals,
+                   evaluation.regimes, strict=True)
+        return [f"{f:10.6g} Hz  measured {measured:10.5g} N  model {model:10.5g} N  "
+                f"{residual:+6.2f} standard deviations  {_in_words(regime)}"
+                for f, measured, model, residual, regime in rows]
+    if isinstance(target, FeatureTarget):
+        stated = zip(target.frequencies, evaluation.model, evaluation.residuals, strict=True)
+        return [f"stated {f:10.6g} Hz  model {model:10.5g} Hz  {residual:+6.2f} standard deviations"
+                for f, model, residual in stated]
+    return []
+
+
+def _in_words(regime: str) -> str:
+    """A regime of a fit in words: "period 3" for "periodic3"."""
+    return re.sub(r"^periodic(\d+)$", r"period \1", regime)

@@ -57,8 +57,9 @@ def do(arguments: argparse.Namespace) -> None:
             data["observer_stability_certain"] = found.observer_stability_certain
         show_json(data)
         return
+    count = len(found.newton_residuals) - 1
     print(f"{chosen.name}: orbit of period {found.period}, {found.stability_words()}, "
-          f"residual {found.residual:.1e} after {len(found.newton_residuals) - 1} Newton iterations")
+          f"residual {found.residual:.1e} after {count} Newton iteration{'' if count == 1 else 's'}")
     _show_multipliers("multipliers", found.multipliers, found.multiplier_errors)
     if found.observer_multipliers is not None:
         _show_multipliers(f"observer, {found.observer_stability_words()}", found.observer_multipliers,

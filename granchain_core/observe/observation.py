@@ -18,6 +18,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
+from ..experiment import model_minus_measured
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR
@@ -141,7 +142,7 @@ class Observation(RecordedMotion):
                  f"relative error of displacements {self.integration_error:.1e} by steps, "
                  f"{self.interpolation_error:.1e} between samples"]
         if self.residual is not None:
-            found.append(f"measured less computed: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
+            found.append(f"model − measured: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
         return found
 
 
@@ -237,5 +238,6 @@ def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | No
     """How far `computed` is from `measured`; None where nothing was measured."""
     if measured is None:
         return None
-    rms, size = float(np.sqrt(np.mean((computed - measured) ** 2))), float(np.sqrt(np.mean(measured**2)))
-    return Residual(rms, float(np.abs(computed - measured).max()), rms / size if size > 0.0 else float("inf"))
+    difference = model_minus_measured(computed, measured)
+    rms, size = float(np.sqrt(np.mean(difference**2))), float(np.sqrt(np.mean(measured**2)))
+    return Residual(rms, float(np.abs(difference).max()), rms / size if size > 0.0 else float("inf"))

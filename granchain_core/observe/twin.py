@@ -23,7 +23,7 @@ from ..scene.given import require_scene
 from ..state import State, checked_start
 from ..steady.settling.advance import run_until_settled
 from ..stop import Stop
-from .drift import is_drift, share_of_translation
+from .drift import departure_words, is_drift, share_of_translation
 from .pair import Pair
 
 #: Largest distance, relative to the motion, at which the difference of two motions still grows linearly.
@@ -142,12 +142,7 @@ class Twin:
                     "give more periods.")
         if self.verdict == "synchronises":
             return f"The observer synchronises: {factor}."
-        side = ""
-        if self.leading is not None and self.leading.imag == 0.0 and self.leading.real < 0.0:
-            side = ", to the other side each time"
-        if self.verdict == "drifts":
-            return f"The observer drifts: an offset of all its beads, which nothing pulls back, grows{side}; {factor}."
-        return f"The observer leaves its chain{side}: {factor}."
+        return f"The observer {departure_words(self.verdict == 'drifts', self.leading)}; {factor}."
 
 
 def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,

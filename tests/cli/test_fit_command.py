@@ -77,3 +77,9 @@ def test_the_picture_is_one_file(data: str, tmp_path: Path) -> None:
     assert not re.search(r"<(script|link)[^>]+(src|href)=", page)
     for name in ("measured", "residuals", "model", "landscape of D"):
         assert f'"name": "{name}"' in page or f'"name":"{name}"' in page
+
+
+def test_a_row_has_the_measured_force_and_the_models_motion_in_words(data: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["fit", *CHAIN, "--data", data, "--free", "D=50:200", "--error", "0.03", "--no-intervals", "--design", "4"]) == 0
+    rows = [line for line in capsys.readouterr().out.splitlines() if "standard deviations  " in line]
+    assert rows and all(re.search(r"Hz  measured +\S+ N  model +\S+ N +[+-]\S+ standard deviations  period 1$", row) for row in rows)

@@ -34,7 +34,7 @@ def test_the_distance_goes_with_the_leading_multiplier(shown, frequency: float) 
 
 def test_without_foundation_the_observer_drifts_and_is_told_so() -> None:
     found = twin(FREE, 1e-6, 30)
-    assert found.verdict == "drifts" and "drifts" in found.sentence and "nothing pulls back" in found.sentence
+    assert found.verdict == "drifts" and "drifts" in found.sentence and "nothing pulls them back" in found.sentence
     assert found.leading is not None and found.leading.real > 1.0 and found.leading.imag == 0.0
     assert found.translation > 0.8  # the uniform shift is most of what grows
     assert found.distance[-1] > 0.5  # and it is left in: nothing brings the observer back
@@ -69,7 +69,7 @@ def test_each_verdict_has_its_condition() -> None:
     for rate, leading, side in ((2.0, 0.5, "inside"), (0.5, 2.0, "outside")):
         sentence = told(rate, leading).sentence
         assert f"multiplied by {rate:g} every period" in sentence and f"modulus {leading:g}, is {side}" in sentence
-    assert ["other side" in told(2.0, leading).sentence for leading in (2.0, -2.0, -2.0 + 1.0j)] == [False, True, False]
+    assert ["alternating between the sides" in told(2.0, leading).sentence for leading in (2.0, -2.0, -2.0 + 1.0j)] == [False, True, False]
     assert replace(found, orbit=None).verdict == "drifts"  # the multiplier is not known
 
 
