@@ -39,7 +39,7 @@ class Cost:
     Attributes
     ----------
     wall_s : float
-        Wall-clock time [s].
+        Wall-clock time [s]; of a run, without the time of compiling kernels.
     steps : int
         Accepted steps.
     rhs : int

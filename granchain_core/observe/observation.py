@@ -11,7 +11,6 @@ on the place of the jump in it, so that one halving may gain little.
 from __future__ import annotations
 
 import json
-import time as clock
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
@@ -28,6 +27,7 @@ from ..result import RUN_ERRORS, Cost, ForceErrors, said_forces
 from ..scene import Scene
 from ..state import State, checked_start, rest
 from ..stop import Stop
+from ..stopwatch import Stopwatch
 from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
@@ -204,7 +204,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     if len(record.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_RECORDED:.0e} values; "
                        f"give at most {MOST_RECORDED // scene.N} samples.")
-    began = clock.perf_counter()
+    spent = Stopwatch()
     stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else checked_start(scene, start)
     chain = PushedChain(scene, record, stop)
@@ -229,7 +229,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         integration_error=float(integration[0]), interpolation_error=float(interpolation[0]),
         status="done" if errors[0] <= scene.accuracy else "accuracy-not-reached",
         force_errors=ForceErrors.of(np.array([np.nan, *errors[2:]])),
-        cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP),
+        cost=Cost.of(spent.seconds, chain.counts, FIXED_STEP),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )
 

@@ -15,7 +15,7 @@ from ...kernels.batch.checks import CHECK_DISTANCE, CHECK_PERIOD
 from ...regime import Regime
 from ...scaling import ScaledChain
 from ...scene import Scene
-from ...state import State, rest
+from ...state import State
 from ...stop import Stop
 from ..exponent_measurements import ExponentMeasurements
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
@@ -186,8 +186,10 @@ def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> Ste
 
 
 def failed(job: BatchJob) -> SteadyState:
-    """A member whose numbers stopped being finite."""
-    sentence = (f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping, or compute this frequency "
-                f"alone: granchain run SCENE --set f={job.scene.f:g}.")
-    return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(0), None, rest(job.scene), sentence,
-                       "not-finite", job.number)
+    """A member whose numbers stopped being finite, with the state from which it went on.
+
+    Which bead failed and when is found where it is settled alone (starts.py).
+    """
+    sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping."
+    return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(job.periods_run), None, job.scaled.to_si(job.y),
+                       sentence, "not-finite", job.number)
