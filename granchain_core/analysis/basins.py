@@ -27,7 +27,7 @@ from ..tables.provenance import Attribute
 MOST_CELLS = 250_000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Basins(Labelled):
     """Basins of attraction in a plane of starts.
 

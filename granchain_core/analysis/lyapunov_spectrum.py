@@ -38,7 +38,7 @@ MOST_PERIODS = 1_000_000
 _BLOCKS = 20
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LyapunovSpectrum(Labelled):
     """The Lyapunov exponents of a motion.
 

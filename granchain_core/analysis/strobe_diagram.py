@@ -69,7 +69,7 @@ class StrobePoint:
         return 1 + int((np.diff(found) > _APART * np.abs(found).max()).sum())
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class StrobeDiagram(Labelled):
     """Strobes over a knob.
 

@@ -37,7 +37,7 @@ from .signal import Signal
 _FOLLOWED = 0.03
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Driven(RecordedMotion):
     """The motion of a chain at the T knots of its signal, in SI.
 

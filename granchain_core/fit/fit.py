@@ -31,7 +31,7 @@ MOST_FREE = 30
 _AGAIN = 4
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Fit(Labelled):
     """The result of a fit.
 

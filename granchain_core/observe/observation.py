@@ -43,7 +43,7 @@ class Residual:
     relative: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Observation(RecordedMotion):
     """The motion of an observer at the T samples of its input, in SI.
 

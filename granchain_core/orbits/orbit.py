@@ -42,7 +42,7 @@ ROUNDING = 1e-13
 _MOST_HALVINGS = 6
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Orbit(Labelled):
     """A periodic orbit with its Floquet multipliers.
 

@@ -78,6 +78,12 @@ def test_every_public_class_with_numbers_is_among_them() -> None:
 
 
 @pytest.mark.parametrize("kind", RESULTS)
+def test_what_print_shows_is_the_summary_and_no_array(kind: str) -> None:
+    shown = repr(result(kind)).splitlines()
+    assert shown == [result(kind).heading(), *(f"  {line}" for line in result(kind).summary())]
+
+
+@pytest.mark.parametrize("kind", RESULTS)
 def test_a_file_opens_in_xarray_as_to_xarray_gives_it(kind: str, tmp_path: Path) -> None:
     """Names, axes, units, long names and numbers of each table; the root has the same attributes."""
     found = result(kind)
