@@ -1,9 +1,10 @@
-"""The tables of thresholds in docs/regimes.md, orbits.md and branches.md, which `python -m tools.update` writes.
+"""The tables of thresholds in docs/regimes.md and other pages, which `python -m tools.update` writes.
 
 A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
 it decides, `[rotation]` puts it into the table of rotation numbers on the same page, `[response]` into that of
-docs/orbits.md and `[branch]` into that of docs/branches.md. The comment's first sentence is its row; what
-follows, the reason, stays in the code. A number beside thresholds that is none itself is marked `[no threshold]`.
+docs/orbits.md, `[branch]` into that of docs/branches.md and `[safety factor]` into that of docs/accuracy.md. The
+comment's first sentence is its row; what follows, the reason, stays in the code. A number beside thresholds that is
+none itself is marked `[no threshold]`.
 """
 
 from __future__ import annotations
@@ -73,6 +74,11 @@ def table_of_responses() -> str:
 def table_of_rotation_numbers() -> str:
     """The second table of docs/regimes.md: rotation numbers."""
     return _table("rotation")
+
+
+def table_of_safety_factors() -> str:
+    """The table of docs/accuracy.md."""
+    return _table("safety factor")
 
 
 def table_of_branches() -> str:

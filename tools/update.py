@@ -2,7 +2,7 @@
 
     python -m tools.update
 
-- tables in the docs: thresholds (docs/regimes.md, docs/orbits.md, docs/branches.md), methods (docs/method.md), knobs
+- tables in the docs: thresholds (docs/regimes.md, orbits.md, branches.md, accuracy.md), methods (docs/method.md), knobs
   (docs/model.md), scenes (README.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
@@ -18,7 +18,13 @@ from pathlib import Path
 from tools import gallery, links, scales
 from tools.generated import with_part
 from tools.lists import table_of_knobs, table_of_methods, table_of_scenes
-from tools.thresholds import table_of_branches, table_of_regimes, table_of_responses, table_of_rotation_numbers
+from tools.thresholds import (
+    table_of_branches,
+    table_of_regimes,
+    table_of_responses,
+    table_of_rotation_numbers,
+    table_of_safety_factors,
+)
 
 _ROOT = Path(__file__).resolve().parents[1]
 _COMMAND = "python -m tools.update"
@@ -28,6 +34,7 @@ _TABLES = (
     ("docs/regimes.md", "rotation thresholds", table_of_rotation_numbers),
     ("docs/orbits.md", "thresholds", table_of_responses),
     ("docs/branches.md", "branch constants", table_of_branches),
+    ("docs/accuracy.md", "safety factors", table_of_safety_factors),
     ("docs/method.md", "methods", table_of_methods),
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "scenes", table_of_scenes),

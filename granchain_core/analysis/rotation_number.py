@@ -63,10 +63,11 @@ class RotationNumber(Labelled):
     value : float or None
         ρ in [0, ½], of the `curves`-th iterate of the stroboscopic map; None if it is not decided.
     average_error : float or None
-        Error of the average: three times the largest difference of the first, middle and last half of the record, and
-        of other projections.
+        Error of the average: `_STATED` (winding.py) times the largest difference of the first, middle and last half of
+        the record, and of other projections.
     step_error : float or None
-        Error of the integration: three times the difference from steps twice as long.
+        Error of the integration: `IRREGULAR` (integrate/safety_factors.py) times the difference from steps twice as
+        long.
     curves : int
         Number of closed curves that the motion visits in turn.
     periods : int

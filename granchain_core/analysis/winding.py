@@ -55,10 +55,10 @@ LENGTHS = 4
 class Winding:
     """The rotation number of states, or why there is none.
 
-    `value` is in [0, ½] and belongs to the `curves`-th iterate of the map. `error` is three times the largest of the
-    differences between three halves of the record (first, middle, last), between `projections` projections, and from
-    the line of the spectrum. `convergence` (4, 3) has a row for each length: states on one curve, rotation number of
-    the first so many, largest difference of their halves. Where `value` is None, `reason` says why.
+    `value` is in [0, ½] and belongs to the `curves`-th iterate of the map. `error` is `_STATED` times the largest of
+    the differences between three halves of the record (first, middle, last), between `projections` projections, and
+    from the line of the spectrum. `convergence` (4, 3) has a row for each length: states on one curve, rotation number
+    of the first so many, largest difference of their halves. Where `value` is None, `reason` says why.
     """
 
     value: float | None

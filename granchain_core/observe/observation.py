@@ -3,9 +3,9 @@
     m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
 
 The motion is computed with steps that are halved until the stated integration error is small enough, by the rules of
-`run` (integrate/stated.py), and once more from every second sample. Three times the difference from that is stated as
-the interpolation error. Where a contact's dashpot makes the force jump, it is of the order of the spacing and depends
-on the place of the jump in it, so that one halving may gain little.
+`run` (integrate/stated.py), and once more from every second sample. `IRREGULAR` times the difference from that is
+stated as the interpolation error. Where a contact's dashpot makes the force jump, it is of the order of the spacing and
+depends on the place of the jump in it, so that one halving may gain little.
 """
 
 from __future__ import annotations

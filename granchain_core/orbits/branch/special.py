@@ -29,8 +29,8 @@ SPECIAL_KINDS = (*BIFURCATIONS, "grazing")
 #: [branch] Width of an interval that is narrow enough, relative to the knob or to a thousandth of the range's larger
 #: end.
 RELATIVE_WIDTH = 1e-5
-#: [branch] The tangents at both ends of a bracket meet within this factor times its length. In a plane it is within once
-#: the length where the branch turns by less than 90°, and `_LARGEST_TURN` in steps.py is below that.
+#: [branch] The tangents at both ends of a bracket meet within this factor times its length. In a plane it is within
+#: once the length where the branch turns by less than 90°, and `_LARGEST_TURN` in steps.py is below that.
 _TANGENT_REACH = 1.25
 #: [branch] Offset of the next orbit from the root of the straight line through the test function, as a fraction of the
 #: bracket.
