@@ -17,7 +17,7 @@ from ..diagram.attractors import attractors_from
 from ..errors import BadInput
 from ..input_checks import axis_in, numbers_in
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, provenance

@@ -22,7 +22,7 @@ from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR
 from ..regime import Regime
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..steady.settling.advance import run_until_settled
 from ..stop import Stop

@@ -21,7 +21,7 @@ from ..integrate.safety_factors import IRREGULAR
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..steady.batch.starts import methods_alone
 from ..steady.batch.threads import on_all_cores

@@ -18,7 +18,7 @@ from ..integrate import Engine, following_setting
 from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State, rest
 from ..steady.batch.job import Start
 from ..steady.exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK

@@ -23,7 +23,7 @@ from ..laws import LAWS
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State, checked_start, rest
 from ..stop import Stop
 from ..stopwatch import Stopwatch

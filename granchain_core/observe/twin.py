@@ -18,7 +18,7 @@ from ..integrate.methods import ADAPTIVE
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State, checked_start
 from ..steady.settling.advance import run_until_settled
 from ..stop import Stop

@@ -19,7 +19,7 @@ from ..integrate.start import at_phase_0
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..steady.returns import relative_change

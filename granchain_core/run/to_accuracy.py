@@ -21,7 +21,7 @@ from ..recorded_motion import MOST_RECORDED, MOST_SAMPLES
 from ..regime import Regime
 from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..scene.validity import overlap_warnings
 from ..state import State, checked_start, rest
 from ..steady.regime_criteria import find_period

@@ -140,7 +140,7 @@ def test_errors_and_regimes_stand_beside_the_numbers() -> None:
 
 ALONE = "rk4-split or dop853"
 BATCH = "rk4 corrected at contact events, in batches"
-FLOW = "tangent flow (DOP853 in regularised time)"
+FLOW = "tangent flow (DOP853, time substitution at events)"
 
 
 @pytest.mark.parametrize(("kind", "method"), [

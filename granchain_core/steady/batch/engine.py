@@ -26,7 +26,7 @@ from ...kernels.strobes.periodicity import LONGEST_PERIOD, SETTLED_DISTANCE
 from ...regime import Regime
 from ...scaling import scale_chain, scale_like
 from ...scene import Scene
-from ...scene.driven import refuse_undriven
+from ...scene.refusals import refuse_undriven
 from ...state import rest
 from ...stop import Stop
 from ..exponent_measurements import EXPONENT_BLOCKS, PERIODS_IN_BLOCK
