@@ -6,11 +6,11 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
+from .common import chosen_scene, in_background, say, show_json, show_percent
 from .forces import forces_json
-from .options import add_json, add_scene, whole
+from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
-from .picture import check_files, write_picture
+from .picture import check_files, write_files
 
 if TYPE_CHECKING:
     from granchain_core import Attractor, Attractors
@@ -22,14 +22,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--random-states", type=whole, default=64, metavar="n",
                         help="random starts, 0 to 10,000, besides rest and the sweeps up and down")
     parser.add_argument("--seed", type=whole, default=0, metavar="S", help="of the random starts")
-    parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
 
 def do(arguments: argparse.Namespace) -> None:
     """Find the steady states of a setting."""
-    from granchain_core import attractors, save
+    from granchain_core import attractors
     from granchain_core.diagram.attractor import failed_sentence
     from granchain_core.diagram.attractors import MOST_STATES
     from granchain_core.input_checks import check_range
@@ -41,10 +41,7 @@ def do(arguments: argparse.Namespace) -> None:
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: attractors(chosen, arguments.random_states, arguments.seed, stop, progress),
                           reports=True)
-    with unbroken(arguments.out):
-        if arguments.out:
-            save(found, arguments.out)
-        write_picture(arguments.picture, f"Attractors of {chosen.name}", found)
+    write_files(arguments, f"Attractors of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found, arguments))
         return
