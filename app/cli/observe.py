@@ -24,7 +24,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_result(parser)
     parser.add_argument("--input", required=True, metavar="FILE",
                         help="a table of time, force and, if measured, output force; or an HDF5 file of granchain")
-    parser.add_argument("--time-unit", metavar="UNIT", help="s, ms or us, if the header names no unit")
+    parser.add_argument("--time-unit", metavar="UNIT", help="s, ms or µs (also us), if the header names no unit")
     parser.add_argument("--force-unit", metavar="UNIT", help="N, mN, µN, kN, lbf or kgf, if the header names no unit")
     add_answers(parser)
     parser.add_argument("--offset", default="0", metavar="N|median",
