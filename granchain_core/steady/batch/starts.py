@@ -31,8 +31,8 @@ def methods_alone(scene: Scene) -> str:
 def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
     """Steady states from starts of one structure and one N, in the order in which they are decided.
 
-    What a batch leaves undecided is settled alone, and what fails in a batch too: then the failure says which bead and
-    when. Raises `Cancelled`.
+    A start that a batch leaves undecided is settled alone. So is a start that fails in the batch: settled alone, its
+    failure says which bead failed and when. Raises `Cancelled`.
     """
     others = iter(starts)
     first = next(others, None)
