@@ -44,7 +44,7 @@ class Regime:
     approaches : int or None
         Period of an orbit that an unsettled motion approaches.
     driven : bool
-        Whether there is a drive; without one the motion only moves from its start.
+        Whether there is a drive. Without one, as after an impact, the motion is a transient and `name` is "unsettled".
     return_distance : float or None
         Median distance from the strobes of a record's second half to the nearest of its first half, relative to the
         largest displacement and velocity (w in a batch); known where the Lyapunov exponent is not distinguished from
@@ -87,7 +87,10 @@ class Regime:
 
     @classmethod
     def undriven(cls, periods_run: int) -> Regime:
-        """A motion from its start without a drive, after `periods_run` times 1/f."""
+        """A transient: the motion from its start without a drive, after `periods_run` times 1/f.
+
+        Its name is "unsettled", which files and JSON have had for it from the beginning; `driven` tells it apart.
+        """
         return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, driven=False)
 
     @property
@@ -99,16 +102,16 @@ class Regime:
 
     @property
     def evidence(self) -> str:
-        """|μ| where it was computed, else the decay that was seen; empty where neither is known.
+        """|μ| where it was computed, else the contraction that was seen; empty where neither is known.
 
-        A batch that followed a motion to its orbit without multipliers assumed a decay: it says nothing of the motion.
+        A batch that followed a motion to its orbit without multipliers assumed a contraction: that is no evidence.
         """
         shown = self.period or self.approaches or 1
         if self.multiplier is not None:
             return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
         if self.decay is None or self.followed:
             return ""
-        return f"decay {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
+        return f"contracts by {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
 
     @property
     def sentence(self) -> str:

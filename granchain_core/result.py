@@ -39,7 +39,7 @@ class Cost:
     Attributes
     ----------
     wall_s : float
-        Wall-clock time [s].
+        Wall-clock time [s]; of a run, without the time of compiling kernels.
     steps : int
         Accepted steps.
     rhs : int
@@ -141,7 +141,7 @@ class HasForces(LargestForces, Protocol):
     def force_errors(self) -> ForceErrors: ...
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Run(RecordedMotion):
     """A recorded motion: T samples of N beads and N + 1 contacts, in SI.
 

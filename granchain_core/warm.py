@@ -2,8 +2,8 @@
 
 The kernels of a new *structure* are compiled once per machine. A structure is the effects of a scene and their law,
 whether its beads are alike, and the vector that its bodies fit into. A slider changes it only where it turns an effect
-on or off (k, D, F0), makes beads unequal, or takes N over 6, 14 or 30. The kernels come in pieces, each of which can be
-compiled in its own process.
+on or off (k, D, F0), makes beads unequal, or takes the bodies, N + 2, over a width of `CHAIN_WIDTHS`. The kernels come
+in pieces, each of which can be compiled in its own process.
 """
 
 from __future__ import annotations
@@ -178,15 +178,15 @@ def warm_scenes(names: Iterable[str] = USUAL, workers: int = 2) -> Iterable[str]
     A structure's pieces are compiled in one process: they share parts that are compiled once a process. Every other
     process begins with the last piece, so that none waits for the kernels that all structures share.
     """
-    seen: dict[str, Scene] = {}
+    chains: dict[str, Scene] = {}
     for name in names:
-        seen.setdefault(structure(scene(name)), scene(name))
+        chains.setdefault(structure(scene(name)), scene(name))
     orders = list(PIECES), list(reversed(PIECES))
     with ExitStack() as stack:
         pools = [stack.enter_context(pool(1)) for _ in range(workers)]
         with starting():
-            jobs = [one_of_them.submit(_compile, (one, piece))
-                    for one, one_of_them, pieces in zip(seen.values(), cycle(pools), cycle(orders), strict=False)
+            jobs = [worker.submit(_compile, (chain, piece))
+                    for chain, worker, pieces in zip(chains.values(), cycle(pools), cycle(orders), strict=False)
                     for piece in pieces]
         for job in as_completed(jobs):
             yield job.result()

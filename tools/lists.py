@@ -1,8 +1,11 @@
-"""Lists that follow from the tables in the code: the knobs in docs/model.md and the scenes in README.md."""
+"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes (README.md)."""
 
 from __future__ import annotations
 
+import math
+
 from granchain_core import scene, scene_names
+from granchain_core.integrate import METHODS
 from granchain_core.quantities import QUANTITIES, Quantity
 from tools.thresholds import printed
 
@@ -21,6 +24,18 @@ def allowed(knob: Quantity) -> str:
         return words
     numbers = f"{printed(knob.low)} to {printed(knob.high)}"
     return f"{words}, or {numbers}" if words else numbers + (", whole" if knob.whole else "")
+
+
+def table_of_methods() -> str:
+    """The table of docs/method.md: every method with its orders in theory and as observed, and what it cannot do."""
+    rows = []
+    for one in METHODS.values():
+        orders = (one.order, one.order_at_events, one.observed_smooth, one.observed_order, one.observed_with_cut)
+        cells = [one.title, *("–" if math.isnan(order) else f"{order:g}" for order in orders), one.restrictions]
+        rows.append(f"| `{one.name}` | {' | '.join(cells)} |")
+    return "\n".join(["| method | what it is | order in theory, smooth | … at contact events | observed order, smooth "
+                      "| … at contact events | … with a tension cut | restrictions |",
+                      "|---|---|---|---|---|---|---|---|", *rows])
 
 
 def table_of_scenes() -> str:

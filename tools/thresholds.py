@@ -1,8 +1,10 @@
-"""The tables of thresholds in docs/regimes.md and docs/orbits.md, which `python -m tools.update` writes.
+"""The tables of thresholds in docs/regimes.md and other pages, which `python -m tools.update` writes.
 
 A threshold is a constant in `granchain_core` whose `#:` comment begins with a mark: `[period n]` names the regimes that
-it decides, and `[response]` puts it into the table of docs/orbits.md. The comment's first sentence is its row; what
-follows, the reason, stays in the code. A number beside thresholds that is none itself is marked `[no threshold]`.
+it decides, `[rotation]` puts it into the table of rotation numbers on the same page, `[response]` into that of
+docs/orbits.md, `[branch]` into that of docs/branches.md and `[safety factor]` into that of docs/accuracy.md. The
+comment's first sentence is its row; what follows, the reason, stays in the code. A number beside thresholds that is
+none itself is marked `[no threshold]`.
 """
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ def marked_constants() -> list[Marked]:
     for path in sorted(_CORE.rglob("*.py")):
         for mark, comment, name in _MARKED.findall(path.read_text(encoding="utf-8")):
             first, *_ = re.split(r"(?<=\.) (?=[A-Z])", comment.replace("\n#:", "").strip())
-            what = first.rstrip(".").replace("|μ|", r"\|μ\|")
+            what = first.rstrip(".").replace("|", r"\|")
             found.append(Marked(mark, what, path.relative_to(_CORE).as_posix(), name))
     return found
 
@@ -66,7 +68,26 @@ def table_of_regimes() -> str:
 
 def table_of_responses() -> str:
     """The table of docs/orbits.md: the rules on a curve, then those of an orbit alone."""
-    rows = [one for one in marked_constants() if one.mark == "response"]
-    rows.sort(key=lambda one: one.file, reverse=True)
+    return _table("response", reverse=True)
+
+
+def table_of_rotation_numbers() -> str:
+    """The second table of docs/regimes.md: rotation numbers."""
+    return _table("rotation")
+
+
+def table_of_safety_factors() -> str:
+    """The table of docs/accuracy.md."""
+    return _table("safety factor")
+
+
+def table_of_branches() -> str:
+    """The table of docs/branches.md."""
+    return _table("branch")
+
+
+def _table(mark: str, reverse: bool = False) -> str:
+    """All constants with a mark, file by file."""
+    rows = sorted((one for one in marked_constants() if one.mark == mark), key=lambda one: one.file, reverse=reverse)
     return "\n".join(["| what | threshold | constant and file |", "|---|---|---|",
                       *(f"| {one.cells}" for one in rows)])

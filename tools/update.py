@@ -2,7 +2,8 @@
 
     python -m tools.update
 
-- tables in the docs: thresholds (docs/regimes.md, docs/orbits.md), knobs (docs/model.md), scenes (README.md);
+- tables in the docs: thresholds (docs/regimes.md, orbits.md, branches.md, accuracy.md), methods (docs/method.md), knobs
+  (docs/model.md), scenes (README.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -16,19 +17,38 @@ from pathlib import Path
 
 from tools import gallery, links, scales
 from tools.generated import with_part
-from tools.lists import table_of_knobs, table_of_scenes
-from tools.thresholds import table_of_regimes, table_of_responses
+from tools.lists import table_of_knobs, table_of_methods, table_of_scenes
+from tools.thresholds import (
+    table_of_branches,
+    table_of_regimes,
+    table_of_responses,
+    table_of_rotation_numbers,
+    table_of_safety_factors,
+)
 
 _ROOT = Path(__file__).resolve().parents[1]
 _COMMAND = "python -m tools.update"
+#: Every table that follows from the code: its page, its name in the page's marks, and what writes it.
+_TABLES = (
+    ("docs/regimes.md", "thresholds", table_of_regimes),
+    ("docs/regimes.md", "rotation thresholds", table_of_rotation_numbers),
+    ("docs/orbits.md", "thresholds", table_of_responses),
+    ("docs/branches.md", "branch constants", table_of_branches),
+    ("docs/accuracy.md", "safety factors", table_of_safety_factors),
+    ("docs/method.md", "methods", table_of_methods),
+    ("docs/model.md", "knobs", table_of_knobs),
+    ("README.md", "scenes", table_of_scenes),
+)
 
 
 def pages() -> dict[Path, str]:
     """The pages with a table that follows from the code, and their text as it should be now."""
-    tables = {"docs/regimes.md": ("thresholds", table_of_regimes), "docs/orbits.md": ("thresholds", table_of_responses),
-              "docs/model.md": ("knobs", table_of_knobs), "README.md": ("scenes", table_of_scenes)}
-    return {path: with_part(path.read_text(encoding="utf-8"), name, _COMMAND, table())
-            for path, (name, table) in ((_ROOT / page, entry) for page, entry in tables.items())}
+    found: dict[Path, str] = {}
+    for page, name, table in _TABLES:
+        path = _ROOT / page
+        text = found[path] if path in found else path.read_text(encoding="utf-8")
+        found[path] = with_part(text, name, _COMMAND, table())
+    return found
 
 
 def main() -> None:

@@ -6,11 +6,11 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from .common import chosen_scene, in_background, say, show_json, show_percent, unbroken
+from .common import chosen_scene, in_background, say, show_json, show_percent
 from .forces import forces_json
-from .options import add_json, add_scene, whole
+from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
-from .picture import check_files, write_picture
+from .picture import check_files, write_files
 
 if TYPE_CHECKING:
     from granchain_core import Attractor, Attractors
@@ -22,14 +22,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--random-states", type=whole, default=64, metavar="n",
                         help="random starts, 0 to 10,000, besides rest and the sweeps up and down")
     parser.add_argument("--seed", type=whole, default=0, metavar="S", help="of the random starts")
-    parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
 
 def do(arguments: argparse.Namespace) -> None:
     """Find the steady states of a setting."""
-    from granchain_core import attractors, save
+    from granchain_core import attractors
+    from granchain_core.diagram.attractor import failed_sentence
     from granchain_core.diagram.attractors import MOST_STATES
     from granchain_core.input_checks import check_range
 
@@ -40,19 +41,17 @@ def do(arguments: argparse.Namespace) -> None:
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: attractors(chosen, arguments.random_states, arguments.seed, stop, progress),
                           reports=True)
-    with unbroken(arguments.out):
-        if arguments.out:
-            save(found, arguments.out)
-        write_picture(arguments.picture, f"Attractors of {chosen.name}", found)
+    write_files(arguments, f"Attractors of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found, arguments))
         return
     print("share        max_output_force_N  stable  starts  motion")
     for one in found:
-        share = "–" if not arguments.random_states else f"{100.0 * one.share:.0f} ± {100.0 * one.share_error:.0f} %"
-        print(f"{share:>11}  {one.max_output_force:18.6g}  {_stability(one):>6}  {len(one.origins):6d}  "
+        print(f"{one.share_words:>11}  {one.max_output_force:18.6g}  {_stability(one):>6}  {len(one.origins):6d}  "
               f"{one.regime.sentence}")
     say(f"{chosen.name}: {len(found)} found from rest, both sweeps and {arguments.random_states} random states.")
+    for sentence in failed_sentence(found.failed):
+        say(f"{sentence}. The shares count them.")
 
 
 def _stability(one: Attractor) -> str:
@@ -60,12 +59,11 @@ def _stability(one: Attractor) -> str:
 
 
 def _json(found: Attractors, arguments: argparse.Namespace) -> dict[str, Any]:
-    """All steady states as one JSON object; shares are null where no random state was tried."""
-    tried = arguments.random_states > 0
+    """All steady states as one JSON object; shares are null where no random state was drawn."""
     return {"scene": found.scene.name, "knobs": found.scene.knobs, "random_states": arguments.random_states,
-            "seed": arguments.seed, "attractors": [{
+            "seed": arguments.seed, "failed": [origin.name for origin in found.failed], "attractors": [{
                 "regime": one.regime.name, "period": one.regime.period, "stable": one.stable,
                 **forces_json(one), "error_estimate": one.force_errors.output,
                 "error_estimate_elastic": one.force_errors.elastic, "error_estimate_input": one.force_errors.input,
-                "share": one.share if tried else None, "share_error": one.share_error if tried else None,
+                "share": one.share, "share_error": one.share_error,
                 "starts": [origin.name for origin in one.origins]} for one in found]}

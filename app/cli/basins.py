@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .common import chosen_scene, in_background, show_json, show_percent
-from .options import add_json, add_scene, values_from
+from .options import add_json, add_out, add_scene, values_from
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_files
 
 if TYPE_CHECKING:
     from granchain_core import Basins
@@ -23,6 +23,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     for name, example in (("--x", "u1=-1e-6:1e-6:40"), ("--y", "v1=-0.01:0.01:40")):
         parser.add_argument(name, required=True, metavar="COORDINATE=a:b:n",
                             help=f"n values of a bead's displacement u [m] or velocity v [m/s]; for example {example}")
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
@@ -33,13 +34,13 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core.analysis.basins import MOST_CELLS
 
     chosen = chosen_scene(arguments)
-    check_picture(arguments.picture)
+    check_files(arguments)
     (x, x_ends, x_spaced), (y, y_ends, y_spaced) = (
         values_from(option, text, MOST_CELLS) for option, text in (("--x", arguments.x), ("--y", arguments.y)))
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: basins(chosen, (x, x_spaced(*x_ends)), (y, y_spaced(*y_ends)), stop, progress),
                           reports=True)
-    write_picture(arguments.picture, f"Basins of {chosen.name}", found)
+    write_files(arguments, f"Basins of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found))
         return

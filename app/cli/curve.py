@@ -7,12 +7,14 @@ import math
 import sys
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from granchain_core import BadInput
 from granchain_core.pieces import CHECK_KERNELS, FIXED_STEP_KERNELS
 
 from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
 from .compiling import compiling_beside
-from .data_options import add_amplitude, chosen_amplitude
+from .data_options import add_amplitude, chosen_amplitude, with_answers
 from .keeping import add_resume, finished, keeping
 from .options import add_result, add_scheduler, number, scheduler_of, whole
 from .picture import add_option as add_picture
@@ -20,6 +22,7 @@ from .picture import check_files, write_picture
 
 if TYPE_CHECKING:
     from granchain_core import Curve, CurvePoint
+    from granchain_core.experiment import Difference, Measured
     from granchain_core.steady.curve.request import CurveRequest
 
 
@@ -30,16 +33,18 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="high", type=number, required=True, metavar="F", help="highest frequency [Hz]")
     parser.add_argument("--points", type=whole, required=True, metavar="n")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
+    parser.add_argument("--data", metavar="FILE",
+                        help="a measured curve, drawn over it in --picture; the misfit is printed")
+    parser.add_argument("--elastic", action="store_true",
+                        help="compare and draw the elastic part of the output force, as the paper does")
     add_amplitude(parser)
     add_scheduler(parser)
     add_resume(parser, "curve")
     add_picture(parser)
 
 
-def do(arguments: argparse.Namespace) -> None:
-    """Compute the resonance curve of a scene."""
-    import numpy as np
-
+def do(arguments: argparse.Namespace) -> int:
+    """Compute the resonance curve of a scene; the status is that of a failure where every point failed."""
     from granchain_core.steady.curve.request import CurveRequest
     from granchain_core.steady.curve.resonance_curve import MOST_POINTS
 
@@ -49,15 +54,50 @@ def do(arguments: argparse.Namespace) -> None:
     low, high = chosen.evolve(f=arguments.low).f, chosen.evolve(f=arguments.high).f
     if low > high:
         raise BadInput(f"--from {low:g} is above --to {high:g}; exchange them, and sweep with --start down.")
+    measured = _measured(arguments)
     amplitude = chosen_amplitude(arguments, chosen)
     with compiling_beside(chosen, CHECK_KERNELS, FIXED_STEP_KERNELS):
         swept = _swept(arguments, CurveRequest(chosen, tuple(np.linspace(low, high, arguments.points).tolist()),
                                                arguments.start, amplitude))
-    write_picture(arguments.picture, f"Resonance curve of {chosen.name}", swept)
+    write_picture(arguments.picture, f"Resonance curve of {chosen.name}", swept, elastic=arguments.elastic,
+                  measured=measured)
+    difference = None if measured is None else _difference(swept, measured, arguments.elastic)
     if arguments.json:
-        show_json(_curve_json(swept))
+        show_json({**_curve_json(swept), **({} if difference is None else {"misfit": _misfit_json(difference)})})
     else:
         _show_curve(swept)
+        if difference is not None:
+            print(f"{'Elastic part' if arguments.elastic else 'Total'} of the output force. {difference.sentence}")
+    return 3 if all(point.failure for point in swept.points) else 0
+
+
+def _measured(arguments: argparse.Namespace) -> Measured | None:
+    """The curve of --data, said to the user; None without it."""
+    from granchain_core.experiment import Measured, read_experiment
+
+    if arguments.data is None:
+        return None
+    found = with_answers(arguments, lambda answers: read_experiment(arguments.data, answers, ("curve",)))
+    assert isinstance(found, Measured), "nothing else was wanted"
+    say(f"{found.understood}.")
+    return found
+
+
+def _difference(swept: Curve, measured: Measured, elastic: bool) -> Difference:
+    """The computed curve beside the measured one; failed points are left out."""
+    from granchain_core.experiment import compared
+
+    force = swept.column("max_output_force_elastic" if elastic else "max_output_force")
+    known = np.isfinite(force)
+    return compared(measured, swept.column("frequency")[known], force[known])
+
+
+def _misfit_json(difference: Difference) -> dict[str, Any]:
+    """The misfit as an object: null where no measured frequency lies on the curve."""
+    there = difference.compared
+    gaps = difference.residuals[there]
+    return {"compared": int(there.sum()), "rms": float(np.sqrt(np.mean(gaps**2))) if there.any() else None,
+            "mean": float(gaps.mean()) if there.any() else None}
 
 
 def _swept(arguments: argparse.Namespace, asked: CurveRequest) -> Curve:
@@ -109,6 +149,7 @@ def _curve_json(swept: Any) -> dict[str, Any]:
         **{name: [finite_or_null(getattr(p, name)) for p in swept.points]
            for name in ("max_output_force", "max_output_force_elastic", "max_input_force")},
         "regime": [p.regime.name for p in swept.points], "period": [p.regime.period for p in swept.points],
+        "status": [p.status for p in swept.points], "failure": [p.failure or None for p in swept.points],
         "error_estimate": [p.force_errors.output for p in swept.points],
         "error_estimate_elastic": [p.force_errors.elastic for p in swept.points],
         "error_estimate_input": [p.force_errors.input for p in swept.points], "wall_s": swept.wall_s,

@@ -10,7 +10,7 @@ from granchain_core import BadInput, Scene
 
 from .common import in_background, say, show_json, unbroken
 from .data_options import with_answers
-from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json
+from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, status_in_words
 from .picture import write_picture
 
 if TYPE_CHECKING:
@@ -109,6 +109,6 @@ def _json(found: Driven) -> dict[str, Any]:
 
 def _show(found: Driven) -> None:
     """A driven motion in a few lines."""
-    print(f"{found.scene.name}: {found.signal.words}; {found.status}")
+    print(f"{found.scene.name}: {found.signal.words}; {status_in_words(found.status)}")
     print(forces_in_words(found))
     print(errors_in_words(found))

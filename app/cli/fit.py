@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 from typing import TYPE_CHECKING, Any
 
 from granchain_core import BadInput
+from granchain_core.text import number_in
 
 from .common import check_points, chosen_scene, in_background, say, show_json
 from .data_options import add_answers, with_answers
@@ -17,6 +19,10 @@ from .picture import check_files, write_picture
 if TYPE_CHECKING:
     from granchain_core import Fit, Scene
     from granchain_core.fit import Free
+
+
+#: An error by the unit of the data.
+_EXAMPLES = {"%": "3%", "N": "0.2N", "Hz": "3Hz"}
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -34,9 +40,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--prior", action="append", default=[], metavar="NAME=mean:sd",
                         help="mean and standard deviation of what is known of a parameter besides the data")
     parser.add_argument("--per-frequency", action="store_true", help="one A0 for each frequency")
-    parser.add_argument("--error", type=number, metavar="E",
-                        help="standard deviation of the data where the file states none: a part of each force (curve), "
-                             "N (series) or Hz (features)")
+    parser.add_argument("--error", metavar="E",
+                        help="standard deviation of the data where the file states none: a fraction of each force or "
+                             "per cent (curve: 0.03 or 3%%), newtons (series: 0.2 or 0.2N), hertz (features: 3 or 3Hz)")
     parser.add_argument("--elastic", action="store_true", help="compare the elastic part of the output force")
     parser.add_argument("--start", default="rest", metavar="rest|up|down")
     parser.add_argument("--design", type=whole, default=0, metavar="n", help="sets of parameters that are tried first")
@@ -95,9 +101,8 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
 
     if bool(arguments.data) == (arguments.features is not None):
         raise BadInput("Give either --data FILE or --features paper.")
-    if arguments.error is not None and not arguments.error > 0.0:
-        raise BadInput(f"--error {arguments.error:g} must be above 0.")
     if arguments.features is not None:
+        error = _error(arguments.error, "Hz")
         if arguments.features != "paper":
             raise BadInput(f"--features {arguments.features!r} is not known; there is 'paper'.")
         if arguments.per_frequency:
@@ -106,7 +111,7 @@ def _target(arguments: argparse.Namespace, chosen: Scene) -> Any:
         check_points(arguments.points, 3, 1000)
         low, high = next(((low, high) for name, low, high in chosen.ranges if name == "f"), (20.0, 160.0))
         grid = np.linspace(low, high, arguments.points)
-        return FeatureTarget(stated_features(), grid, arguments.error or 3.0, arguments.start)
+        return FeatureTarget(stated_features(), grid, error or 3.0, arguments.start)
     return _measured_target(arguments)
 
 
@@ -126,13 +131,28 @@ def _measured_target(arguments: argparse.Namespace) -> Any:
     if isinstance(found[0], Measured):
         if at:
             raise BadInput("A curve has its own frequencies; --at is for series.")
-        return CurveTarget(found[0], arguments.error, arguments.elastic, arguments.start)
+        return CurveTarget(found[0], _error(arguments.error, "%"), arguments.elastic, arguments.start)
     if arguments.elastic or (arguments.per_frequency and len(files) == 1):
         raise BadInput("A series has one frequency and total forces; --per-frequency is for curves and several series, "
                        "--elastic for curves.")
-    records = [SeriesTarget(one, arguments.error, f) for one, f in zip(found, at or [None], strict=True)
+    error = _error(arguments.error, "N")
+    records = [SeriesTarget(one, error, f) for one, f in zip(found, at or [None], strict=True)
                if isinstance(one, Series)]
     return RecordsTarget(tuple(records)) if len(records) > 1 else records[0]
+
+
+def _error(text: str | None, unit: str) -> float | None:
+    """The standard deviation that --error gives, with or without its unit; a per cent is a hundredth of each force."""
+    if text is None:
+        return None
+    plain = text.removesuffix(unit)
+    found = number_in(plain)
+    if found is None:
+        raise BadInput(f"--error {text[:40]!r} is not a number, or not in {unit}; these data take {unit}, for example "
+                       f"--error {_EXAMPLES[unit]}.")
+    if not found > 0.0:
+        raise BadInput(f"--error {text[:40]} must be above 0.")
+    return found / 100.0 if unit == "%" and plain != text else found
 
 
 def _free(arguments: argparse.Namespace) -> list[Free]:
@@ -178,15 +198,27 @@ def _correlations(found: Fit) -> list[tuple[str, str, float]]:
 
 
 def _rows(found: Fit) -> list[str]:
-    """A line for every datum that has a frequency, and for every record of several; samples of a force have none."""
-    from granchain_core.fit import RecordsTarget
+    """A line for every datum of a curve, every feature, and every record of several; one series has none."""
+    from granchain_core.fit import CurveTarget, FeatureTarget, RecordsTarget
 
     target, evaluation = found.target, found.evaluation
     if isinstance(target, RecordsTarget):
         return [f"{one.frequency:10.6g} Hz  χ² {float((evaluation.residuals[place] ** 2).sum()):10.5g} of "
-                f"{place.stop - place.start} samples  {regime}" for one, place, regime in target.parts(evaluation)]
-    frequencies = [float(f) for f in target.frequencies]
-    named = evaluation.regimes if len(evaluation.regimes) == len(frequencies) else [""] * len(frequencies)
-    return [f"{f:10.6g} Hz  model {model:10.5g}  {residual:+6.2f} standard deviations  {regime}"
-            for f, model, residual, regime in zip(frequencies, evaluation.model, evaluation.residuals, named,
-                                                  strict=bool(frequencies))]
+                f"{place.stop - place.start} samples  {_in_words(regime)}"
+                for one, place, regime in target.parts(evaluation)]
+    if isinstance(target, CurveTarget):
+        rows = zip(target.frequencies, target.measured.force, evaluation.model, evaluation.residuals,
+                   evaluation.regimes, strict=True)
+        return [f"{f:10.6g} Hz  measured {measured:10.5g} N  model {model:10.5g} N  "
+                f"{residual:+6.2f} standard deviations  {_in_words(regime)}"
+                for f, measured, model, residual, regime in rows]
+    if isinstance(target, FeatureTarget):
+        stated = zip(target.frequencies, evaluation.model, evaluation.residuals, strict=True)
+        return [f"stated {f:10.6g} Hz  model {model:10.5g} Hz  {residual:+6.2f} standard deviations"
+                for f, model, residual in stated]
+    return []
+
+
+def _in_words(regime: str) -> str:
+    """A regime of a fit in words: "period 3" for "periodic3"."""
+    return re.sub(r"^periodic(\d+)$", r"period \1", regime)

@@ -47,6 +47,12 @@ def errors_in_words(found: Run | Driven) -> str:
             f"{energy_in_words(found.energy_residual)}; {cost_in_words(found.cost)}")
 
 
+def status_in_words(status: str) -> str:
+    """Whether the accuracy asked for was reached, from a `status`."""
+    return {"done": "accuracy reached", "accuracy-not-reached": "accuracy not reached",
+            "over-budget": "accuracy not reached within the budget"}[status]
+
+
 def energy_in_words(residual: float | None) -> str:
     """How well the energy account closes; a method in (u, v) has none."""
     return "no energy account" if residual is None else f"energy closes to {residual:.1e}"

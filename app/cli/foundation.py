@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from granchain_core import Scene
-from granchain_core.scene.kappa import moved_kappa
+from granchain_core.scene.validity import moved_kappa
 
 
 def kept_spring(before: Scene, after: Scene, named: Collection[str]) -> str:

@@ -6,7 +6,9 @@ import argparse
 import sys
 
 from .common import chosen_scene, in_background, show_json, show_percent
-from .options import add_json, add_scene, whole
+from .options import add_json, add_out, add_scene, whole
+from .picture import add_option as add_picture
+from .picture import check_files, write_files
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -14,7 +16,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene(parser)
     parser.add_argument("--periods", type=whole, default=400, metavar="P",
                         help="drive periods over which the exponents are means")
+    add_out(parser)
     add_json(parser)
+    add_picture(parser)
 
 
 def do(arguments: argparse.Namespace) -> None:
@@ -22,9 +26,11 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core import lyapunov_spectrum
 
     chosen = chosen_scene(arguments)
+    check_files(arguments)
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: lyapunov_spectrum(chosen, arguments.periods, stop=stop, progress=progress),
                           reports=True)
+    write_files(arguments, f"Lyapunov spectrum of {chosen.name}", found)
     if arguments.json:
         low, high = found.dimension_range or (None, None)
         show_json({"exponents": found.exponents.tolist(), "errors": found.errors.tolist(), "resolved": found.resolved,

@@ -10,7 +10,7 @@ from granchain_core import BadInput
 
 from .common import chosen_scene, in_background, say, show_json
 from .data_options import add_answers, with_answers
-from .forces import cost_in_words, forces_in_words, forces_json, scene_json
+from .forces import cost_in_words, forces_in_words, forces_json, scene_json, status_in_words
 from .options import add_result
 from .picture import add_option as add_picture
 from .picture import check_picture, write_picture
@@ -24,7 +24,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_result(parser)
     parser.add_argument("--input", required=True, metavar="FILE",
                         help="a table of time, force and, if measured, output force; or an HDF5 file of granchain")
-    parser.add_argument("--time-unit", metavar="UNIT", help="s, ms or us, if the header names no unit")
+    parser.add_argument("--time-unit", metavar="UNIT", help="s, ms or µs (also us), if the header names no unit")
     parser.add_argument("--force-unit", metavar="UNIT", help="N, mN, µN, kN, lbf or kgf, if the header names no unit")
     add_answers(parser)
     parser.add_argument("--offset", default="0", metavar="N|median",
@@ -68,7 +68,8 @@ def do(arguments: argparse.Namespace) -> None:
     if arguments.json:
         show_json(_json(seen))
         return
-    print(f"{chosen.name}: {len(seen.time)} samples, {seen.time[-1] - seen.time[0]:.6g} s; {seen.status}")
+    print(f"{chosen.name}: {len(seen.time)} samples, {seen.time[-1] - seen.time[0]:.6g} s; "
+          f"{status_in_words(seen.status)}")
     print(forces_in_words(seen))
     if seen.residual is not None:
         print(f"measured output force: rms difference {seen.residual.rms:.4g} N "

@@ -42,8 +42,13 @@ def add_result(parser: argparse.ArgumentParser, accuracy: str = "") -> None:
     """Add a scene, the accuracy asked for (its help ends with `accuracy`), and the file that keeps the result."""
     add_scene(parser)
     parser.add_argument("--accuracy", metavar="E", help=f"the same as --set accuracy=E{accuracy}")
-    parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")
+    add_out(parser)
     add_json(parser)
+
+
+def add_out(parser: argparse.ArgumentParser) -> None:
+    """Add the file that keeps the result."""
+    parser.add_argument("--out", metavar="FILE", help="write an HDF5 file")
 
 
 def add_scheduler(parser: argparse.ArgumentParser) -> None:

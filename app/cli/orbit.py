@@ -13,9 +13,9 @@ from granchain_core.state import State
 
 from .common import chosen_scene, in_background, show_json
 from .compiling import compiling_beside
-from .options import add_json, add_scene, whole
+from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_files
 
 ORBIT_STARTS = ("settled", "rest", "random")
 
@@ -30,6 +30,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=whole, default=0, help="seed of the random start")
     parser.add_argument("--observer", action="store_true",
                         help="also compute the multipliers of the observer of model (4)")
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
@@ -38,12 +39,12 @@ def do(arguments: argparse.Namespace) -> None:
     """Find the periodic orbit of a scene and its multipliers."""
     from granchain_core.orbits import periodic_orbit
 
-    check_picture(arguments.picture)
+    check_files(arguments)
     chosen = chosen_scene(arguments)
     start = _start(chosen, arguments.start, arguments.seed)
     with compiling_beside(chosen, ORBIT_KERNELS):
         found = in_background(lambda stop: periodic_orbit(chosen, arguments.period, start, arguments.observer, stop))
-    write_picture(arguments.picture, f"Multipliers of {chosen.name}", found)
+    write_files(arguments, f"Multipliers of {chosen.name}", found)
     if arguments.json:
         data: dict[str, Any] = {
             "period": found.period, "residual": found.residual, "newton_residuals": list(found.newton_residuals),
@@ -57,8 +58,9 @@ def do(arguments: argparse.Namespace) -> None:
             data["observer_stability_certain"] = found.observer_stability_certain
         show_json(data)
         return
+    count = len(found.newton_residuals) - 1
     print(f"{chosen.name}: orbit of period {found.period}, {found.stability_words()}, "
-          f"residual {found.residual:.1e} after {len(found.newton_residuals) - 1} Newton iterations")
+          f"residual {found.residual:.1e} after {count} Newton iteration{'' if count == 1 else 's'}")
     _show_multipliers("multipliers", found.multipliers, found.multiplier_errors)
     if found.observer_multipliers is not None:
         _show_multipliers(f"observer, {found.observer_stability_words()}", found.observer_multipliers,

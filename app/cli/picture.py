@@ -8,6 +8,8 @@ from typing import Any
 
 from granchain_core import BadInput
 
+from .common import unbroken
+
 
 def add_option(parser: argparse.ArgumentParser) -> None:
     """Add the option --picture."""
@@ -41,6 +43,16 @@ def write_picture(name: str | None, title: str, result: Any, **options: Any) -> 
     from ..pictures.any_result import stretched
 
     write_figure(name, title, stretched(result, **options))
+
+
+def write_files(arguments: argparse.Namespace, title: str, result: Any, **options: Any) -> None:
+    """Write the files that --out and --picture name; a signal waits until they are complete."""
+    with unbroken(arguments.out):
+        if arguments.out:
+            from granchain_core import save
+
+            save(result, arguments.out)
+        write_picture(arguments.picture, title, result, **options)
 
 
 def write_figure(name: str, title: str, figure: Any) -> None:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from .common import chosen_scene, finite_or_null, in_background, show_json
 from .forces import energy_in_words, warn
-from .options import add_json, add_scene, whole
+from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_files
 
 if TYPE_CHECKING:
     from granchain_core import Pulse
@@ -21,6 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene(parser)
     parser.add_argument("--accuracy", metavar="E", help="the same as --set accuracy=E")
     parser.add_argument("--samples", type=whole, default=4000, metavar="S", help="samples in the time 1/f")
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
@@ -31,11 +32,11 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core.run.budget import BUDGET
 
     chosen = chosen_scene(arguments)
-    check_picture(arguments.picture)
+    check_files(arguments)
     motion = in_background(lambda stop: run(chosen, periods=0, record=1, samples=arguments.samples, stop=stop))
     found = pulse(motion)
     warn(motion, BUDGET)
-    write_picture(arguments.picture, f"A pulse along {chosen.name}", found)
+    write_files(arguments, f"A pulse along {chosen.name}", found)
     if arguments.json:
         show_json(_json(found))
     else:

@@ -7,9 +7,9 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from .common import chosen_scene, in_background, show_json, show_percent
-from .options import add_json, add_scene, whole
+from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_files
 
 if TYPE_CHECKING:
     from granchain_core import RotationNumber
@@ -20,6 +20,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scene(parser)
     parser.add_argument("--periods", type=whole, default=4000, metavar="P",
                         help="drive periods of the first record; up to two follow, each twice as long")
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
@@ -29,11 +30,11 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core import rotation_number
 
     chosen = chosen_scene(arguments)
-    check_picture(arguments.picture)
+    check_files(arguments)
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: rotation_number(chosen, arguments.periods, stop=stop, progress=progress),
                           reports=True)
-    write_picture(arguments.picture, f"Rotation number of {chosen.name}", found)
+    write_files(arguments, f"Rotation number of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found))
         return

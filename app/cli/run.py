@@ -18,7 +18,7 @@ from .common import chosen_scene, in_background, show_json, show_percent, unbrok
 from .compiling import compiling_beside
 from .data_options import add_answers
 from .driven import check_no_gap, do_driven
-from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, warn
+from .forces import errors_in_words, errors_json, forces_in_words, forces_json, scene_json, status_in_words, warn
 from .keeping import add_resume, finished, keeping
 from .options import add_result, number, whole
 from .picture import add_option as add_picture
@@ -122,8 +122,9 @@ def _explain(chosen: Scene, arguments: argparse.Namespace, stream: Any) -> None:
 def _run_json(result: Run) -> dict[str, Any]:
     """A run as one JSON object."""
     return {**scene_json(result.scene), "status": result.status, "regime": result.regime.name,
-            "period": result.regime.period, "evidence": _evidence(result.regime), **forces_json(result),
-            **errors_json(result), "cost": asdict(result.cost)}
+            "period": result.regime.period, "driven": result.regime.driven,
+            "evidence": _evidence(result.regime), **forces_json(result), **errors_json(result),
+            "cost": asdict(result.cost)}
 
 
 def _evidence(regime: Regime) -> dict[str, Any]:
@@ -136,6 +137,6 @@ def _evidence(regime: Regime) -> dict[str, Any]:
 
 def _show_run(result: Run) -> None:
     """A run in a few lines."""
-    print(f"{result.scene.name}: {result.regime.sentence}; {result.status}")
+    print(f"{result.scene.name}: {result.regime.sentence}; {status_in_words(result.status)}")
     print(forces_in_words(result))
     print(errors_in_words(result))

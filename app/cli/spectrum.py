@@ -6,9 +6,9 @@ import argparse
 from typing import TYPE_CHECKING, Any
 
 from .common import chosen_scene, finite_or_null, in_background, show_json
-from .options import add_json, add_scene, whole
+from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_files
 
 if TYPE_CHECKING:
     from granchain_core import Run, Scene, Spectrum, Stop, Transfer
@@ -24,6 +24,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--record", type=whole, default=64, metavar="R",
                         help="periods recorded of a motion without a period; of an orbit it is one")
     parser.add_argument("--samples", type=whole, default=256, metavar="S", help="samples a period, an even number")
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
@@ -35,12 +36,12 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core.input_checks import unknown_name
 
     chosen = chosen_scene(arguments)
-    check_picture(arguments.picture)
+    check_files(arguments)
     if arguments.force not in FORCES:
         raise unknown_name("force", arguments.force, FORCES)
     motion = in_background(lambda stop: _motion(chosen, arguments.record, arguments.samples, stop))
     found, through = spectrum(motion, arguments.force), transfer(motion) if motion.regime.period else None
-    write_picture(arguments.picture, f"Spectrum of {chosen.name}", found)
+    write_files(arguments, f"Spectrum of {chosen.name}", found)
     if arguments.json:
         show_json(_json(found, through))
         return

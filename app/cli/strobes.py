@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 from granchain_core.input_checks import check_range
 
 from .common import chosen_scene, in_background, say, show_json, show_percent
-from .options import add_json, add_scene, values_from, whole
+from .options import add_json, add_out, add_scene, values_from, whole
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_files
 
 if TYPE_CHECKING:
     from granchain_core import StrobeDiagram
@@ -26,6 +26,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="up and down carry the state along from value to value")
     parser.add_argument("--keep", type=whole, default=60, metavar="K", help="strobes at each value")
     parser.add_argument("--bead", type=whole, default=1, metavar="i", help="whose strobes are printed and drawn")
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
@@ -36,7 +37,7 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core.analysis.strobe_diagram import MOST_VALUES
 
     chosen = chosen_scene(arguments)
-    check_picture(arguments.picture)
+    check_files(arguments)
     check_range("--bead", arguments.bead, 1, chosen.N)
     knob, ends, spaced = values_from("--over", arguments.over, MOST_VALUES)
     progress = show_percent if sys.stderr.isatty() else None
@@ -45,7 +46,7 @@ def do(arguments: argparse.Namespace) -> None:
     for point in found.points:
         if point.failure:
             say(f"{knob} = {point.value:g}: {point.failure}")
-    write_picture(arguments.picture, f"Strobes of {chosen.name}", found, bead=arguments.bead)
+    write_files(arguments, f"Strobes of {chosen.name}", found, bead=arguments.bead)
     if arguments.json:
         show_json(_json(found, arguments.bead))
         return

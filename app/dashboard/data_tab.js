@@ -130,7 +130,7 @@ function questionForm(model, question) {
 function misfitTable({ sentence, rows, left }) {
   const body = element("tbody");
   for (const row of rows) body.append(element("tr", {}, ...row.map((textContent) => element("td", { textContent }))));
-  const titles = ["frequency", "measured", "model", "measured less model"];
+  const titles = ["frequency", "measured", "model", "model − measured"];
   const more = left ? [paragraph(`and ${left} more`, "soft")] : [];
   return [paragraph(sentence, "verdict"), ...(rows.length ? [table(titles, body)] : []), ...more];
 }

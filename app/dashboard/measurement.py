@@ -25,7 +25,7 @@ from granchain_core.experiment.formats import TEXT, format_of
 from granchain_core.experiment.reader import TABLE_KINDS
 from granchain_core.experiment.units import QUANTITIES, UNITS
 from granchain_core.scene import ASSETS
-from granchain_core.scene.driven import refuse_undriven
+from granchain_core.scene.refusals import refuse_undriven
 
 from ..curve.controller import CurveController
 from ..format import given_in_words, in_words, signed_in_words

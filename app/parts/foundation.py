@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from granchain_core import Scene, scene
-from granchain_core.scene.kappa import moved_kappa
+from granchain_core.scene.validity import moved_kappa
 
 
 def foundation_words(current: Scene) -> str:

@@ -25,13 +25,13 @@ _PLACES = {
 _REGIME_MEANINGS = {
     "quasi-periodic": "Quasi-periodic: it comes back near every earlier state and never exactly to one.",
     "chaotic": "Chaotic: it never repeats, and small disturbances grow.",
-    "unsettled": "Not settled: so far it neither repeats nor shows by evidence that it never will.",
+    "unsettled": "Not settled: no regime could be decided in the periods that were run.",
 }
 _UNDRIVEN = "Nothing drives the chain: what is shown begins at the start of the motion."
 _NOT_ITS_PLACE = "The ratio counts pushes, not peaks: every anti-resonance is 1:1, whatever peaks it lies between."
-_DECAY = "Decay: factor by which the distance to the orbit was seen to shrink."
+_CONTRACTION = "Contracts by: factor by which the distance to the orbit was seen to shrink."
 _LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the logarithm of its factor per drive period; "
-             "above zero the motion is chaotic.")
+             "clearly above zero the motion is chaotic.")
 _FOLLOWED = ("Followed to its orbit: the motion approached it so slowly that the orbit was computed from the last "
              "periods, by Newton's method or extrapolation.")
 _SETTLED = ("Settled: number of drive periods after which the distance to the periodic orbit was below the stated "
@@ -84,7 +84,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
     if regime.lyapunov is not None and regime.name != "periodic":
         meanings.append(_LYAPUNOV)
     if regime.evidence:
-        meanings.append(_DECAY if regime.multiplier is None else
+        meanings.append(_CONTRACTION if regime.multiplier is None else
                         multiplier_words(regime.multiplier, regime.period or regime.approaches or 1))
     return " ".join(one for one in meanings if one)
 
@@ -92,8 +92,10 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
 def multiplier_words(modulus: float, period: int) -> str:
     """What |μ| says about a small disturbance of an orbit of `period` drive periods."""
     orbit = "drive period" if period == 1 else f"{period} drive periods"
-    return (f"|μ| {modulus_words(modulus)}: after every {orbit} {100.0 * modulus:.3g} % of a small disturbance is "
-            "left; below 1 the orbit is stable.")
+    words = modulus_words(modulus)
+    change = f"shrinks to {100.0 * modulus:.3g} %" if modulus < 1.0 else f"grows by the factor {words}"
+    return (f"|μ| {words}: the slowest-decaying part of a small disturbance {change} in every {orbit}; "
+            "below 1 the orbit is stable.")
 
 
 def error_words(error: float | None, before: str = "") -> str:

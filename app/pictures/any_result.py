@@ -30,6 +30,7 @@ from granchain_core import (
     Transfer,
     WorkPrecision,
 )
+from granchain_core.experiment import Measured
 from granchain_core.input_checks import unknown_name
 from granchain_core.paper import (
     EnergyMaps,
@@ -73,8 +74,8 @@ def _pulse(found: Pulse, theme: Theme) -> LayoutDOM:
     return motion(found.run, theme)
 
 
-def _curve(found: Curve, theme: Theme, elastic: bool = False) -> LayoutDOM:
-    return curve([found], theme, elastic)
+def _curve(found: Curve, theme: Theme, elastic: bool = False, measured: Measured | None = None) -> LayoutDOM:
+    return curve([found], theme, elastic, measured)
 
 
 def _branch(found: Branch, theme: Theme, now: float | None = None) -> LayoutDOM:

@@ -16,14 +16,22 @@ from .theme import Theme, apply_theme, frame, themed
 
 
 def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
-    """A mark for each, by its regime; the bar is the standard error of its share."""
+    """A mark for each, by its regime; the bar is the standard error of its share.
+
+    Without random states the marks stand over their fraction of all starts.
+    """
+    drawn = any(one.share is not None for one in found)
+    starts = "random states" if drawn else "starts"
+    count = sum(len(one.origins) for one in found)
     scale = force_scale("largest output force", max(one.max_output_force for one in found))
     plot = frame(name="attractors", min_border=4, x_range=Range1d(-4, 104),
                  y_range=Range1d(0.0, 1.15 * max(one.max_output_force for one in found) / scale.factor))
     for one in found:
         key = regime_key(one.regime.name, one.regime.period)
         marker, colour, size = REGIME_MARKS[key]
-        share, error = 100.0 * one.share, 100.0 * one.share_error
+        share = 100.0 * (len(one.origins) / count if one.share is None else one.share)
+        error = 100.0 * (one.share_error or 0.0)
+        words = one.share_words if drawn else f"{share:.0f} %"
         source = ColumnDataSource({
             "share": [share], "low": [share - error], "high": [share + error],
             "force": [one.max_output_force / scale.factor], "motion": [one.regime.sentence],
@@ -34,8 +42,8 @@ def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
                              line_color=colour, line_width=1.5, legend_label=key)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=[
             ("motion", "@motion"), ("largest output force", "@value"),
-            ("random states", f"@share{{0}} ± {error:.0f} %"), ("starts", "@starts")]))
-    plot.xaxis.axis_label, plot.yaxis.axis_label = "random states that lead there (%)", scale.label
+            (starts if drawn else "of all starts", words), ("starts", "@starts")]))
+    plot.xaxis.axis_label, plot.yaxis.axis_label = f"{starts} that lead there (%)", scale.label
     for legend in plot.legend:
         legend.update(orientation="horizontal", padding=0, margin=2)
     plot.add_layout(plot.legend[0], "below")

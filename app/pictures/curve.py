@@ -11,10 +11,12 @@ from bokeh.models import ColumnDataSource, DataRange1d, HoverTool
 from bokeh.plotting import figure
 
 from granchain_core import Curve, CurvePoint
+from granchain_core.experiment import Measured
 from granchain_core.regime import Regime
 
 from ..format import figures_of, in_words, short_error
 from .axes import force_scale, knob_scale
+from .measured import measured_over
 from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme, apply_theme, frame, themed
 
@@ -32,14 +34,17 @@ FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 
 
-def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure:
+def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False, measured: Measured | None = None) -> figure:
     """Curves over one frequency axis, one for each way of sweeping; where the numbers failed there is no point.
 
-    `elastic` draws the elastic part of the output force, as the paper does.
+    `elastic` draws the elastic part of the output force, as the paper does; a curve that was `measured` is drawn over
+    it.
     """
     drawn = "max_output_force_elastic" if elastic else "max_output_force"
     largest = max((getattr(p, drawn) for one in found for p in one.points if math.isfinite(p.max_output_force)),
                   default=1.0)
+    if measured is not None:
+        largest = max(largest, float(measured.bars[1].max()))
     scale = force_scale("largest elastic output force" if elastic else "largest output force", largest)
     plot = frame(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
     for one in found:
@@ -50,6 +55,8 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure
                              fill_color=FILLS[one.start], line_width=1.5, legend_group="regime")
         themed(line, line_color="output", line_width=1.8)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(one.start)))
+    if measured is not None:
+        measured_over(plot, measured, scale.factor)
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
     for legend in plot.legend:
         legend.update(orientation="horizontal", padding=0, margin=2, ncols=4)

@@ -15,14 +15,14 @@ from .theme import frame, themed
 
 COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual", "word")
 TOOLTIPS = [("", "@word"), ("frequency", "@frequency{0.0} Hz"), ("force", "@value"), ("repeats", "@repeats"),
-            ("less the model", "@residual")]
+            ("model − measured", "@residual")]
 
 
 def measured_columns(measured: Measured, factor: float, residuals: np.ndarray | None = None,
                      sigma: np.ndarray | None = None) -> dict[str, list[Any]]:
     """Columns for points, their bars and tooltips; bars are the stated errors, the repeats' extremes, or `sigma` [N].
 
-    `residuals` are measured less model [N], NaN where there is no model.
+    `residuals` are model − measured [N], NaN where there is no model.
     """
     low, high = measured.bars
     if sigma is not None and measured.error is None and measured.force.size and np.all(low == high):

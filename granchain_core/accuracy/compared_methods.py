@@ -42,8 +42,8 @@ class MeasuredSetting:
 
 def compared_methods() -> dict[str, MeasuredMethod]:
     """Everything that can be measured, by name: the table of methods as it is now, then SciPy's solvers."""
-    own = [MeasuredMethod(m.name, m.title, "naive" if m.variables == "uv" else "granchain", m.order, m.restrictions,
-                          m.reference) for m in METHODS.values()]
+    own = [MeasuredMethod(m.name, m.title, "naive" if m.variables == "uv" else "granchain", m.observed_order,
+                          m.restrictions, m.reference) for m in METHODS.values()]
     others = [MeasuredMethod(SCIPY + s.name, s.title, "scipy", s.order, s.restrictions, s.reference)
               for s in SOLVERS.values()]
     return {method.name: method for method in (*own, *others)}

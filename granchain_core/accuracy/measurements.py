@@ -29,7 +29,7 @@ class Row:
     failure: str = ""
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class WorkPrecision(Labelled):
     """Error against time for every method on one scene.
 

@@ -17,7 +17,7 @@ from ..diagram.attractors import attractors_from
 from ..errors import BadInput
 from ..input_checks import axis_in, numbers_in
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, provenance
@@ -27,7 +27,7 @@ from ..tables.provenance import Attribute
 MOST_CELLS = 250_000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Basins(Labelled):
     """Basins of attraction in a plane of starts.
 
@@ -40,7 +40,8 @@ class Basins(Labelled):
     attractors : list of Attractor
         The steady states that were found, the one with the most starts first.
     number : numpy.ndarray of int, shape (len(y), len(x))
-        Index in `attractors` of each start; −1 where the computation failed or was stopped.
+        Index in `attractors` of each start, from 0; −1 where the computation failed or was stopped. The command's JSON
+        has the same numbers. Tables and files count from 1, and have 0 where there is none.
 
     Examples
     --------
@@ -59,7 +60,7 @@ class Basins(Labelled):
 
     @property
     def shares(self) -> np.ndarray:
-        """Part of the plane's starts that leads to each attractor."""
+        """Fraction of the plane's starts that lead to each attractor."""
         return np.array([(self.number == i).mean() for i in range(len(self.attractors))])
 
     def tables(self) -> tuple[Table, ...]:
@@ -77,7 +78,7 @@ class Basins(Labelled):
         return dict(provenance(self.scene, attractor_methods(self.scene, self.attractors), None))
 
     def summary(self) -> list[str]:
-        """The plane, and what part of it leads to each attractor."""
+        """The plane, and the fraction of it that leads to each attractor."""
         return [f"{len(self.x[1])} × {len(self.y[1])} starts over {self.x[0]} and {self.y[0]}",
                 *(f"{i}: {100.0 * share:.0f} %, {one.regime.sentence}, output force up to {one.max_output_force:.4g} N"
                   for i, (one, share) in enumerate(zip(self.attractors, self.shares, strict=True), 1))]
@@ -130,10 +131,12 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
         state = np.zeros((2, scene.N))
         state[x_place], state[y_place] = xs[number % len(xs)], ys[number // len(xs)]
         origins.append(Origin(str(number), State(*state)))
-    listed = sorted(attractors_from(scene, origins, stop, progress), key=lambda one: -len(one.origins))
+    listed, _ = attractors_from(scene, origins, stop, progress)
+    listed.sort(key=lambda one: -len(one.origins))
     place = np.full(len(origins), -1)
     for i, attractor in enumerate(listed):
         place[[int(origin.name) for origin in attractor.origins]] = i
+        attractor.share = len(attractor.origins) / len(origins)
     return Basins(scene, (x[0], xs), (y[0], ys), listed, place.reshape(len(ys), len(xs)))
 
 

@@ -20,7 +20,7 @@ import numpy as np
 from ..input_checks import check_range, whole_number
 from ..orbits.stroboscopic_map import FLOW_METHOD, StroboscopicMap
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
@@ -38,7 +38,7 @@ MOST_PERIODS = 1_000_000
 _BLOCKS = 20
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LyapunovSpectrum(Labelled):
     """The Lyapunov exponents of a motion.
 

@@ -53,7 +53,7 @@ def solitary_speed(scene: Scene, force: float, constant: float = DISCRETE) -> fl
     return float(constant * hertz_stiffness(bead, bead) ** (1.0 / 3.0) * force ** (1.0 / 6.0) / math.sqrt(bead.mass))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Pulse(Labelled):
     """The first pulse in every contact between two beads, 1 to N − 1.
 

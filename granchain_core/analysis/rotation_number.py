@@ -22,7 +22,7 @@ from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR
 from ..regime import Regime
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..steady.settling.advance import run_until_settled
 from ..stop import Stop
@@ -30,24 +30,27 @@ from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 from .winding import LARGEST_DENOMINATOR, LENGTHS, Winding, folded, winding_of
 
-#: Fewest drive periods in a first record.
+#: [rotation] Fewest drive periods in a first record.
 FEWEST_PERIODS = 1000
-#: Most drive periods in a first record.
+#: [rotation] Most drive periods in a first record.
 MOST_PERIODS = 10_000
-#: Steps in a drive period over the default ones: the difference of the two gives the error of the shorter steps.
-_LONGER, _SHORTER = 2.0, 4.0
-#: Most records of one motion, each after the one before and twice as long: the regime is known before the curve is
-#: reached to rounding, and near a fraction a record must be long.
+#: [rotation] Steps in a drive period over the default ones, of the longer steps.
+_LONGER = 2.0
+#: [rotation] Steps in a drive period over the default ones, of the shorter steps. The difference of the two
+#: computations gives their error.
+_SHORTER = 4.0
+#: [rotation] Most records of one motion, each after the one before and twice as long. The regime is known before the
+#: curve is reached to rounding, and near a fraction a record must be long.
 _MOST_RECORDS = 3
-#: Most beads whose strobes are kept, evenly spaced along a longer chain.
+#: [rotation] Most beads whose strobes are kept. They are evenly spaced along a longer chain.
 _MOST_BEADS = 30
-#: Drive periods that are run at once.
+#: [rotation] Drive periods that are run at once.
 _PERIODS_AT_ONCE = 1000
-#: A record with a smaller error of its average is the last.
+#: [rotation] Error of the average below which no further record follows.
 _SMALL_ERROR = 1e-8
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RotationNumber(Labelled):
     """The rotation number of a motion, with its error; or why it is not decided.
 
@@ -60,10 +63,11 @@ class RotationNumber(Labelled):
     value : float or None
         ρ in [0, ½], of the `curves`-th iterate of the stroboscopic map; None if it is not decided.
     average_error : float or None
-        Error of the average: three times the largest difference of the first, middle and last half of the record, and
-        of other projections.
+        Error of the average: `_STATED` (winding.py) times the largest difference of the first, middle and last half of
+        the record, and of other projections.
     step_error : float or None
-        Error of the integration: three times the difference from steps twice as long.
+        Error of the integration: `IRREGULAR` (integrate/safety_factors.py) times the difference from steps twice as
+        long.
     curves : int
         Number of closed curves that the motion visits in turn.
     periods : int

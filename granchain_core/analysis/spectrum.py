@@ -30,7 +30,7 @@ FORCES = {"input": "input_force", "output": "output_force", "elastic": "output_f
 _COUNTS = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Spectrum(Labelled):
     """Amplitudes of a force over frequency.
 
@@ -108,7 +108,7 @@ class Spectrum(Labelled):
                 f"folded back from above half the sampling frequency: at most about {self.aliasing:.1e} N"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Transfer(Labelled):
     """The output force's lines over those of the input force.
 

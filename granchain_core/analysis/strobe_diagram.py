@@ -21,7 +21,7 @@ from ..integrate.safety_factors import IRREGULAR
 from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..steady.batch.starts import methods_alone
 from ..steady.batch.threads import on_all_cores
@@ -69,7 +69,7 @@ class StrobePoint:
         return 1 + int((np.diff(found) > _APART * np.abs(found).max()).sum())
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class StrobeDiagram(Labelled):
     """Strobes over a knob.
 

@@ -13,23 +13,25 @@ import numpy as np
 
 from .birkhoff import refined_frequency, weights
 
-#: Weakest line that counts, as part of the strongest one.
+#: [rotation] Weakest line that counts, as a fraction of the strongest one.
 WEAKEST_LINE = 1e-2
-#: Most lines that are looked at.
+#: [rotation] Most lines that are examined.
 _MOST_LINES = 10
-#: Distance in units of 1/P within which two peaks of the spectrum are one line: the width of the window's main lobe.
+#: [rotation] Distance in units of 1/P within which two peaks of the spectrum are one line: the width of the window's
+#: main lobe.
 _WIDTH = 8
-#: Zeros that are appended to a record: so many times its length in all.
+#: [rotation] Length of a record with the zeros that are appended, over that of the record.
 _PADDED = 2
-#: Most curves that are visited in turn.
+#: [rotation] Most curves that are visited in turn, before lines at several fractions are combined.
 MOST_CURVES = 16
-#: Difference of a line from a fraction j/q, in units of 1/P, below which it is one.
+#: [rotation] Difference of a line from a fraction j/q, in units of 1/P, below which the line is at j/q.
 _AT_FRACTION = 0.02
-#: Difference of a line from a multiple of the basic frequency, in units of 1/P, below which it is one.
+#: [rotation] Difference of a line from a multiple of the basic frequency, in units of 1/P, below which it is that
+#: multiple, and of the advance of an angle from its line.
 AT_MULTIPLE = 0.2
-#: Largest multiple of the basic frequency.
+#: [rotation] Largest multiple of the basic frequency.
 _LARGEST_MULTIPLE = 15
-#: Largest multiple of the basic frequency that the strongest line may be.
+#: [rotation] Largest multiple of the basic frequency that the strongest line may be.
 _LARGEST_STRONGEST = 4
 
 

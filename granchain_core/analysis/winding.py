@@ -19,29 +19,35 @@ import numpy as np
 from .birkhoff import average, fourier_coefficient, turns
 from .strobe_lines import AT_MULTIPLE, Basic, basic_frequency, curves_of, fraction_at, lines_of
 
-#: Fewest states on one curve from which a rotation number is read.
+#: [rotation] Fewest states on one curve from which a rotation number is read.
 FEWEST_STATES = 200
-#: Directions in which the states vary by less than this part of the largest variance are left out of a projection.
+#: [rotation] Directions whose variance is below this fraction of the largest are left out of a projection.
 _LEAST_VARIANCE = 1e-8
-#: States whose changes are smaller than this part of the largest are at rest.
+#: [rotation] States whose changes are below this fraction of the largest are at rest.
 _AT_REST = 1e-9
-#: Lines whose angles are averaged.
+#: [rotation] Lines whose angles are averaged.
 _PROJECTED_LINES = 3
-#: Largest denominator of a fraction that a rotation number is compared with: the longest period that a regime may have.
+#: [rotation] Largest denominator of a fraction that a rotation number is compared with: the longest period that a
+#: regime may have.
 LARGEST_DENOMINATOR = 60
-#: Fewest times that the states must pass from one of the places of a locked motion to the next.
+#: [rotation] Fewest passes, P |qρ − p|, of the states near a fraction from one of the places of a locked motion to the
+#: next.
 _FEWEST_PASSES = 4.0
-#: The same near a fraction of a small denominator, up to `_SMALL`: two widths of a line (`_WIDTH` in strobe_lines.py).
-#: With fewer the line of one turn may lie within the width of a stronger multiple of it, or be left out as a drift;
-#: what is left are multiples of 2ρ. Of 240 curves with 0.5 to 30 passes, 4, 8, 12 and 16 left 12, 11, 3, 0 wrong.
-_FEWEST_PASSES_IF_SMALL, _SMALL = 16.0, 5
-#: The stated error over the largest difference: differences of a few averages may all be small by chance.
+#: [rotation] Fewest such passes near a fraction of a denominator up to `_SMALL`. It is two widths of a line (`_WIDTH`
+#: in strobe_lines.py). With fewer the line of one turn may lie within the width of a stronger multiple of it, or be
+#: left out as a drift; what is left are multiples of 2ρ. Of 240 curves with 0.5 to 30 passes, 4, 8, 12 and 16 left 12,
+#: 11, 3, 0 wrong.
+_FEWEST_PASSES_IF_SMALL = 16.0
+#: [rotation] Largest denominator that is small.
+_SMALL = 5
+#: [rotation] Stated error of the average over the largest difference of averages. A few of them may all be small by
+#: chance.
 _STATED = 3.0
-#: Smallest error that is stated: rounding.
+#: [rotation] Smallest error of the average that is stated: rounding.
 _ROUNDING = 1e-15
 #: Parts of a record whose averages are compared: as fractions of its length.
 _PARTS = ((0.0, 0.5), (0.25, 0.75), (0.5, 1.0))
-#: Lengths at which the convergence is shown: the last so many halvings of the record.
+#: [rotation] Lengths of the record at which the convergence is given, each half of the next.
 LENGTHS = 4
 
 
@@ -49,10 +55,10 @@ LENGTHS = 4
 class Winding:
     """The rotation number of states, or why there is none.
 
-    `value` is in [0, ½] and belongs to the `curves`-th iterate of the map. `error` is three times the largest of the
-    differences between three halves of the record (first, middle, last), between `projections` projections, and from
-    the line of the spectrum. `convergence` (4, 3) has a row for each length: states on one curve, rotation number of
-    the first so many, largest difference of their halves. Where `value` is None, `reason` says why.
+    `value` is in [0, ½] and belongs to the `curves`-th iterate of the map. `error` is `_STATED` times the largest of
+    the differences between three halves of the record (first, middle, last), between `projections` projections, and
+    from the line of the spectrum. `convergence` (4, 3) has a row for each length: states on one curve, rotation number
+    of the first so many, largest difference of their halves. Where `value` is None, `reason` says why.
     """
 
     value: float | None

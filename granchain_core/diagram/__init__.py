@@ -1,4 +1,4 @@
-"""Two knobs at once: a map of regimes and largest forces, stability boundaries, and all attractors of one setting."""
+"""Two knobs at once: a map of regimes and largest forces, bifurcation curves, and all attractors of one setting."""
 
 from .attractor import Attractor, Attractors, listing
 from .attractors import attractors

@@ -26,9 +26,12 @@ from ..tables import (
     provenance,
     regime_columns,
 )
-from ..tables.provenance import Attribute
+from ..tables.provenance import Attribute, or_nan
 from ..tables.shown import as_text
 from ..tables.words import evidence_columns, state_columns
+
+#: Failed starts that a sentence names.
+_NAMED = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +63,9 @@ class Attractor:
         reach it.
     origins : list of Origin
         The starts that end here: "rest", "up", "down", "random 17".
-    share, share_error : float
-        Part of the random states that end here, and its standard error.
+    share, share_error : float or None
+        Fraction of the random states that end here, and its standard error; None where none was drawn. In `basins`, the
+        fraction of the plane's starts, without an error.
 
     Examples
     --------
@@ -80,13 +84,21 @@ class Attractor:
     state: State
     orbit: Orbit | None = None
     origins: list[Origin] = field(default_factory=list)
-    share: float = 0.0
-    share_error: float = 0.0
+    share: float | None = None
+    share_error: float | None = None
 
     @property
     def error_estimate(self) -> float | None:
         """`force_errors.output` by the name that it has in the command line's JSON."""
         return self.force_errors.output
+
+    @property
+    def share_words(self) -> str:
+        """Its share with the standard error in per cent, "–" where no random state was drawn."""
+        if self.share is None:
+            return "–"
+        error = "" if self.share_error is None else f" ± {100.0 * self.share_error:.0f}"
+        return f"{100.0 * self.share:.0f}{error} %"
 
     @property
     def stable(self) -> bool | None:
@@ -101,6 +113,8 @@ class Attractors(list[Attractor], Labelled):
     ----------
     scene : Scene
         The chain.
+    failed : list of Origin
+        The starts whose computation failed: their numbers overflowed. Shares count them among the random states.
 
     Examples
     --------
@@ -111,10 +125,12 @@ class Attractors(list[Attractor], Labelled):
     """
 
     scene: Scene
+    failed: list[Origin]
 
-    def __init__(self, chain: Scene, found: Iterable[Attractor] = ()) -> None:
+    def __init__(self, chain: Scene, found: Iterable[Attractor] = (), failed: Iterable[Origin] = ()) -> None:
         super().__init__(found)
         self.scene = chain
+        self.failed = list(failed)
 
     def tables(self) -> tuple[Table, ...]:
         """One table, `attractors`: regime, largest forces with errors, share, starts, and state of each."""
@@ -126,8 +142,9 @@ class Attractors(list[Attractor], Labelled):
         return dict(provenance(self.scene, attractor_methods(self.scene, self), max(errors) if errors else None))
 
     def summary(self) -> list[str]:
-        """How many, and a line for each."""
-        return [f"{len(self)} found", *(f"{i}: {line}" for i, line in enumerate(listing(self), 1))]
+        """How many, a line for each, and the starts that failed."""
+        return [f"{len(self)} found", *(f"{i}: {line}" for i, line in enumerate(listing(self), 1)),
+                *failed_sentence(self.failed)]
 
     def __repr__(self) -> str:
         return as_text(self.heading(), self.summary())
@@ -153,8 +170,10 @@ def attractors_table(scene: Scene, found: Sequence[Attractor]) -> Table:
         **regime_columns([one.regime for one in found], "attractor"),
         **evidence_columns([one.regime for one in found], "attractor"),
         "stable": Column(stable, along, "1", "1 if no multiplier of its orbit is outside, 0 if one is, -1 unknown"),
-        "share": Column(np.array([one.share for one in found]), along, "1", "part of the random states that end here"),
-        "share_error": Column(np.array([one.share_error for one in found]), along, "1", "standard error of the share"),
+        "share": Column(np.array([or_nan(one.share) for one in found]), along, "1",
+                        "fraction of the random states, or of a plane's starts, that end here"),
+        "share_error": Column(np.array([or_nan(one.share_error) for one in found]), along, "1",
+                              "standard error of the share"),
         "starts": Column(starts, along, "", "starts that end here"),
         **state_columns(states[:, 0], states[:, 1], ("attractor", "bead"))})
 
@@ -162,5 +181,14 @@ def attractors_table(scene: Scene, found: Sequence[Attractor]) -> Table:
 def listing(attractors_found: Sequence[Attractor]) -> Iterator[str]:
     """The attractors in words, one line each."""
     for one in attractors_found:
-        yield (f"{one.regime.sentence}; {one.max_output_force:.4g} N, {100 * one.share:.0f} ± "
-               f"{100 * one.share_error:.0f} % of random states; {len(one.origins)} starts")
+        share = "" if one.share is None else f"{one.share_words} of random states; "
+        yield f"{one.regime.sentence}; {one.max_output_force:.4g} N, {share}{len(one.origins)} starts"
+
+
+def failed_sentence(failed: Sequence[Origin]) -> list[str]:
+    """The starts that have no steady state in one sentence, the first of them by name; empty where there is none."""
+    if not failed:
+        return []
+    names = ", ".join(origin.name for origin in failed[:_NAMED])
+    more = f" and {len(failed) - _NAMED} more" if len(failed) > _NAMED else ""
+    return [f"{len(failed)} start{'' if len(failed) == 1 else 's'} failed: {names}{more}"]

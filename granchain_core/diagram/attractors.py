@@ -18,7 +18,7 @@ from ..integrate import Engine, following_setting
 from ..regime import Regime
 from ..result import ForceErrors
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State, rest
 from ..steady.batch.job import Start
 from ..steady.exponent_measurements import MEASURED_PERIODS, TURNING_PERIODS
@@ -92,21 +92,29 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     require_scene(scene)
     random_states = whole_number("random_states =", random_states, 0, MOST_STATES)
     seed = whole_number("seed =", seed, 0, 2**63 - 1)
-    listed = attractors_from(scene, _origins(scene, random_states, seed, stop), stop, progress)
-    random_count = sum(origin.name.startswith("random") for attractor in listed for origin in attractor.origins)
+    listed, failed = attractors_from(scene, _origins(scene, random_states, seed, stop), stop, progress)
+    tried = _random_count(failed) + sum(_random_count(attractor.origins) for attractor in listed)
     for attractor in listed:
-        count = sum(origin.name.startswith("random") for origin in attractor.origins)
-        attractor.share, attractor.share_error = share(count, random_count)
-    return Attractors(scene, sorted(listed, key=lambda one: (-len(one.origins), one.max_output_force)))
+        attractor.share, attractor.share_error = share(_random_count(attractor.origins), tried)
+    return Attractors(scene, sorted(listed, key=lambda one: (-len(one.origins), one.max_output_force)), failed)
+
+
+def _random_count(origins: list[Origin]) -> int:
+    """How many of these starts are random states."""
+    return sum(origin.name.startswith("random") for origin in origins)
 
 
 def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = None,
-                    progress: Callable[[float], None] | None = None) -> list[Attractor]:
-    """The steady states that these starts reach, each once with its starts. Raises as `attractors` does."""
+                    progress: Callable[[float], None] | None = None) -> tuple[list[Attractor], list[Origin]]:
+    """The steady states that these starts reach, each once with its starts, and the starts that failed.
+
+    Raises as `attractors` does.
+    """
     starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
     results = _settled(starts, stop, progress)
     if results and not any(not result.failure for result in results):
         raise NumbersFailed(results[0].failure, "not-finite")
+    failed = {result.number for result in results if result.failure}
     groups = merged([found(result) for result in results if not result.failure])
     for _ in range(_MOST_ROUNDS):
         left = [group for group in groups if group[0].unstable or _locks(group[0], stop)]
@@ -116,10 +124,11 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
         kept = [one for group in groups if group not in left for one in group]
         ran = {one.result.number: one.result.regime.periods_run
                + (_DEPARTURE_PERIODS if group[0].unstable else _LATER_PERIODS) for group in left for one in group}
-        moved = [found(_counted(result, ran[result.number])) for result in _settled(again, stop)
-                 if not result.failure]
+        results = _settled(again, stop)
+        failed |= {result.number for result in results if result.failure}
+        moved = [found(_counted(result, ran[result.number])) for result in results if not result.failure]
         groups = merged(kept + moved)
-    return [_attractor(group, origins) for group in groups]
+    return [_attractor(group, origins) for group in groups], [origins[number] for number in sorted(failed)]
 
 
 def _counted(result: SteadyState, before: int) -> SteadyState:
@@ -165,10 +174,13 @@ def _locks(one: Found, stop: Stop | None) -> bool:
     return find_period(strobes[-REMEMBERED:], rounding=rounding).period is not None
 
 
-def share(count: int, of: int) -> tuple[float, float]:
-    """A part and its standard error, by the rule of Agresti and Coull, which does not claim certainty at 0 or all."""
+def share(count: int, of: int) -> tuple[float | None, float | None]:
+    """A fraction and its standard error, by the rule of Agresti and Coull, which claims no certainty at 0 or at all.
+
+    Both are None where nothing was drawn.
+    """
     if of == 0:
-        return 0.0, 0.0
+        return None, None
     middle = (count + 2.0) / (of + 4.0)
     return count / of, math.sqrt(middle * (1.0 - middle) / (of + 4.0))
 
@@ -221,9 +233,9 @@ def _attractor(group: list[Found], origins: list[Origin]) -> Attractor:
 def _regime(regimes: list[Regime]) -> Regime:
     """The regime of a group; of irregular motions with the mean of their Lyapunov exponents and its standard error.
 
-    Where the members have different names, the rule of steady/regime_criteria.py decides by this mean. The error that
-    falls as 1/periods is alike in all of them, and their mean does not reduce it: the mean counts as measured over the
-    periods of the shortest measurement, and as zero within the error of a single one.
+    Where the members have different names, the rule of steady/regime_criteria.py decides by this mean. All members
+    share the bias of order 1/P of an exponent measured over P periods. Averaging does not reduce the bias, so the mean
+    is judged as if it had been measured over the shortest P, and it is zero within the error of a single measurement.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     periods = min((one.lyapunov_periods for one in regimes if one.lyapunov_periods is not None),

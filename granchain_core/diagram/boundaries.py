@@ -1,4 +1,4 @@
-"""Stability boundaries in a map: found between neighbouring cells and continued through its rows.
+"""Bifurcation curves in a map: found between neighbouring cells and continued through its rows.
 
 A pair of neighbouring cells determines what is searched between them: periods n and 2n a period doubling, a periodic
 and a quasi-periodic cell a Neimark–Sacker point, anything else the fold at which an orbit ends. The orbit of the
@@ -21,7 +21,7 @@ from .cells import CELL_REGIMES, Diagram
 
 #: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
-#: A point this many cells outside the pair of cells between which it was sought belongs to another boundary.
+#: A point this many cells outside the pair of cells between which it was sought belongs to another curve.
 _CELLS_OUTSIDE = 1.0
 #: Curves closer than this many cells are the same.
 _CELLS_APART = 0.5
@@ -29,7 +29,7 @@ _CELLS_APART = 0.5
 
 @dataclass(frozen=True, eq=False)
 class BoundaryCurve:
-    """A curve of one kind on which orbits of `period` drive periods lose their stability, in ascending y."""
+    """A bifurcation curve: where orbits of `period` drive periods meet a bifurcation of one `kind`, in ascending y."""
 
     kind: str
     period: int
@@ -49,9 +49,9 @@ class _Pair:
 def boundaries(found: Diagram, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
                stop: Stop | None = None,
                on_curve: Callable[[BoundaryCurve], None] | None = None) -> list[BoundaryCurve]:
-    """Curves through the boundaries of some rows of a diagram (the middle one), at `values` of y (those of its rows).
+    """Bifurcation curves from some rows of a diagram (the middle one), at `values` of y (those of its rows).
 
-    Boundaries that cannot be followed are left out: a pair of cells from rest may be two attractors with no boundary
+    Curves that cannot be followed are left out: a pair of cells from rest may be two attractors with no bifurcation
     between them. `on_curve` is called with each curve. Raises `BadInput` and `Cancelled`.
     """
     grid = found.grid

@@ -1,6 +1,7 @@
-"""Stability boundaries in the plane of two knobs: curves of folds, period doublings and Neimark–Sacker points.
+"""Bifurcation curves in the plane of two knobs: loci of folds, period doublings and Neimark–Sacker points.
 
-On such a curve the orbit's critical multiplier meets its condition:
+The curves bound regions of stability only where no other multiplier is outside the unit circle. On a curve the orbit's
+critical multiplier meets its condition:
 
     fold             μ = +1
     period_doubling  μ = −1
@@ -55,7 +56,7 @@ _REAL_ANGLE = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class BoundaryPoint:
-    """One point of a boundary: both knobs, the critical multiplier there, and the orbit's state at phase 0, scaled."""
+    """A point of a bifurcation curve: both knobs, the critical multiplier, and the orbit's scaled state at phase 0."""
 
     x: float
     y: float

@@ -68,7 +68,7 @@ def _or_nan(value: float | None) -> float:
     return np.nan if value is None else value
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Diagram(Labelled):
     """A two-parameter diagram.
 

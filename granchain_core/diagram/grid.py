@@ -16,7 +16,7 @@ from ..input_checks import series_in, unknown_name
 from ..quantities import QUANTITIES
 from ..scaling import scale_chain
 from ..scene import Amplitude, Scene
-from ..scene.driven import refuse_undriven
+from ..scene.refusals import refuse_undriven
 
 #: Knobs that may be an axis: the continuous ones that change the motion.
 KNOBS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_axis)

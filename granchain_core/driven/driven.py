@@ -9,7 +9,6 @@ samples with even and with odd numbers, and an error by these differences is add
 from __future__ import annotations
 
 import json
-import time as clock
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
@@ -24,9 +23,10 @@ from ..laws import LAWS
 from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
 from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State, checked_start, rest
 from ..stop import Stop
+from ..stopwatch import Stopwatch
 from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .moved_chain import MovedChain
@@ -37,7 +37,7 @@ from .signal import Signal
 _FOLLOWED = 0.03
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Driven(RecordedMotion):
     """The motion of a chain at the T knots of its signal, in SI.
 
@@ -172,7 +172,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     if len(signal.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(signal.time)} knots for {scene.N} beads are more than {MOST_RECORDED:.0e} values; give a "
                        "shorter signal or fewer beads.")
-    began, begin = clock.perf_counter(), rest(scene) if start is None else checked_start(scene, start)
+    spent, begin = Stopwatch(), rest(scene) if start is None else checked_start(scene, start)
     stop = Stop() if stop is None else stop
     chain = MovedChain(scene, signal, stop)
     now, maxima, halvings, stated, growth = refined(
@@ -195,7 +195,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
                   now.force * scales.force, inward, outward, elastic,
                   force_errors=ForceErrors.of(np.array(errors)), displacement_error=float(error),
                   energy_residual=balance, status="done" if done else "accuracy-not-reached",
-                  cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP),
+                  cost=Cost.of(spent.seconds, chain.counts, FIXED_STEP),
                   interpolation_error=float(between[0]))
 
 

@@ -1,7 +1,7 @@
 """Measurements: the features that the paper's text states, and the user's own data."""
 
 from .columns import Convention
-from .compare import Difference, compared
+from .compare import Difference, compared, model_minus_measured
 from .drive import read_amplitude
 from .features import Feature, stated_features
 from .measured import Measured
@@ -10,4 +10,5 @@ from .reader import read_data, read_experiment
 from .series import Series, Shaker
 
 __all__ = ["Answers", "Convention", "Difference", "Feature", "Measured", "Question", "Series", "Shaker", "Unclear",
-           "answers_of", "compared", "read_amplitude", "read_data", "read_experiment", "stated_features"]
+           "answers_of", "compared", "model_minus_measured", "read_amplitude", "read_data", "read_experiment",
+           "stated_features"]

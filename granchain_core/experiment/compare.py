@@ -9,9 +9,14 @@ import numpy as np
 from .measured import Measured
 
 
+def model_minus_measured(model: np.ndarray, measured: np.ndarray) -> np.ndarray:
+    """A residual as it is signed everywhere: positive where the model is larger."""
+    return np.asarray(model - measured)
+
+
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """Measured less model at every measured frequency [N]; NaN outside the computed curve.
+    """Model − measured at every measured frequency [N]; NaN outside the computed curve.
 
     `model` is the computed force there [N], on straight lines between its points.
     """
@@ -21,8 +26,8 @@ class Difference:
 
     @property
     def residuals(self) -> np.ndarray:
-        """Measured less model [N]."""
-        return np.asarray(self.measured.force - self.model)
+        """Model − measured [N]."""
+        return model_minus_measured(self.model, self.measured.force)
 
     @property
     def compared(self) -> np.ndarray:
@@ -39,7 +44,7 @@ class Difference:
         rms, largest = float(np.sqrt(np.mean(gaps**2))), int(np.argmax(np.abs(gaps)))
         size = float(np.sqrt(np.mean(self.measured.force[there] ** 2)))
         share = f" ({100.0 * rms / size:.3g} %)" if size > 0.0 else ""
-        words = (f"Measured less model at {there.sum()} of {len(there)} frequencies: rms {rms:.3g} N{share}, mean "
+        words = (f"Model − measured at {there.sum()} of {len(there)} frequencies: rms {rms:.3g} N{share}, mean "
                  f"{gaps.mean():+.3g} N, largest {gaps[largest]:+.3g} N at "
                  f"{self.measured.frequency[there][largest]:g} Hz")
         error = self.measured.error

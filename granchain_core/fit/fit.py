@@ -13,7 +13,7 @@ from scipy.stats import chi2, f
 
 from ..errors import BadInput
 from ..scene import Amplitude, Scene
-from ..scene.driven import refuse_undriven
+from ..scene.refusals import refuse_undriven
 from ..stop import Stop
 from ..tables import Labelled, Table, or_nan, provenance
 from ..tables.provenance import Attribute
@@ -31,7 +31,7 @@ MOST_FREE = 30
 _AGAIN = 4
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Fit(Labelled):
     """The result of a fit.
 

@@ -37,7 +37,7 @@ def data_table(target: Target, evaluation: Evaluation) -> Table:
     """A row for each datum: the measured value, the model's, and the residual."""
     along, count = ("datum",), len(evaluation.residuals)
     unit = "Hz" if isinstance(target, FeatureTarget) else "N"
-    columns = {"residual": Column(evaluation.residuals, along, "1", "model less measured, in standard deviations"),
+    columns = {"residual": Column(evaluation.residuals, along, "1", "model − measured, in standard deviations"),
                "model": Column(evaluation.model, along, unit, "the model's value")}
     if isinstance(target, (SeriesTarget, RecordsTarget)):
         records = target.records if isinstance(target, RecordsTarget) else (target,)

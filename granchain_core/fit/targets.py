@@ -14,8 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..experiment import Feature, Measured, Series
+from ..experiment import Feature, Measured, Series, model_minus_measured
 from ..quantities import QUANTITIES
+from ..regime import Regime
 from ..scene import Amplitude, Scene
 from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.resonance import peaks_and_valleys
@@ -45,9 +46,11 @@ _COMPARED = 4000
 class Evaluation:
     """Residuals (n,) in standard deviations, and the regimes.
 
-    `log_variance` is Σ 2 ln(σ'/σ) over the data whose standard deviation σ' is enlarged, because the motion there has
-    no period: it belongs to the likelihood, and not to χ². `model` is the model's value for each datum, for pictures:
-    forces [N], frequencies [Hz].
+    `log_variance` is Σ 2 ln(σ'/σ) over the data whose standard deviation σ' is enlarged: on a curve by the stated
+    numerical error of a periodic motion and by a fifth of the force of any other, in a series by the standard deviation
+    of the waveform of a motion that is not periodic. It belongs to the likelihood, and not to χ². `regimes` are
+    "periodic3", "chaotic" and so on. `model` is the model's value for each datum, for pictures: forces [N], frequencies
+    [Hz].
     """
 
     residuals: np.ndarray
@@ -150,9 +153,9 @@ class CurveTarget(Compared):
         wide = np.sqrt(sigma**2 + np.where(periodic, stated * np.abs(model), SCATTER * np.abs(model)) ** 2)
         failed = ~np.isfinite(model)
         wide[failed] = sigma[failed]
-        residuals = np.where(failed, FAILED, (model - self.measured.force) / wide)
+        residuals = np.where(failed, FAILED, model_minus_measured(model, self.measured.force) / wide)
         return Evaluation(residuals, float(2.0 * np.log(wide / sigma).sum()),
-                          tuple(p.regime.name + str(p.regime.period or "") for p in curve.points), model, curve)
+                          tuple(regime_and_period(p.regime) for p in curve.points), model, curve)
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,10 +236,10 @@ class SeriesTarget(Compared):
             else:
                 model = np.full(len(values), float(getattr(found.run, name).mean()))
                 wide = math.hypot(sigma, float(getattr(found.run, name).std()))
-            residuals.append((model - values) / wide)
+            residuals.append(model_minus_measured(model, values) / wide)
             beyond += 2.0 * len(values) * math.log(wide / sigma)
             models.append(model)
-        return Evaluation(np.concatenate(residuals), beyond, (found.regime.name + str(found.regime.period or ""),),
+        return Evaluation(np.concatenate(residuals), beyond, (regime_and_period(found.regime),),
                           np.concatenate(models))
 
 
@@ -287,6 +290,11 @@ class FeatureTarget(Compared):
             model.append(near)
             residuals.append((near - one.frequency if math.isfinite(near) else width) / self.sigma)
         return Evaluation(np.array(residuals), 0.0, tuple(p.regime.name for p in curve.points), np.array(model), curve)
+
+
+def regime_and_period(regime: Regime) -> str:
+    """A regime as the JSON and the files of a fit write it: "periodic3", "chaotic"."""
+    return f"{regime.name}{regime.period or ''}"
 
 
 def extrema(points: Sequence[CurvePoint], peaks: bool) -> list[float]:

@@ -26,12 +26,12 @@ class Injector:
         self.engine = Engine(scene("sec2").evolve(N=beads, f=1130.0), setting, _SAMPLES)
         self.engine.record(3 * _SAMPLES)
         engine = self.engine
-        self._kept = engine.y.copy(), engine.stepper.work.k[0].copy(), engine.grid_index, engine.elapsed
+        self._kept = engine.y.copy(), engine.stepper.slope.copy(), engine.grid_index, engine.elapsed
 
     def restore(self) -> None:
         """Restore that state."""
         engine = self.engine
-        engine.y[:], engine.stepper.work.k[0] = self._kept[0], self._kept[1]
+        engine.y[:], engine.stepper.slope[:] = self._kept[0], self._kept[1]
         engine.grid_index, engine.elapsed = self._kept[2], self._kept[3]
         self.renew()
 

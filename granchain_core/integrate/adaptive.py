@@ -38,6 +38,11 @@ class Dop853Stepper:
             slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
             next_step=np.array([min(_FIRST_STEP, largest)]), forces=scaled.forces())
 
+    @property
+    def slope(self) -> np.ndarray:
+        """The slope dy/dt at the present state."""
+        return np.asarray(self.work.k[0])
+
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""
         self.scaled = scaled

@@ -66,7 +66,7 @@ def checkpoint(engine: Engine) -> Checkpoint:
     control = np.array([*engine.stepper.work.next_step, *engine.stepper.work.scale]) if adaptive else np.zeros(0)
     setting = engine.setting
     return Checkpoint(engine.scaled.scene.digest, setting.method, float(setting.refine), setting.tolerance,
-                      engine.samples, engine.y.copy(), engine.stepper.work.k[0].copy(), control, engine.grid_index,
+                      engine.samples, engine.y.copy(), engine.stepper.slope.copy(), control, engine.grid_index,
                       float(engine.elapsed))
 
 
@@ -78,7 +78,7 @@ def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:
     row = scene.N + 2
     engine = Engine(scene, Setting(kept.method, kept.refine, kept.tolerance), kept.samples,
                     account=len(kept.y) > 2 * row, stop=stop)
-    engine.y[:], engine.stepper.work.k[0] = kept.y, kept.slope
+    engine.y[:], engine.stepper.slope[:] = kept.y, kept.slope
     if len(kept.control):
         engine.stepper.work.next_step[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]
     engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed

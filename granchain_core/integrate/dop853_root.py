@@ -53,7 +53,8 @@ class Dop853RootStepper(Dop853Stepper):
 
 
 def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:
-    """The workspace of a chain of up to 30 beads, all of whose effects these kernels know. Raises `BadInput`."""
+    """The workspace of a chain that fits into one vector and has effects that these kernels know. Raises `BadInput`.
+    """
     width = next((lanes for lanes in CHAIN_WIDTHS if scaled.bodies <= lanes), 0)
     unknown = unknown_slots(scaled.slots, "dop853_root")
     if not width or unknown or scaled.slots.driver is None:

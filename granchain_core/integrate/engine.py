@@ -102,7 +102,7 @@ class Engine:
         """The present state in SI."""
         scaled = self.scaled
         self.evaluate(from_velocity=False)
-        displacement, velocity = scaled.rows(self.y)[0], scaled.rows(self.stepper.work.k[0])[0]
+        displacement, velocity = scaled.rows(self.y)[0], scaled.rows(self.stepper.slope)[0]
         return State(displacement * scaled.scales.length, velocity * scaled.scales.velocity,
                      self.grid_index / self.grid)
 
@@ -217,7 +217,7 @@ class Engine:
         bead = first_not_finite(self.y, stepper.scaled.bodies)
         if bead:
             raise self._failure(NOT_FINITE, 0.0, bead, stepper.step_at(self.grid_index)).error
-        self._before: CallStart = self.y.copy(), stepper.work.k[0].copy(), self.grid_index
+        self._before: CallStart = self.y.copy(), stepper.slope.copy(), self.grid_index
 
     def _failure(self, status: int, done: float, bead: int, step: int | None) -> Failure:
         return Failure(status, self.elapsed + done, bead, step, self.counts.by_name, self.scaled.scene,

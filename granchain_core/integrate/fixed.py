@@ -88,6 +88,11 @@ class FixedStep:
         width = next((lanes for lanes in CHAIN_WIDTHS if scaled.bodies <= lanes), 0)
         return short_chain_workspace(scaled, width) if width else _long_chain(scaled)
 
+    @property
+    def slope(self) -> np.ndarray:
+        """The slope dy/dt at the present state."""
+        return np.asarray(self.work.k[0])
+
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""
         self.scaled = scaled

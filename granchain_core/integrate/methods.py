@@ -11,6 +11,7 @@ import numpy as np
 
 from ..input_checks import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
+from ..kernels.rk4.short_chain import CHAIN_WIDTHS
 from ..kernels.rk4.step import Rk4, Rk4Split
 from ..scaling import ScaledChain
 from .adaptive import Dop853Stepper
@@ -23,7 +24,9 @@ FIXED_STEP = "rk4-split"
 #: Error control with located events: the method of the finest accuracy.
 ADAPTIVE = "dop853"
 
-#: Above this relative error the fixed-step method is the cheaper one (`granchain accuracy sec2` measures it).
+#: Most beads of a chain whose bodies, with driver and wall, fit into one vector.
+SHORT_CHAIN = max(CHAIN_WIDTHS) - 2
+#: Above this relative error the fixed-step method is cheaper than dop853 (`granchain accuracy sec2` measures it).
 FIXED_STEP_IS_CHEAPER = 1e-10
 #: The fixed-step method's usual relative error at the default step; it falls with the fourth power of the step.
 _FIXED_STEP_ERROR = 7e-6
@@ -106,16 +109,19 @@ class StepCost:
 class Method:
     """A method of integration: a row of `METHODS`.
 
-    Orders are measured (tests/numerics/test_orders.py): the smallest of all damping laws, and of adaptive methods per
-    mean step. `order_with_cut` of the naive methods is not measured.
+    `tests/numerics/test_orders.py` derives the orders in theory and measures the observed ones: the smallest of all
+    damping laws, and of adaptive methods per mean step. `observed_with_cut` of the naive methods is not measured.
 
     Attributes
     ----------
     name, title : str
         What it is called on the command line, and in tables.
-    order_smooth, order, order_with_cut : float
-        Orders where no contact opens or closes; across contact events, at the accuracies the method is used for; and
-        where tension is cut. Only dop853 ends its steps at the kink of a cut force, F = 0.
+    order, order_at_events : float
+        Orders in theory with damping: where no contact opens or closes, and across contact events.
+    observed_smooth, observed_order, observed_with_cut : float
+        Observed orders where no contact opens or closes; across contact events, at the accuracies the method is used
+        for; and where tension is cut, NaN for a method that refuses it. Only dop853 ends its steps at the kink of a
+        cut force, F = 0.
     adaptive : bool
         Whether an error control sets the steps.
     symplectic : bool
@@ -138,8 +144,10 @@ class Method:
 
     name: str
     title: str
-    order_smooth: float
     order: float
+    order_at_events: float
+    observed_smooth: float
+    observed_order: float
     adaptive: bool
     symplectic: bool
     restrictions: str
@@ -149,7 +157,7 @@ class Method:
     usual_error: float = 0.0
     converges_regularly: bool = False
     variables: str = "uw"
-    order_with_cut: float = 1.0
+    observed_with_cut: float = 1.0
     has_account: bool = True
 
 
@@ -174,42 +182,49 @@ METHODS: dict[str, Method] = {
     m.name: m
     for m in (
         Method(
-            name="rk4", title="RK4 in w", order_smooth=4.0, order=2.0, adaptive=False, symplectic=False,
+            name="rk4", title="RK4 in w",
+            order=4.0, order_at_events=2.0, observed_smooth=4.0, observed_order=2.0,
+            adaptive=False, symplectic=False,
             restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, its jump "
                          "read off the step's ends",
             reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9)),
         Method(
             name=FIXED_STEP, title="RK4 in w, steps split at contact events, quadrature corrected there",
-            order_smooth=4.0, order=3.9, adaptive=False, symplectic=False,
+            order=4.0, order_at_events=3.5, observed_smooth=4.0, observed_order=3.9,
+            adaptive=False, symplectic=False,
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; with more than "
-                         "30 beads two changes of one inner contact inside a step are not seen",
+                         f"{SHORT_CHAIN} beads two changes of one inner contact inside a step are not seen",
             reference="Kutta 1901; w-variables and events: docs/method.md", stepper=_fixed(Rk4Split, simd=True),
             cost=StepCost(450e-9, 45e-9), usual_error=_FIXED_STEP_ERROR, converges_regularly=True),
         Method(
-            name="rk4-naive", title="RK4 in (u, v), the obvious first attempt", order_smooth=4.0, order=1.0,
+            name="rk4-naive", title="RK4 in (u, v), the obvious first attempt",
+            order=4.0, order_at_events=1.0, observed_smooth=4.0, observed_order=1.0,
             adaptive=False, symplectic=False,
             restrictions="no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
             reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv",
             has_account=False),
         Method(
-            name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt", order_smooth=1.0,
-            order=1.0, adaptive=False, symplectic=True,
+            name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt",
+            order=1.0, order_at_events=1.0, observed_smooth=1.0, observed_order=1.0,
+            adaptive=False, symplectic=True,
             restrictions="no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
             variables="uv", has_account=False),
         Method(
-            name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located", order_smooth=8.5, order=7.5,
+            name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located",
+            order=8.0, order_at_events=7.0, observed_smooth=8.5, observed_order=7.5,
             adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Dop853Stepper),
-            cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, order_with_cut=7.5),
+            cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, observed_with_cut=7.5),
         Method(
             name="dop853-root", title="Dormand–Prince 8 in w, in the root of an overlap next to contact events",
-            order_smooth=8.0, order=7.0, adaptive=True, symplectic=False,
-            restrictions="accuracy to about 1e-12; no energy account; chains of up to 30 beads with a driver that is "
-                         "harmonic or at rest, without tension cut",
+            order=8.0, order_at_events=7.0, observed_smooth=8.0, observed_order=7.0,
+            adaptive=True, symplectic=False,
+            restrictions="accuracy to about 1e-12; no energy account; chains of up to "
+                         f"{SHORT_CHAIN} beads with a driver that is harmonic or at rest, without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/method.md",
             stepper=_adaptive(Dop853RootStepper), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
-            usual_error=1.0, has_account=False),
+            usual_error=1.0, observed_with_cut=math.nan, has_account=False),
     )
 }
 
@@ -257,7 +272,7 @@ def typical_error(setting: Setting) -> float:
     method = METHODS[setting.method]
     if method.adaptive:
         return _ERROR_SPREAD * method.usual_error * setting.tolerance
-    return _ERROR_SPREAD * method.usual_error / setting.refine**method.order_smooth
+    return _ERROR_SPREAD * method.usual_error / setting.refine**method.order
 
 
 def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.ndarray,

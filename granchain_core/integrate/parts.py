@@ -8,7 +8,7 @@ results do not depend on the machine's speed.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -28,8 +28,11 @@ class InParts(Protocol):
 
     scaled: ScaledChain
     grid: int
-    work: Any
     pause: Callable[[], None]
+
+    @property
+    def slope(self) -> np.ndarray:
+        """The slope dy/dt (M,) at the present state."""
 
     def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: Output) -> tuple[int, int]:
         """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
@@ -66,7 +69,7 @@ def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, p
 def periods_in_parts(stepper: InParts, y: np.ndarray, part: int, strobes: np.ndarray, maxima: np.ndarray,
                      out: Output) -> tuple[int, int]:
     """Advance whole periods from phase 0, filling strobes and largest forces; returns status and periods done."""
-    slope = stepper.work.k[0]
+    slope = stepper.slope
     keep_strobe(y, slope, strobes[0])
     for i in range(len(maxima)):
         next_period(out.log.peaks)

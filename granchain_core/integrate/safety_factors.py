@@ -10,19 +10,21 @@ about 15 times the error of the finer computation. Contact events make the fall 
 
 from __future__ import annotations
 
-#: Displacements whose error falls by the method's order at every refinement (`Method.converges_regularly`).
+#: [safety factor] Displacements whose error falls by the method's order at every refinement
+#: (`Method.converges_regularly`).
 REGULAR = 1.5
-#: Displacements whose error does not: at contact events with the other methods, with tension cut, and between the
-#: samples of a measured force. Also strobes of an orbit, which an error of its map may move by more than 1/(1 − |μ|).
+#: [safety factor] Displacements whose error falls irregularly: at contact events with the other methods, with tension
+#: cut, and between the samples of a measured force. Also strobes of an orbit, which an error of its map may move by
+#: more than 1/(1 − |μ|).
 IRREGULAR = 3.0
-#: Largest forces of a run, on top of the factor above, where no force jumps. Found by trial, as is the next one
-#: (`python -m tests.numerics.forces run`).
+#: [safety factor] Largest forces of a run where no force jumps, on top of the factor of displacements. Found by trial,
+#: as is the next one (`python -m tests.numerics.forces run`).
 RUN_FORCES = 1.5
-#: The same where a force jumps: its error varies from one step size to the next.
+#: [safety factor] Largest forces of a run where a force jumps. Its error varies from one step size to the next.
 RUN_FORCES_THAT_JUMP = 3.0
-#: Largest forces on a periodic orbit, in place of both factors above: only two computations are compared, and their
-#: change is enlarged by 1/(1 − the contraction factor) as well (`orbit_force_errors`).
+#: [safety factor] Largest forces on a periodic orbit, in place of both other factors. Only two computations are
+#: compared, and their change is enlarged by 1/(1 − the contraction factor) as well (`orbit_force_errors`).
 ORBIT_FORCES = 2.0
-#: What the samples of a driver's measured motion leave out: on top of the larger of the differences from every second
-#: sample over 2^p − 1, with an order p of 1 to 2. Found by trial.
+#: [safety factor] What the samples of a driver's measured motion leave out. It stands on top of the larger of the
+#: differences from every second sample over 2^p − 1, with an order p of 1 to 2. Found by trial.
 SAMPLED_DRIVE = 2.5

@@ -112,8 +112,9 @@ class Computations:
             self.growth = max(self.growth, difference / typical)
 
     def _falls(self, coarser: Setting, finer: Setting) -> float:
-        """The expected ratio of the two errors: from the method's order, or with error control from the tolerances."""
+        """Expected ratio of the two errors, by the method's observed order, or with error control by the tolerances."""
         method = METHODS[finer.method]
         if method.adaptive:
             return coarser.tolerance / finer.tolerance
-        return float((finer.refine / coarser.refine) ** (method.order_with_cut if self.cuts_tension else method.order))
+        order = method.observed_with_cut if self.cuts_tension else method.observed_order
+        return float((finer.refine / coarser.refine) ** order)

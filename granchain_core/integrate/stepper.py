@@ -26,6 +26,10 @@ class Stepper(Protocol):
     work: Any
     pause: Callable[[], None]
 
+    @property
+    def slope(self) -> np.ndarray:
+        """The slope dy/dt (M,) at the present state: a view, which a caller may write into."""
+
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects."""
 

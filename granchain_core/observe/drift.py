@@ -31,8 +31,21 @@ def is_drift(scene: Scene, share: float, multiplier: complex | None) -> bool:
     `multiplier` is the one by which it grows, None where it is not known. A complex one turns the difference through
     shapes of which only some are a translation.
     """
-    real = multiplier is None or multiplier.imag == 0.0
-    return scene.k == 0.0 and share >= TRANSLATION and real
+    return scene.k == 0.0 and share >= TRANSLATION and (multiplier is None or is_real(multiplier))
+
+
+def is_real(multiplier: complex) -> bool:
+    """Whether a multiplier is real; those of one real matrix come in conjugate pairs where they are not."""
+    return multiplier.imag == 0.0
+
+
+def departure_words(drifts: bool, multiplier: complex | None) -> str:
+    """What an observer does that does not synchronise: it drifts or leaves its chain, and alternates where μ < 0."""
+    alternating = multiplier is not None and is_real(multiplier) and multiplier.real < 0.0
+    sides = ", alternating between the sides" if alternating else ""
+    if drifts:
+        return f"drifts{sides}: an offset of all its beads grows, because nothing pulls them back"
+    return f"leaves its chain{sides}"
 
 
 def observer_drift(orbit: Orbit) -> str | None:

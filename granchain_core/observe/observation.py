@@ -3,21 +3,21 @@
     m ü_1 = F_in(t) − F_1 − k u_1,   wall and foundation as the scene has them
 
 The motion is computed with steps that are halved until the stated integration error is small enough, by the rules of
-`run` (integrate/stated.py), and once more from every second sample. Three times the difference from that is stated as
-the interpolation error. Where a contact's dashpot makes the force jump, it is of the order of the spacing and depends
-on the place of the jump in it, so that one halving may gain little.
+`run` (integrate/stated.py), and once more from every second sample. `IRREGULAR` times the difference from that is
+stated as the interpolation error. Where a contact's dashpot makes the force jump, it is of the order of the spacing and
+depends on the place of the jump in it, so that one halving may gain little.
 """
 
 from __future__ import annotations
 
 import json
-import time as clock
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
 
 import numpy as np
 
 from ..errors import BadInput
+from ..experiment import model_minus_measured
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR
@@ -27,6 +27,7 @@ from ..result import RUN_ERRORS, Cost, ForceErrors, said_forces
 from ..scene import Scene
 from ..state import State, checked_start, rest
 from ..stop import Stop
+from ..stopwatch import Stopwatch
 from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain
@@ -42,7 +43,7 @@ class Residual:
     relative: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Observation(RecordedMotion):
     """The motion of an observer at the T samples of its input, in SI.
 
@@ -141,7 +142,7 @@ class Observation(RecordedMotion):
                  f"relative error of displacements {self.integration_error:.1e} by steps, "
                  f"{self.interpolation_error:.1e} between samples"]
         if self.residual is not None:
-            found.append(f"measured less computed: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
+            found.append(f"model − measured: rms {self.residual.rms:.3g} N, most {self.residual.largest:.3g} N")
         return found
 
 
@@ -203,7 +204,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     if len(record.time) * scene.N > MOST_RECORDED:
         raise BadInput(f"{len(record.time)} samples for {scene.N} beads are more than {MOST_RECORDED:.0e} values; "
                        f"give at most {MOST_RECORDED // scene.N} samples.")
-    began = clock.perf_counter()
+    spent = Stopwatch()
     stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else checked_start(scene, start)
     chain = PushedChain(scene, record, stop)
@@ -228,7 +229,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         integration_error=float(integration[0]), interpolation_error=float(interpolation[0]),
         status="done" if errors[0] <= scene.accuracy else "accuracy-not-reached",
         force_errors=ForceErrors.of(np.array([np.nan, *errors[2:]])),
-        cost=Cost.of(clock.perf_counter() - began, chain.counts, FIXED_STEP),
+        cost=Cost.of(spent.seconds, chain.counts, FIXED_STEP),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )
 
@@ -237,5 +238,6 @@ def residual(computed: np.ndarray, measured: np.ndarray | None) -> Residual | No
     """How far `computed` is from `measured`; None where nothing was measured."""
     if measured is None:
         return None
-    rms, size = float(np.sqrt(np.mean((computed - measured) ** 2))), float(np.sqrt(np.mean(measured**2)))
-    return Residual(rms, float(np.abs(computed - measured).max()), rms / size if size > 0.0 else float("inf"))
+    difference = model_minus_measured(computed, measured)
+    rms, size = float(np.sqrt(np.mean(difference**2))), float(np.sqrt(np.mean(measured**2)))
+    return Residual(rms, float(np.abs(difference).max()), rms / size if size > 0.0 else float("inf"))

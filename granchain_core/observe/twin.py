@@ -8,7 +8,6 @@ d_{k+2} = a d_{k+1} + b d_k where two do, which then solve z² = a z + b.
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,11 +18,12 @@ from ..integrate.methods import ADAPTIVE
 from ..orbits import Orbit, periodic_orbit
 from ..result import Cost
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State, checked_start
 from ..steady.settling.advance import run_until_settled
 from ..stop import Stop
-from .drift import is_drift, share_of_translation
+from ..stopwatch import Stopwatch
+from .drift import departure_words, is_drift, share_of_translation
 from .pair import Pair
 
 #: Largest distance, relative to the motion, at which the difference of two motions still grows linearly.
@@ -142,12 +142,7 @@ class Twin:
                     "give more periods.")
         if self.verdict == "synchronises":
             return f"The observer synchronises: {factor}."
-        side = ""
-        if self.leading is not None and self.leading.imag == 0.0 and self.leading.real < 0.0:
-            side = ", to the other side each time"
-        if self.verdict == "drifts":
-            return f"The observer drifts: an offset of all its beads, which nothing pulls back, grows{side}; {factor}."
-        return f"The observer leaves its chain{side}: {factor}."
+        return f"The observer {departure_words(self.verdict == 'drifts', self.leading)}; {factor}."
 
 
 def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, samples: int = 48,
@@ -161,7 +156,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     require_scene(scene)
     periods = whole_number("periods =", periods, 1, MOST_PERIODS)
     samples = whole_number("samples =", samples, 1, 1000)
-    began = time.perf_counter()
+    spent = Stopwatch()
     settling = run_until_settled(scene, None, stop)
     orbit, start, n = None, settling.engine.state, settling.regime.period or 1
     if settling.regime.period is not None and not scene.cuts_tension:
@@ -183,7 +178,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
         observer_output_force=force[:, -1] * scales.force, distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
         translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
-        cost=Cost.of(time.perf_counter() - began, pair.engine.counts, ADAPTIVE),
+        cost=Cost.of(spent.seconds, pair.engine.counts, ADAPTIVE),
     )
 
 

@@ -19,7 +19,7 @@ from ..integrate.start import at_phase_0
 from ..regime import modulus_words
 from ..scaling import scales_of
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..steady.returns import relative_change
@@ -42,7 +42,7 @@ ROUNDING = 1e-13
 _MOST_HALVINGS = 6
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Orbit(Labelled):
     """A periodic orbit with its Floquet multipliers.
 

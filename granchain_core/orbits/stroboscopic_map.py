@@ -19,7 +19,7 @@ from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
 from ..kernels.status import EVENTS_PER_CONTACT
 from ..scaling import ScaledChain, scale_like
 from ..scene import Scene
-from ..scene.driven import refuse_undriven
+from ..scene.refusals import refuse_undriven
 from ..stop import Stop
 
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
@@ -33,7 +33,7 @@ TANGENT_ERROR = 1e-7
 #: eigenvectors are well separated. For single orbits it is computed (multiplier_errors.py).
 MULTIPLIER_ERROR = 10.0 * TANGENT_ERROR
 #: The method, in the provenance of results.
-FLOW_METHOD = "tangent flow (DOP853 in regularised time)"
+FLOW_METHOD = "tangent flow (DOP853, time substitution at events)"
 #: An orbit that is back within this, relatively, after a part of its period has that shorter period.
 SAME_ORBIT_DISTANCE = 1e-8
 

@@ -15,7 +15,7 @@ from ..recorded_motion import MOST_RECORDED, MOST_SAMPLES
 from ..regime import Regime
 from ..result import Cost, Jumps, Run, run_from, start_words
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..state import State, checked_start, rest
 from ..stop import Stop
 

@@ -13,7 +13,7 @@ from ..quantities import QUANTITIES
 from ..regime import Regime
 from ..result import Run
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..scheduler import results
 from ..steady.batch.threads import on_all_cores
 from ..steady.settling.outcome import Settled

@@ -6,7 +6,6 @@ Every accuracy is reached by comparing two computations, none by trust in a tole
 from __future__ import annotations
 
 import itertools
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -22,13 +21,14 @@ from ..recorded_motion import MOST_RECORDED, MOST_SAMPLES
 from ..regime import Regime
 from ..result import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
-from ..scene.given import require_scene
+from ..scene.refusals import require_scene
 from ..scene.validity import overlap_warnings
 from ..state import State, checked_start, rest
 from ..steady.regime_criteria import find_period
 from ..steady.settling.regime_decisions import REMEMBERED, regime_without_continuing
 from ..stop import Stop
-from .budget import BUDGET, Stopwatch, check_budget
+from ..stopwatch import Stopwatch
+from .budget import BUDGET, check_budget
 from .run_checkpoints import Reached, RunCheckpoints
 
 #: [no threshold] Most drive periods of one run.
@@ -120,7 +120,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
     require_scene(scene)
     periods, record, samples = _sizes(scene, periods, record, samples)
     budget = seconds_allowed(budget)
-    began, total = time.perf_counter(), Counts()
+    spent, total = Stopwatch(), Counts()
     stop = Stop() if stop is None else stop
     begin = rest(scene) if start is None else checked_start(scene, start)
     setting = method_for(scene.accuracy, scene.cuts_tension) if method is None else setting_of(method, scene.accuracy)
@@ -138,7 +138,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
 
     last, status, (error, *forces) = _refined(attempt, scene, setting, samples, budget)
     regime = _regime(scene, last, periods + record, stop)
-    cost = Cost.of(time.perf_counter() - began, total, setting.method)
+    cost = Cost.of(spent.seconds, total, setting.method)
     first = periods * samples + round(begin.phase * samples)
     return run_from(last.engine, last.samples, first, regime, float(error), cost, status=status,
                     force_errors=np.array(forces), start=start_words(scene, start))

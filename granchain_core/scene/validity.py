@@ -1,4 +1,7 @@
-"""Limits of the model: Hertz contact needs small overlaps and elastic steel."""
+"""What users are told of a scene: limits of the model, an impurity that is missing, a κ that has changed.
+
+Hertz contact needs small overlaps and elastic steel.
+"""
 
 from __future__ import annotations
 
@@ -69,3 +72,10 @@ def missing_impurity(scene: Description) -> str:
         return ""
     return (f"The impurity's place, bead {scene.site}, is not in this chain of {scene.N} beads, so there is no "
             f"impurity; the nearest valid value is {scene.N}.")
+
+
+def moved_kappa(before: Description, after: Description) -> str:
+    """κ before A₀ changed at constant k, in words; empty if A₀ did not change, k did, or there is no foundation."""
+    if after.A0 == before.A0 or after.k != before.k or after.k == 0.0:
+        return ""
+    return f"κ was {before.kappa:.4g} before A₀ changed at constant k"

@@ -80,18 +80,19 @@ def rounding_of(setting: Setting) -> float:
 
 
 def grows(mean: float, error: float, periods: int) -> bool:
-    """Whether neighbours part, by a mean exponent per period over so many periods and its standard error.
+    """Whether nearby trajectories diverge, by a mean exponent over `periods` drive periods and its standard error.
 
-    mean > max(3σ, 6/periods).
+    mean > max(`STANDARD_ERRORS` σ, `_BOUNDED_GROWTH`/periods).
     """
     return mean > max(STANDARD_ERRORS * error, _BOUNDED_GROWTH / periods)
 
 
 def is_neutral(mean: float, error: float, periods: int) -> bool:
-    """Whether neighbours neither part nor approach, by a mean exponent per period and its standard error.
+    """Whether nearby trajectories neither diverge nor approach, by a mean exponent and its standard error.
 
-    |mean| ≤ min(max(3σ, 6/periods), 0.01) and 3σ < 0.01: a large error must not make this easier. Weak chaos below 0.01
-    per period is neutral too. A mean that is neither this nor clearly positive or negative is undecided.
+    |mean| ≤ min(max(s, `_BOUNDED_GROWTH`/periods), `_LARGEST_NEUTRAL_EXPONENT`) with s = `STANDARD_ERRORS` σ, which
+    must be below `_LARGEST_NEUTRAL_EXPONENT` too: a large error must not make this easier. Weak chaos below that is
+    neutral. A mean that is neither neutral nor clearly positive or negative is undecided.
     """
     uncertain = STANDARD_ERRORS * error
     limit = min(max(uncertain, _BOUNDED_GROWTH / periods), _LARGEST_NEUTRAL_EXPONENT)

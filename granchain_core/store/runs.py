@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import BadInput
 from ..hdf5 import File, opened
 from ..hdf5.border import entries, finite, one_of, within
 from ..hdf5.plain import Refused
@@ -59,19 +60,20 @@ def load(path: str | Path) -> Run:
     """
     with opened(path, "is not a run written by granchain") as file:
         file.schema()
-        _refuse_other_results(file)
-        return _read(file)
+        other = _other_result(file)
+        if not other:
+            return _read(file)
+    raise BadInput(f"`load` reads runs, and {str(path)[:200]} holds another result: {other}.")
 
 
-def _refuse_other_results(file: File) -> None:
-    """Say what kind of result it is where the file has other tables than a run's, and how it can be read."""
-    if file.has("run/time"):
-        return
+def _other_result(file: File) -> str:
+    """The tables of a file of another result than a run, and what reads them; empty for a run."""
     found = sorted({name.partition("/")[0] for name in file.names() if "/" in name})
-    if found and "run" not in found:
-        own = next((_LOADED[name] for name in found if name in _LOADED), None)
-        how = f"granchain_core.store.{own} reads it" if own else 'xarray.open_dataset(path, group="…") reads its tables'
-        raise Refused(f"its tables are {', '.join(found)[:80]}; {how}")
+    if file.has("run/time") or not found or "run" in found:
+        return ""
+    own = next((_LOADED[name] for name in found if name in _LOADED), None)
+    how = f"granchain_core.store.{own} reads it" if own else f'xarray.open_dataset(path, group="{found[0]}") reads one'
+    return f"its tables are {', '.join(found)[:80]}; {how}"
 
 
 def _read(file: File) -> Run:

@@ -22,7 +22,7 @@ class Labelled:
     """A result whose numbers have names, units and axes.
 
     A class of results says in `tables` what its numbers are, in `attributes` what it has one of, and in `summary` what
-    is worth reading first.
+    is worth reading first. A dataclass among them has `repr=False`, so that `print` shows the summary.
     """
 
     if TYPE_CHECKING:
@@ -79,10 +79,14 @@ class Labelled:
             raise unknown_name("table", name, tuple(tables))
         return tables[name or next(iter(tables))]
 
+    def __repr__(self) -> str:
+        """What `print` shows: heading and summary, where a dataclass would show whole arrays."""
+        return as_text(self.heading(), self.summary())
+
     def _repr_html_(self) -> str:
         """What a notebook shows."""
         return as_html(self.heading(), self.summary(), self.tables())
 
     def _repr_mimebundle_(self, include: object = None, exclude: object = None) -> dict[str, Any]:
-        """Heading and summary for a notebook and for a terminal, which would otherwise print whole arrays."""
-        return {"text/html": self._repr_html_(), "text/plain": as_text(self.heading(), self.summary())}
+        """Heading and summary for a notebook and for a terminal."""
+        return {"text/html": self._repr_html_(), "text/plain": repr(self)}

@@ -20,7 +20,7 @@ from ..integrate import Engine, fixed_step_setting, following_setting
 from ..integrate.methods import typical_error
 from ..result import GIVEN_STATE, Cost, Run, run_from
 from ..scene import Scene
-from ..scene.driven import refuse_undriven
+from ..scene.refusals import refuse_undriven
 from ..state import State
 from ..steady.settling.settle import settle
 from ..stop import Stop

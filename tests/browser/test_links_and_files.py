@@ -87,7 +87,7 @@ def test_what_a_file_does_not_say_is_chosen_and_the_misfit_is_said(visit: Visit,
         page.get_by_label(f"unit of column {number}").select_option(unit)
     page.get_by_role("button", name="Read with these settings").click()
     expect(page.locator("#tabs")).to_contain_text("3 points, 340 to 1130 Hz, force 0.6 to 1.15 N")
-    expect(page.locator("#tabs")).to_contain_text("Measured less model at 3 of 3 frequencies: rms")
+    expect(page.locator("#tabs")).to_contain_text("Model − measured at 3 of 3 frequencies: rms")
     with page.expect_download() as download:
         page.get_by_role("button", name="sample file").click()
     download.value.save_as(tmp_path / "sample.csv")
@@ -134,7 +134,7 @@ def test_a_tab_is_drawn_once_for_a_change_and_the_map_is_left_alone(visit: Visit
     }""")
     content = b"frequency_Hz,force_N\n340,0.6\n1130,1.1\n"
     page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": content})
-    expect(page.locator("#tabs")).to_contain_text("Measured less model")
+    expect(page.locator("#tabs")).to_contain_text("Model − measured")
     type_into(page, "f", "341")  # whatever the file had caused has come before the answer to this
     settled(page)
     assert page.evaluate("drawn") == 1

@@ -22,7 +22,10 @@ COMMANDS = {
     "pulse": ["impact", "--set", "N=5"], "bands": ["precompressed"],
 }
 #: A source in the picture of each, where it has one.
-SOURCES = {"spectrum": "lines", "rotation": "convergence", "strobes": "strobes", "attractors": "period 1", "basins": "basin 1"}
+SOURCES = {"spectrum": "lines", "lyapunov": "exponents", "rotation": "convergence", "strobes": "strobes", "attractors": "period 1", "basins": "basin 1"}
+#: A group of the file of each that has `--out`.
+GROUPS = {"spectrum": "spectrum", "lyapunov": "lyapunov", "rotation": "rotation", "strobes": "strobes", "basins": "basins",
+          "pulse": "pulse", "orbit": "multipliers"}
 
 
 @pytest.mark.parametrize("command", SOURCES)
@@ -30,6 +33,19 @@ def test_a_picture_has_its_points(command: str, tmp_path: Path) -> None:
     page = tmp_path / "a.html"
     assert main([command, *COMMANDS[command], "--picture", str(page)]) == 0
     assert f'"name": "{SOURCES[command]}"' in page.read_text(encoding="utf-8").replace('\\"', '"').replace('":"', '": "')
+
+
+@pytest.mark.parametrize("command", [*GROUPS])
+def test_the_file_has_the_result(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Its main group, with the scene at the root; the words are those without a file."""
+    words = [command, *COMMANDS.get(command, SHORT)]
+    assert main([*words, "--out", str(tmp_path / "a.h5")]) == 0
+    printed = capsys.readouterr().out
+    with h5py.File(tmp_path / "a.h5") as file:
+        assert GROUPS[command] in file and file.attrs["scene_name"] == words[1]
+    assert main(words) == 0
+    assert capsys.readouterr().out == printed
+    assert main([*words, "--out", str(tmp_path / "none" / "a.h5")]) == 2
 
 
 @pytest.mark.parametrize(("command", "words"), [

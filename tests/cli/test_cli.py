@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
+import math
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import h5py
 import pytest
 
 from app.cli import main
+from granchain_core import Curve
+from granchain_core.steady.curve.request import CurveRequest
 
 SHORT = ["--periods", "2", "--record", "1", "--samples", "8"]
 
@@ -146,3 +151,40 @@ def test_an_interrupt_ends_a_long_run_with_130() -> None:
 def _interruptible() -> None:
     """A shell's background jobs ignore interrupts, and their children inherit that."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def test_a_failed_point_says_so_in_the_json_and_a_curve_of_them_in_the_exit_status(
+        monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["curve", "sec2", "--set", "N=2", "--from", "1900", "--to", "2000", "--points", "2", "--json"]
+    computed = CurveRequest.compute
+
+    def failing(first: int) -> None:
+        def compute(asked: CurveRequest, **how: Any) -> Curve:
+            found = computed(asked)
+            found.points[first:] = [replace(point, failure="Bead 2 overflowed.", status="not-finite", max_output_force=math.nan)
+                                    for point in found.points[first:]]
+            return found
+        monkeypatch.setattr(CurveRequest, "compute", compute)
+
+    failing(1)
+    assert main(words) == 0
+    said = json.loads(capsys.readouterr().out)
+    assert said["status"] == ["done", "not-finite"] and said["failure"] == [None, "Bead 2 overflowed."]
+    assert said["max_output_force"][1] is None
+    failing(0)
+    assert main(words) == 3
+    assert json.loads(capsys.readouterr().out)["status"] == ["not-finite", "not-finite"]
+
+
+def test_a_curve_is_compared_with_a_measured_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The measurement is half a newton below the computed elastic forces, so the misfit is +0.5 N."""
+    words = ["curve", "sec2", "--set", "N=2", "--from", "1900", "--to", "2000", "--points", "2"]
+    assert main([*words, "--json"]) == 0
+    forces = json.loads(capsys.readouterr().out)["max_output_force_elastic"]
+    data = tmp_path / "mine.csv"
+    data.write_text(f"frequency_Hz,max_output_force_N\n1900,{forces[0] - 0.5}\n2000,{forces[1] - 0.5}\n", encoding="utf-8")
+    assert main([*words, "--data", str(data), "--elastic", "--json"]) == 0
+    misfit = json.loads(capsys.readouterr().out)["misfit"]
+    assert misfit["compared"] == 2 and misfit["rms"] == pytest.approx(0.5) and misfit["mean"] == pytest.approx(0.5)
+    assert main([*words, "--data", str(data), "--elastic"]) == 0
+    assert "Elastic part of the output force. Model − measured at 2 of 2 frequencies: rms 0.5 N" in capsys.readouterr().out

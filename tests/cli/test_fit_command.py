@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from app.cli import main
+from app.cli.fit import _error
 from granchain_core import resonance_curve, scene
 
 ROOT = Path(__file__).parents[2]
@@ -59,6 +60,8 @@ def test_a_fit_of_force_trains_has_a_table_and_a_sentence(tmp_path: Path, capsys
     (["--features", "paper"], "Say what is fitted"),
     (["--features", "paper", "--free", "D=50:200", "--prior", "k=1:2"], "belongs to no --free"),
     (["--features", "paper", "--free", "D=50:200", "--error", "0"], "must be above 0"),
+    (["--features", "paper", "--free", "D=50:200", "--error", "3N"], "these data take Hz, for example --error 3Hz"),
+    (["--features", "paper", "--free", "D=50:200", "--error=-1Hz"], "must be above 0"),
     (["--data", "none.csv", "--free", "D=50:200"], "Cannot read none.csv"),
     (["--features", "paper", "--free", "D=50:200", "--picture", "a.png"], "writes an HTML file"),
 ])
@@ -77,3 +80,15 @@ def test_the_picture_is_one_file(data: str, tmp_path: Path) -> None:
     assert not re.search(r"<(script|link)[^>]+(src|href)=", page)
     for name in ("measured", "residuals", "model", "landscape of D"):
         assert f'"name": "{name}"' in page or f'"name":"{name}"' in page
+
+
+def test_a_row_has_the_measured_force_and_the_models_motion_in_words(data: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["fit", *CHAIN, "--data", data, "--free", "D=50:200", "--error", "0.03", "--no-intervals", "--design", "4"]) == 0
+    rows = [line for line in capsys.readouterr().out.splitlines() if "standard deviations  " in line]
+    assert rows and all(re.search(r"Hz  measured +\S+ N  model +\S+ N +[+-]\S+ standard deviations  period 1$", row) for row in rows)
+
+
+@pytest.mark.parametrize(("text", "unit", "value"), [
+    ("3%", "%", 0.03), ("0.03", "%", 0.03), ("0.2N", "N", 0.2), ("0.2", "N", 0.2), ("3Hz", "Hz", 3.0), (None, "N", None)])
+def test_an_error_may_have_its_unit(text: str | None, unit: str, value: float | None) -> None:
+    assert _error(text, unit) == (None if value is None else pytest.approx(value))

@@ -31,6 +31,7 @@ EXAMPLES = {
     "curve": ["curve", *_SMALL, "--from", "1900", "--to", "2000", "--points", "2"],
     "curve, amplitude": ["curve", *_SMALL, "--from", "1900", "--to", "2000", "--points", "2",
                          "--amplitude", "constant-velocity=3e-3"],
+    "curve, data": ["curve", *_SMALL, "--from", "1900", "--to", "2000", "--points", "2", "--data", "curve.csv"],
     "orbit": ["orbit", *_SMALL],
     "orbit, observer": ["orbit", *_SMALL, "--observer"],
     "branch": ["branch", "sec2", "--set", "N=2", "--knob", "f", "--from", "2000", "--to", "700"],

@@ -23,6 +23,7 @@ ROOT = Path(__file__).parents[2]
 SHORT = ["sec2", "--set", "N=2"]
 COMMANDS = {
     "curve": [*SHORT, "--from", "1900", "--to", "2000", "--points", "2"],
+    "curve --data": [*SHORT, "--from", "1900", "--to", "2000", "--points", "2", "--data", "../measured.csv", "--elastic"],
     "orbit": [*SHORT, "--set", "f=2000"],
     "branch": [*SHORT, "--knob", "f", "--from", "2000", "--to", "2020"],
     "run": [*SHORT, "--set", "f=2000", "--periods", "2", "--record", "2"],
@@ -31,7 +32,7 @@ COMMANDS = {
     "map": [*SHORT, "--x", "f=1900:2000:2", "--y", "A0=5e-7:6e-7:2", "--out", "map.h5"],
 }
 #: A source of each figure that must have rows.
-SOURCES = {"run": "input force", "run --drive": "input force", "pulse": "output force", "curve": "rest", "orbit": "within", "branch": "orbits", "map": "cells"}
+SOURCES = {"run": "input force", "run --drive": "input force", "pulse": "output force", "curve": "rest", "curve --data": "measured", "orbit": "within", "branch": "orbits", "map": "cells"}
 
 
 def document(page: str) -> dict[str, object]:
@@ -63,6 +64,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[str
     puts its own scripts into every page of Bokeh's.
     """
     folder = tmp_path_factory.mktemp("pictures")
+    (folder / "measured.csv").write_text("frequency_Hz,max_output_force_N\n1900,0.5\n1980,0.6\n", encoding="utf-8")
     words = {name: [name.split()[0], *COMMANDS[name], "--json", "--picture", "a.html"] for name in COMMANDS}
     done = subprocess.run([sys.executable, "-c", _PROGRAM, json.dumps(words)], cwd=folder, capture_output=True, text=True,
                           env={**os.environ, "PYTHONPATH": str(ROOT)})

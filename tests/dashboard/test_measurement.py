@@ -119,9 +119,9 @@ def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve(dashboard: Dash
     figure.finished("rest")
     dashboard.curves.compared(figure.difference)
     misfit = dashboard.views.tabs.state["misfit"]
-    # the model has 5 N at 40 Hz and 11 N at 60 Hz: +0.5 and +1.1 N
-    assert "rms 0.854 N" in misfit["sentence"] and "largest +1.1 N at 60 Hz" in misfit["sentence"]
-    assert misfit["rows"][0] == ["40 Hz", "5.5 N", "5.000 N", "+500 mN"]
+    # the model has 5 N at 40 Hz and 11 N at 60 Hz: −0.5 and −1.1 N
+    assert "rms 0.854 N" in misfit["sentence"] and "largest -1.1 N at 60 Hz" in misfit["sentence"]
+    assert misfit["rows"][0] == ["40 Hz", "5.5 N", "5.000 N", "−500 mN"]
     figure.begin(["rest"])
     assert figure.difference is None
 
@@ -130,9 +130,9 @@ def test_residuals_are_nan_where_there_is_no_curve() -> None:
     measured = read_data(b"f [Hz],F [N],error [N]\n10,1,0.1\n50,3,0.5\n")
     assert isinstance(measured, Measured)
     found = compared(measured, np.array([40.0, 60.0]), np.array([1.0, 3.0]))
-    assert list(found.compared) == [False, True] and found.residuals[1] == pytest.approx(1.0)
+    assert list(found.compared) == [False, True] and found.residuals[1] == pytest.approx(-1.0)
     assert found.sentence.endswith("rms 2 stated errors.") and "1 of 2 frequencies" in found.sentence
-    assert measured_columns(measured, 1.0, found.residuals)["residual"] == ["no model here", "+1.00 N"]
+    assert measured_columns(measured, 1.0, found.residuals)["residual"] == ["no model here", "−1.00 N"]
 
 
 def test_bars_are_errors_or_the_extremes_of_repeats() -> None:

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 
 from granchain_core import BadInput, Scene, resonance_curve, scene, settled
 from granchain_core.diagram import Attractor, attractors, listing
+from granchain_core.diagram.attractor import Origin
 from granchain_core.diagram.attractors import _locks, share
 from granchain_core.diagram.attractors import _regime as irregular_regime
 from granchain_core.diagram.sameness import Found
 from granchain_core.orbits import periodic_orbit, response
 from granchain_core.regime import Regime
-from granchain_core.state import rest
+from granchain_core.state import State, rest
 from granchain_core.steady.steady_state import SteadyState
 
 #: Where rest, a sweep up and a sweep down lead to three different motions of sec2.
@@ -118,8 +121,28 @@ def test_a_group_with_one_name_keeps_it(name: str) -> None:
 
 
 def test_shares_without_a_single_hit_still_have_an_error() -> None:
-    assert share(0, 64) == (0.0, pytest.approx(0.0206, abs=1e-3)) and share(0, 0) == (0.0, 0.0)
+    assert share(0, 64) == (0.0, pytest.approx(0.0206, abs=1e-3)) and share(0, 0) == (None, None)
     assert share(32, 64) == (0.5, pytest.approx(0.0606, abs=1e-3))
+
+
+def test_without_random_states_no_share_is_stated() -> None:
+    found = attractors(scene("sec2").evolve(N=2, f=2000.0), random_states=0)
+    assert [(one.share, one.share_error, one.share_words) for one in found] == [(None, None, "–")]
+    assert not any("%" in line for line in listing(found))
+    assert np.isnan(found.to_xarray()["share"]).all() and np.isnan(found.to_xarray()["share_error"]).all()
+
+
+def test_failed_starts_are_named_and_count_among_the_random_states(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One of two random states presses bead 2 a metre into the wall, and its numbers overflow at once."""
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    pressed = State(np.array([0.0, 1.0]), np.zeros(2))
+    origins = [Origin("rest", rest(chain)), Origin("random 0", rest(chain)), Origin("random 1", pressed)]
+    # the package has a function of the name of the module
+    monkeypatch.setattr(sys.modules["granchain_core.diagram.attractors"], "_origins", lambda *_: origins)
+    found = attractors(chain, random_states=2)
+    assert [one.share for one in found] == [0.5]
+    assert [origin.name for origin in found.failed] == ["random 1"]
+    assert found.summary()[-1] == "1 start failed: random 1"
 
 
 def test_too_many_states_are_refused() -> None:

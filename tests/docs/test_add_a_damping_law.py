@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
@@ -25,6 +26,8 @@ def test_the_page_edits_three_files_and_writes_none() -> None:
     edits, new = files_of(PAGE)
     assert (len(edits), len(new)) == (3, 0)
     assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a damping law: edit 3 files, mention it in 4"
+    mentioned = PAGE.read_text(encoding="utf-8").partition("\n## 4. ")[2]
+    assert len(set(re.findall(r"\]\(([\w-]+\.md)\)", mentioned))) == 4  # CHANGELOG.md, not linked, is not counted
 
 
 def test_the_new_law_is_right_in_every_kernel(tree: Path) -> None:

@@ -17,21 +17,18 @@ from granchain_core import orbit, scene
 from granchain_core.kernels.batch import record
 from granchain_core.observe.drift import TRANSLATION
 from granchain_core.regime import Regime
+from granchain_core.steady import regime_criteria
 from granchain_core.steady.settling import regime_decisions
-from tools.thresholds import marked_constants, printed
+from tools.thresholds import _REGIMES, marked_constants, printed
 
 OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
                        for name in ("observers", "glossary"))
 
 
-def test_the_thresholds_of_rotation_numbers_have_the_values_of_the_code() -> None:
-    """Their table is written by hand."""
-    page = (ROOT / "docs" / "regimes.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| [^|]*(?:\\\|[^|]*)* \| ([\de.-]+) \| `(\w+)` in `(analysis/\w+)\.py` \|$", page, re.MULTILINE)
-    assert len(rows) > 20
-    for value, name, file in rows:
-        module = importlib.import_module("granchain_core." + file.replace("/", "."))
-        assert float(value) == pytest.approx(getattr(module, name), rel=1e-12), name
+def test_every_mark_has_a_table() -> None:
+    """A mark that no table knows would leave its constant out of all pages."""
+    known = {*_REGIMES, "rotation", "response", "branch", "safety factor", "no threshold"}
+    assert {mark for one in marked_constants() for mark in one.mark.split(", ")} <= known
 
 
 def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:
@@ -47,6 +44,13 @@ def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:
 @pytest.mark.parametrize(("value", "as_printed"), [(3.0, "3"), (0.97, "0.97"), (1e-5, "1e-5"), (10**8, "1e8"), (1 / 3, "1/3")])
 def test_how_a_threshold_is_printed(value: float, as_printed: str) -> None:
     assert printed(value) == as_printed
+
+
+def test_the_definitions_have_the_values_of_the_constants_they_name() -> None:
+    text = " ".join((ROOT / "docs" / "regimes.md").read_text(encoding="utf-8").split())
+    named = re.findall(r"([\d.]+) is `(_?[A-Z_]+)`", text)
+    assert {name for _, name in named} == {"STANDARD_ERRORS", "_BOUNDED_GROWTH", "_LARGEST_NEUTRAL_EXPONENT"}
+    assert all(float(value) == getattr(regime_criteria, name) for value, name in named)
 
 
 @pytest.mark.parametrize(("accuracy", "noise"), [(1e-8, 1e-7), (1e-5, 1e-6)])

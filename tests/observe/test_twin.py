@@ -1,4 +1,4 @@
-"""Chain and observer in one integration: they synchronise or part as the observer's leading multiplier says."""
+"""Chain and observer in one integration: they synchronise or diverge as the observer's leading multiplier predicts."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ def test_the_distance_goes_with_the_leading_multiplier(shown, frequency: float) 
     found = twin(shown.evolve(f=frequency), 1e-7, 60)
     assert found.leading is not None and found.rate is not None
     assert len(found.measured) == (1 if found.leading.imag == 0.0 else 2)
-    # The recurrence is exact for so many multipliers; the others, and distances up to 0.03, leave a few per mille.
+    # The recurrence is exact for one or two multipliers; the others, and distances up to 0.03, leave a few per mille.
     nearest = min(abs(z - found.leading) for z in found.measured)
     assert nearest < 5e-3 * abs(found.leading)
-    # A fitted line through an oscillating logarithm is less: two per cent over a window of ten periods.
+    # A line fitted to an oscillating logarithm is less accurate: two per cent over a window of ten periods.
     assert found.rate == pytest.approx(abs(found.leading), rel=0.03)
 
 
-def test_without_foundation_the_observer_drifts_and_is_told_so() -> None:
+def test_without_foundation_the_observer_drifts_and_the_verdict_says_so() -> None:
     found = twin(FREE, 1e-6, 30)
-    assert found.verdict == "drifts" and "drifts" in found.sentence and "nothing pulls back" in found.sentence
+    assert found.verdict == "drifts" and "drifts" in found.sentence and "nothing pulls them back" in found.sentence
     assert found.leading is not None and found.leading.real > 1.0 and found.leading.imag == 0.0
     assert found.translation > 0.8  # the uniform shift is most of what grows
     assert found.distance[-1] > 0.5  # and it is left in: nothing brings the observer back
@@ -56,20 +56,20 @@ def test_each_verdict_has_its_condition() -> None:
     assert found.orbit is not None and found.orbit.observer_multipliers is not None
     others = found.orbit.observer_multipliers[1:]
 
-    def told(rate: float | None, leading: complex, share: float = 1.0) -> Twin:
+    def given(rate: float | None, leading: complex, share: float = 1.0) -> Twin:
         assert found.orbit is not None
         orbit = replace(found.orbit, observer_multipliers=np.concatenate([[leading], others]))
         return replace(found, rate=rate, orbit=orbit, translation=share)
 
-    assert told(0.5, 0.5).verdict == "synchronises"
-    assert [told(2.0, leading).verdict for leading in (2.0, -2.0, 2.0j)] == ["drifts", "drifts", "breaks down"]
-    assert told(2.0, 2.0, 0.1).verdict == "breaks down"
-    assert told(None, 2.0).verdict == told(2.0, 0.5).verdict == told(0.5, 2.0).verdict == "neither yet"
-    assert "no clear rate" in told(None, 2.0).sentence
+    assert given(0.5, 0.5).verdict == "synchronises"
+    assert [given(2.0, leading).verdict for leading in (2.0, -2.0, 2.0j)] == ["drifts", "drifts", "breaks down"]
+    assert given(2.0, 2.0, 0.1).verdict == "breaks down"
+    assert given(None, 2.0).verdict == given(2.0, 0.5).verdict == given(0.5, 2.0).verdict == "neither yet"
+    assert "no clear rate" in given(None, 2.0).sentence
     for rate, leading, side in ((2.0, 0.5, "inside"), (0.5, 2.0, "outside")):
-        sentence = told(rate, leading).sentence
+        sentence = given(rate, leading).sentence
         assert f"multiplied by {rate:g} every period" in sentence and f"modulus {leading:g}, is {side}" in sentence
-    assert ["other side" in told(2.0, leading).sentence for leading in (2.0, -2.0, -2.0 + 1.0j)] == [False, True, False]
+    assert ["alternating between the sides" in given(2.0, leading).sentence for leading in (2.0, -2.0, -2.0 + 1.0j)] == [False, True, False]
     assert replace(found, orbit=None).verdict == "drifts"  # the multiplier is not known
 
 
@@ -126,7 +126,7 @@ def test_the_observers_multipliers_are_finite_differences_of_the_pair() -> None:
     assert np.abs(found) == pytest.approx(np.abs(orbit.observer_multipliers), abs=2e-4)
 
 
-def test_how_much_foundation_makes_it_stable() -> None:
+def test_how_much_foundation_makes_an_observer_stable() -> None:
     found = observer_stability(FREE.evolve(f=200.0), "kappa", np.linspace(0.0, 6e-4, 4))
     assert [p.observer_largest < 1.0 for p in found.points] == [False, False, True, True]
     (threshold,) = found.thresholds
@@ -147,7 +147,7 @@ def test_a_chain_that_is_not_periodic_has_a_rate_and_no_multiplier() -> None:
     assert found.rate is not None and found.sentence
 
 
-def test_one_multiplier_is_not_told_as_two() -> None:
+def test_one_multiplier_is_not_fitted_by_two() -> None:
     one = 4.4 ** np.arange(8)[:, None] * np.arange(1.0, 7.0)
     rate, found = rates(one)
     assert rate == pytest.approx(4.4) and found == (pytest.approx(4.4),)

@@ -1,4 +1,4 @@
-"""Branches stopped, saved, taken up again and refused: never another branch, always one sentence."""
+"""Branches that are stopped, saved, continued and refused: the branch stays the same, and refusals are one sentence."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def assert_same(one: Branch, other: Branch) -> None:
         for name in ("knob", "arclength", "residuals", "liouville", "max_input_force", "max_output_force",
                      "max_output_force_elastic"):
             assert getattr(mine, name) == getattr(its, name)
-    told = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.event, str(s.normal_form)) for s in b.special] for b in (one, other)]
-    assert told[0] == told[1]
+    special = [[(s.kind, s.knob, s.interval, s.multiplier, s.contact, s.event, str(s.normal_form)) for s in b.special] for b in (one, other)]
+    assert special[0] == special[1]
 
 
 @pytest.mark.parametrize("after", [2, 4])
@@ -62,7 +62,7 @@ def test_points_one_by_one_are_those_of_both_threads(whole: Branch) -> None:
     assert_same(one_by_one, whole)
 
 
-def test_cancelled_it_stays_whole_and_can_go_on(whole: Branch) -> None:
+def test_a_cancelled_branch_stays_whole_and_can_be_continued(whole: Branch) -> None:
     branch, stop, seen = begun(), Stop(), []
 
     def cancel(arm: object) -> None:

@@ -193,6 +193,6 @@ def test_an_isola_closes_on_itself() -> None:
     assert sum(s.kind == "fold" for s in found.special) % 2 == 0
 
 
-def test_a_seed_that_is_no_orbit_is_told_with_its_residuals() -> None:
+def test_the_error_for_a_seed_that_is_no_orbit_has_its_residuals() -> None:
     with pytest.raises(NumbersFailed, match="residuals were"):
         continue_branch(scene("rig"), "f", 140.0, 150.0, 1)

@@ -59,7 +59,7 @@ def flow(x: np.ndarray, times: np.ndarray) -> np.ndarray:
 
 @functools.cache
 def whole() -> Whole:
-    """The whole chain's orbit by Newton's method, from the half one and its mirror image."""
+    """The whole chain's orbit by Newton's method, from the orbit of the half chain and its mirror image."""
     start, overlap = orbit(CHAIN, 1).state, CHAIN.static_overlap()[0]
     u, v = start.displacement / overlap, start.velocity / (overlap * CHAIN.f)
     # 1e-4 off, so that Newton's method has something to do, and on the two sides differently
@@ -90,8 +90,8 @@ def test_the_whole_chain_has_the_same_motion_on_both_sides_of_a_bead_that_stands
 
 
 def test_its_multipliers_are_among_those_of_the_whole_chain() -> None:
-    """The others belong to disturbances that are not mirror images, of which the half chain knows nothing: one pair of
-    them grows, which docs/scenes.md says."""
+    """The others belong to disturbances that are not mirror images, which the half chain cannot have. One pair of them
+    grows, as docs/scenes.md says."""
     left = list(whole().multipliers)
     for mu in orbit(CHAIN, 1).multipliers:
         nearest = min(left, key=lambda other: abs(other - mu))

@@ -1,4 +1,4 @@
-"""The criticality of a branch's special points, held against doubled orbits and closed curves that are there."""
+"""The criticality of a branch's special points, compared with the doubled orbits and closed curves that begin there."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def the(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
 
 @pytest.mark.parametrize(("number", "criticality"), [(0, "subcritical"), (1, "supercritical")])
 def test_the_doubled_orbit_is_on_the_side_that_the_criticality_says(doubling: Branch, number: int, criticality: str) -> None:
-    """In the plane at amplitude ξ along q: Newton's method on the doubled map knows nothing of normal forms."""
+    """In the plane at amplitude ξ along q, by Newton's method on the doubled map, which does not use normal forms."""
     special = the(doubling, "period_doubling", number)
     form = special.normal_form
     assert form is not None and form.criticality == criticality
@@ -91,7 +91,7 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     assert settled(chain, doubled.state(between)).regime.period == 2 and settled(chain, doubling.state(once)).regime.period == 1
 
 
-def test_a_coefficient_is_within_its_error_of_one_with_smaller_amplitudes(doubling: Branch) -> None:
+def test_a_coefficient_agrees_with_that_of_smaller_amplitudes_within_its_error(doubling: Branch) -> None:
     for special in (the(doubling, "period_doubling", number) for number in (0, 1)):
         fine = again(doubling, special, {"period_doubling": (2e-5,)}, tolerance=1e-13).normal_form
         assert fine is not None and special.normal_form is not None
@@ -133,7 +133,7 @@ def between(branch: Branch, special: SpecialPoint) -> Between:
     return Between(equations, special.before, special.after, (near[0], near[1]))
 
 
-def test_it_is_the_same_when_it_is_computed_again(doubling: Branch) -> None:
+def test_the_criticality_is_the_same_when_it_is_computed_again(doubling: Branch) -> None:
     special = the(doubling, "period_doubling")
     assert again(doubling, special).normal_form == special.normal_form
 
@@ -167,7 +167,7 @@ def test_the_order_of_contact_events_counts_where_none_grazes(doubling: Branch, 
     ([1, -1, 4, -4, 2, -2], True, True),  # as before
     ([1, 4, -1, -4, 2, -2], True, True),  # contacts 1 and 4 have no common bead
     ([1, -1, 4, 2, -4, -2], True, True),
-    ([1, 2, -1, 4, -4, -2], True, False),  # contacts 1 and 2 have one
+    ([1, 2, -1, 4, -4, -2], True, False),  # contacts 1 and 2 have a common bead
     ([-1, 4, -4, 2, -2, 1], False, False),  # a closing passes phase 0
     ([-1, 4, -4, 2, -2], False, False),  # at one end of the period only
     ([1, -1, 4, -4, 2, -2, 2, -2], False, False),  # contact 2 grazes
@@ -196,7 +196,7 @@ def test_a_grazing_has_no_criticality(doubling: Branch) -> None:
 # --- results ----------------------------------------------------------------------------------------------
 
 
-def test_files_and_checkpoints_keep_it(doubling: Branch, tmp_path: Path) -> None:
+def test_files_and_checkpoints_keep_the_criticality(doubling: Branch, tmp_path: Path) -> None:
     undecided = replace(the(doubling, "period_doubling"), normal_form=NormalForm("not decided", reason=REASONS[0]))
     doubling = replace(doubling, arms=(replace(doubling.arms[0], special=[*doubling.special, undecided]),))
     loaded = load_branch(save_branch(doubling, tmp_path / "b.h5"))
@@ -206,7 +206,7 @@ def test_files_and_checkpoints_keep_it(doubling: Branch, tmp_path: Path) -> None
             assert str(other.normal_form) == str(special.normal_form)  # NaN is not equal to itself
 
 
-def test_a_file_without_it_opens(doubling: Branch, tmp_path: Path) -> None:
+def test_a_file_without_criticality_opens(doubling: Branch, tmp_path: Path) -> None:
     path = save_branch(doubling, tmp_path / "old.h5")
     with h5py.File(path, "r+") as file:
         for name in ("criticality", "coefficient", "coefficient_error", "undecided"):
@@ -235,7 +235,7 @@ def test_a_reason_that_does_not_fit_is_refused(doubling: Branch, tmp_path: Path)
         load_branch(path)
 
 
-def test_it_is_told_in_words_and_numbers(doubling: Branch, torus: Branch) -> None:
+def test_the_criticality_is_given_in_words_and_numbers(doubling: Branch, torus: Branch) -> None:
     subcritical, supercritical = (the(doubling, "period_doubling", number) for number in (0, 1))
     assert criticality_words(subcritical) == "subcritical: beside it, on the stable side, an orbit of twice the period repels"
     assert criticality_words(supercritical) == (
@@ -243,9 +243,9 @@ def test_it_is_told_in_words_and_numbers(doubling: Branch, torus: Branch) -> Non
     assert criticality_words(the(torus, "neimark_sacker")).endswith("a closed curve of the map attracts")
     assert criticality_words(the(doubling, "grazing")) == ""
     assert normal_form_words(supercritical).startswith(", supercritical, coefficient 699.")
-    told = branch_json(torus)["normal_form"][torus.special.index(the(torus, "neimark_sacker"))]
-    assert told["criticality"] == "supercritical" and told["coefficient"] < 0.0 < told["error"] and told["reason"] == ""
-    assert told["angle"] == pytest.approx(1.1995, abs=1e-4)
+    said = branch_json(torus)["normal_form"][torus.special.index(the(torus, "neimark_sacker"))]
+    assert said["criticality"] == "supercritical" and said["coefficient"] < 0.0 < said["error"] and said["reason"] == ""
+    assert said["angle"] == pytest.approx(1.1995, abs=1e-4)
     assert normal_form_words(the(torus, "neimark_sacker")).endswith("angle 68.73°")
     assert any("subcritical" in line for line in doubling.summary())
     unknown = replace(subcritical, normal_form=NormalForm("not decided", reason=REASONS[0]))

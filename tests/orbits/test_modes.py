@@ -83,7 +83,7 @@ def test_an_orbits_section_is_its_own_points_at_every_phase() -> None:
         assert max(np.abs((own - one) / size).max(axis=1).min() for one in late) < 1e-3
 
 
-def test_a_section_is_the_run_looked_at_once_a_period() -> None:
+def test_a_section_is_the_run_sampled_once_a_period() -> None:
     shown = scene("rig").evolve(f=90.0)
     *_, found = iter_section(shown, None, 6)
     record = LiveChain(shown, samples=48).advance(6 * 48)
@@ -100,7 +100,7 @@ def test_a_section_grows_and_earlier_points_stay() -> None:
         assert np.array_equal(before.displacement, after.displacement[: before.periods])
 
 
-def test_a_section_starts_where_it_is_told() -> None:
+def test_a_section_starts_at_the_given_state() -> None:
     state = settled(scene("sec2")).state
     *_, found = iter_section(scene("sec2"), state, 5)
     points = found.points(3, 0)
@@ -142,7 +142,7 @@ def test_a_search_without_success_says_where_it_looked() -> None:
         search_orbit(shown, 1, state, np.zeros((0, 2, 11)))
 
 
-def test_a_raised_flag_stops_all_of_it() -> None:
+def test_the_stop_flag_ends_sections_modes_and_searches() -> None:
     stop = Stop()
     stop.set()
     with pytest.raises(Cancelled):

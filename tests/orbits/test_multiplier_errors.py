@@ -41,7 +41,7 @@ def of_a_coarser_map(chain: Scene, exact: Orbit, tolerance: float) -> tuple[np.n
 
 @pytest.mark.parametrize("tolerance", [1e-10, 1e-11, 1e-12])
 def test_coarser_maps_are_as_near_as_they_say(found: Orbit, tolerance: float) -> None:
-    """At 1e-13 the multipliers are as good as exact for them; the bound is not so wide that it says nothing."""
+    """Multipliers at 1e-13 serve as exact ones; the bound is also narrow enough to be of use."""
     shown, errors = of_a_coarser_map(found.scene, found, tolerance)
     distances = np.abs(shown[:, None] - found.multipliers[None, :])
     mine, theirs = linear_sum_assignment(distances)
@@ -83,9 +83,9 @@ def test_as_near_to_the_circle_as_its_error_is_not_decided(found: Orbit) -> None
     assert not replace(found, monodromy=None).stability_certain
 
 
-def test_the_command_line_prints_and_keeps_them(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_line_prints_and_saves_the_errors(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["orbit", "sec2", "--set", "N=2", "--observer"]) == 0
     assert capsys.readouterr().out.count("; each to ± ") == 2
     assert main(["orbit", "sec2", "--set", "N=2", "--json"]) == 0
-    told = json.loads(capsys.readouterr().out)
-    assert len(told["multiplier_errors"]) == len(told["multipliers"]) == 4 and told["stability_certain"] is True
+    said = json.loads(capsys.readouterr().out)
+    assert len(said["multiplier_errors"]) == len(said["multipliers"]) == 4 and said["stability_certain"] is True

@@ -67,13 +67,13 @@ def column_error(found: np.ndarray, exact: np.ndarray) -> float:
 
 
 def multiplier_error(found: np.ndarray, exact: np.ndarray) -> float:
-    """Largest distance of eigenvalues paired one to one."""
+    """Largest distance between eigenvalues that are paired one to one."""
     distance = np.abs(np.linalg.eigvals(found)[:, None] - np.linalg.eigvals(exact)[None, :])
     return float(distance[linear_sum_assignment(distance)].max())
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_the_map_its_derivative_and_multipliers_are_those_of_the_reference(name: str) -> None:
+def test_map_derivative_and_multipliers_agree_with_the_reference(name: str) -> None:
     end, derivative = product_map(name)
     exact, exact_end = _STORED[f"{name}/derivative"], _STORED[f"{name}/end"]
     # some 400 steps of 1e-13 each, whose errors the map enlarges by its derivative, a few
@@ -116,7 +116,7 @@ def test_the_second_derivative_jumps_where_a_contact_closes_at_the_strobe(side: 
     So ∂u_end/∂u is e^{−γ(T + u/w)} for u < 0 and e^{−γT} for u > 0: continuous, and no contact grazes.
     """
     damping, period, w, u = 0.4, 2.0, 0.8, 1e-3
-    at, beside = (dashpot_wall(damping, period)(np.array([side * part * u, w])).derivative[0, 0] for part in (1e-6, 1.0))
+    at, beside = (dashpot_wall(damping, period)(np.array([side * fraction * u, w])).derivative[0, 0] for fraction in (1e-6, 1.0))
     slope = -damping * np.exp(-damping * period) / w if side < 0.0 else 0.0
     assert at == pytest.approx(np.exp(-damping * period), abs=1e-9)
     assert side * (beside - at) / u == pytest.approx(slope, abs=1e-3)

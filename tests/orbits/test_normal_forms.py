@@ -103,7 +103,7 @@ def test_a_closed_curve_is_attracting_or_repelling(cubic: complex, criticality: 
 
 
 @pytest.mark.parametrize("k", [3, 4])
-def test_no_curve_is_told_at_a_strong_resonance(k: int) -> None:
+def test_a_strong_resonance_is_not_decided(k: int) -> None:
     angle = 2.0 * np.pi / k + 1e-3
     form = found("neimark_sacker", np.exp(1j * angle), turning(angle, -1.0))
     assert (form.criticality, form.reason) == (NOT_DECIDED, RESONANCE) and np.isnan(form.coefficient)
@@ -146,7 +146,7 @@ def test_a_fold_is_generic_where_its_quadratic_coefficient_is_not_zero() -> None
     assert (form.criticality, form.reason) == (NOT_DECIDED, DISAGREE)
 
 
-def test_no_sign_is_told_without_evidence() -> None:
+def test_no_sign_is_stated_without_evidence() -> None:
     grazing = found("period_doubling", -1.0, linear_and(1.0, -1.0, power=1.5))  # its third derivative is unbounded
     assert (grazing.criticality, grazing.reason) == (NOT_DECIDED, DISAGREE)
     none = found("period_doubling", -1.0, linear_and(0.0, -1.0))

@@ -16,7 +16,8 @@ pytestmark = pytest.mark.quick
 
 @pytest.mark.parametrize("place", [0, 3])
 def test_displacements_and_w_have_to_come_back(place: int) -> None:
-    """Each relative to its own largest: 1e-3 in one w is not an orbit, however well the displacements close."""
+    """Each is relative to its own largest value: with a change of 1e-3 in one w a state is no orbit, even if the
+    displacements return."""
     state, change = np.array([1.0, -2.0, 0.1, 0.2]), np.zeros(4)
     change[place] = 1e-3
     assert relative_change(change, state) == pytest.approx(1e-3 / (2.0 if place < 2 else 0.2), rel=1e-14)
@@ -30,7 +31,7 @@ def test_liouvilles_formula_is_about_the_product_of_all_multipliers() -> None:
 
 
 def test_newtons_method_goes_on_to_the_maps_own_rounding() -> None:
-    """Of x → (x + 1)/2 a state 1e-8 from its fixed point is not yet the orbit."""
+    """For x → (x + 1)/2 a state 1e-8 from the fixed point is not yet accepted."""
 
     def half(x: np.ndarray) -> Flow:
         return Flow(0.5 * (x + 1.0), 0.5 * np.eye(len(x)), 0.0, np.zeros((0, 2)))

@@ -79,19 +79,19 @@ def test_a_wrong_quick_map_makes_no_wrong_orbit(whole: Branch, wrong: float, mon
 
 
 def test_turning_points_count_the_closings_that_the_flow_counts(whole: Branch) -> None:
-    """Rough orbits have no other count."""
+    """Rough orbits have the same counts."""
     for one in [*whole.points, *(p for s in whole.special for p in (s.before, s.after))]:
         np.testing.assert_array_equal(points._counted_turns(len(one.closings), one.turns), one.closings)
 
 
-def test_a_contact_that_never_opens_or_never_closes_is_counted_so() -> None:
+def test_contacts_that_never_open_or_never_close_have_their_own_counts() -> None:
     turns = np.array([[0, 1, 0.1, 0.5], [0, -1, 0.2, 0.3], [1, 1, 0.1, -0.5], [1, -1, 0.2, -0.7],
                       [2, 1, 0.1, 0.2], [2, -1, 0.2, -0.2], [2, 1, 0.3, 0.1], [2, -1, 0.4, -0.3]])
     assert points._counted_turns(3, turns).tolist() == [-1, 0, 2]
 
 
 def test_a_branch_that_comes_back_to_the_least_value_of_its_knob_ends_there() -> None:
-    """There the knob's value goes no further, while its coordinate does."""
+    """At that value the knob cannot decrease further, though its coordinate can."""
     found = continue_branch(scene("sec2"), "k", 0.0, 1e5, 1, most_points=100)
     assert found.arms[0].ended == "returned" and found.points[-1].knob == 0.0
     assert (found.column("knob")[1:-1] > 0.0).all()

@@ -1,4 +1,4 @@
-"""The fast search for special points finds what the careful one finds, which it falls back to."""
+"""The fast search for special points finds the same points as the careful search, to which it falls back."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def followed() -> Branch:
 
 
 def fingerprint(found: list[SpecialPoint]) -> list[tuple[object, ...]]:
-    """What a special point is, without where it is."""
+    """Kind, contact and event of special points, without their places."""
     return [(one.kind, one.contact, one.event) for one in found]
 
 
@@ -51,7 +51,7 @@ def test_the_careful_search_takes_over_and_finds_the_same(fast: Branch, broken: 
     assert used and check_branch(slow) == []
     assert fingerprint(slow.special) == fingerprint(fast.special) != []
     for one, other in zip(fast.special, slow.special, strict=True):
-        # both intervals hold the point
+        # both intervals contain the point
         assert one.interval[0] <= other.interval[1] and other.interval[0] <= one.interval[1]
 
 

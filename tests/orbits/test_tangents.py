@@ -1,4 +1,4 @@
-"""The tangent flow: two routes, what a missing saltation looks like and where Liouville is blind, long chains."""
+"""The tangent flow by two routes; a missing saltation, which Liouville's formula does not show; long chains."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def test_multipliers_of_any_matrix_are_sorted_by_modulus() -> None:
     assert np.all(np.diff(sizes) <= 0.0)
 
 
-def test_a_contact_that_rounding_closes_again_at_once_stops_nobody() -> None:
+def test_a_contact_that_rounding_closes_again_at_once_does_not_stop_the_flow() -> None:
     # After a release at t = 34.3 this contact closes again 5e-13 later; no step may become too small to move t.
     shown = scene("sec2").evolve(N=1, D=30.0, f=403.89217825350806)
     stroboscopic_map = StroboscopicMap(shown, 3)
@@ -115,7 +115,7 @@ def test_a_contact_that_rounding_closes_again_at_once_stops_nobody() -> None:
     assert stroboscopic_map.engine.counts.steps < 10_000
 
 
-def test_a_flow_stops_when_it_is_told_to() -> None:
+def test_the_stop_flag_ends_a_flow() -> None:
     stop = Stop()
     stroboscopic_map = StroboscopicMap(scene("sec2"), 1, stop)
     stop.set()

@@ -79,7 +79,7 @@ def test_a_knob_that_is_turned_goes_on_from_where_both_are() -> None:
     first = ObserverRun(free, picture, Stop(), None)
     first.predict(picture)
     last = [first.step() for _ in range(12)][-1]
-    assert "moves away" in first.sentence
+    assert "drifts" in first.sentence
     second = ObserverRun(FOUNDED, None, Stop(), first)
     step = second.step()
     assert step.number == 12 and step.distance[0] == pytest.approx(last.distance[-1])

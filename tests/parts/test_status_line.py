@@ -36,10 +36,12 @@ def test_where_no_error_is_stated_none_is_told_for_the_forces(picture: Settled) 
     assert accuracy_words(run) == "asked 1e-6 · not estimated"
 
 
-def test_the_multiplier_is_told_as_what_is_left_of_a_disturbance() -> None:
-    assert multiplier_words(0.36, 1) == ("|μ| 0.36: after every drive period 36 % of a small disturbance is left; below 1 the "
-                                         "orbit is stable.")
-    assert "after every 3 drive periods 99.5 % of" in multiplier_words(0.995, 3)
+def test_the_multiplier_says_what_becomes_of_the_slowest_part_of_a_disturbance() -> None:
+    """Of a whole disturbance it says nothing: the derivative of the map is not normal, and the rest may grow first."""
+    assert multiplier_words(0.36, 1) == ("|μ| 0.36: the slowest-decaying part of a small disturbance shrinks to 36 % in every "
+                                         "drive period; below 1 the orbit is stable.")
+    assert "shrinks to 99.5 % in every 3 drive periods" in multiplier_words(0.995, 3)
+    assert "grows by the factor 1.20 in every drive period" in multiplier_words(1.2, 1)
 
 
 def test_an_anti_resonance_says_that_its_ratio_is_no_place_among_the_peaks(picture: Settled) -> None:

@@ -10,7 +10,9 @@ import pytest
 
 from granchain_core import NumbersFailed, resonance_curve, scene
 from granchain_core.regime import Regime
-from granchain_core.state import rest
+from granchain_core.state import State, rest
+from granchain_core.steady.batch.job import Start
+from granchain_core.steady.batch.starts import settle_starts
 from granchain_core.steady.curve.curve import CurvePoint
 from granchain_core.steady.steady_state import SteadyState
 from granchain_core.stop import Stop
@@ -136,3 +138,12 @@ def test_a_cancelled_curve_keeps_what_it_has(start):
     found = resonance_curve(scene("sec2").evolve(N=3), np.linspace(300.0, 900.0, 60), start, stop=stop, on_point=look)
     assert 3 <= len(found.points) < 60
     assert sorted(seen) == [p.frequency for p in found.points]
+
+
+def test_a_start_that_overflows_is_named_by_its_bead() -> None:
+    """The batch only says that a motion stopped being finite; settled alone, the failure has bead and time."""
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    pressed = State(np.array([0.0, 1.0]), np.zeros(2))
+    (found,) = settle_starts([Start(chain, pressed, 7)], Stop())
+    assert (found.status, found.number) == ("not-finite", 7)
+    assert re.match(r"The motion of bead \d stopped being a finite number at about ", found.failure)

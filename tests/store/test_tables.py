@@ -78,6 +78,12 @@ def test_every_public_class_with_numbers_is_among_them() -> None:
 
 
 @pytest.mark.parametrize("kind", RESULTS)
+def test_what_print_shows_is_the_summary_and_no_array(kind: str) -> None:
+    shown = repr(result(kind)).splitlines()
+    assert shown == [result(kind).heading(), *(f"  {line}" for line in result(kind).summary())]
+
+
+@pytest.mark.parametrize("kind", RESULTS)
 def test_a_file_opens_in_xarray_as_to_xarray_gives_it(kind: str, tmp_path: Path) -> None:
     """Names, axes, units, long names and numbers of each table; the root has the same attributes."""
     found = result(kind)
@@ -134,7 +140,7 @@ def test_errors_and_regimes_stand_beside_the_numbers() -> None:
 
 ALONE = "rk4-split or dop853"
 BATCH = "rk4 corrected at contact events, in batches"
-FLOW = "tangent flow (DOP853 in regularised time)"
+FLOW = "tangent flow (DOP853, time substitution at events)"
 
 
 @pytest.mark.parametrize(("kind", "method"), [

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from granchain_core.kernels.compiling.jit import FAST_MATH
+
 from . import killers as k
 from .mutant import Mutant
 
@@ -108,12 +110,18 @@ OBSERVED = (
            "what is lost between samples is stated a thousand times too small", k.SAMPLING),
 )
 
+
+def _flags(*more: str) -> str:
+    """The fast-math flags as jit.py writes them, and `more`."""
+    return "(" + ", ".join(f'"{flag}"' for flag in (*FAST_MATH, *more)) + ")"
+
+
 COMPILED = (
     Mutant("fastmath", "kernels/compiling/jit.py", '{"fastmath": set(FAST_MATH)', '{"fastmath": True',
            "the compiler may take it that there is no NaN and no infinity", k.FASTMATH, optimised=True),
-    Mutant("fastmath-nnan", "kernels/compiling/jit.py", '("nsz", "arcp", "contract", "reassoc")', '("nsz", "arcp", "contract", "reassoc", "nnan")',
+    Mutant("fastmath-nnan", "kernels/compiling/jit.py", _flags(), _flags("nnan"),
            "the compiler may take it that there is no NaN", k.FASTMATH, optimised=True),
-    Mutant("fastmath-ninf", "kernels/compiling/jit.py", '("nsz", "arcp", "contract", "reassoc")', '("nsz", "arcp", "contract", "reassoc", "ninf")',
+    Mutant("fastmath-ninf", "kernels/compiling/jit.py", _flags(), _flags("ninf"),
            "the compiler may take it that there is no infinity", k.FASTMATH, optimised=True),
 )
 

@@ -48,7 +48,7 @@ def described_attractor(attractor: Attractor) -> dict[str, Any]:
         "colour": REGIME_MARKS[regime_key(regime.name, period)][1], "words": ", ".join(words),
         "force": in_words(attractor.max_output_force, "N", figures_of(error))
         + (f", error {short_error(error)}" if error else ""),
-        "share": attractor.share, "share_words": f"{100 * attractor.share:.0f} ± {100 * attractor.share_error:.0f} %",
+        "share": attractor.share, "share_words": attractor.share_words,
         "from": [origin.name for origin in attractor.origins if not origin.name.startswith("random")],
         "starts": len(attractor.origins),
     }

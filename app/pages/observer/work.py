@@ -9,7 +9,7 @@ import numpy as np
 
 from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
 from granchain_core.kernels.forces.peaks import next_period
-from granchain_core.observe.drift import observer_drift
+from granchain_core.observe.drift import departure_words, observer_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import (
     SYNCHRONISED,
@@ -181,8 +181,4 @@ class ObserverRun:
             tenfold = np.log(0.1) / np.log(factor)
             return (f"{beginning} it synchronises with its chain: the distance falls tenfold every {tenfold:.3g} drive "
                     "periods.")
-        every = "drive period" if periods == 1 else f"{periods} drive periods"
-        turns = f", alternating in sign every {every}" if mu.real < 0.0 and abs(mu.imag) < 1e-9 else ""
-        if self.drifts:
-            return f"{beginning} it moves away{turns}: an offset of its beads grows, because nothing pulls them back."
-        return f"{beginning} it diverges from its chain{turns}."
+        return f"{beginning} it {departure_words(self.drifts, mu)}."

@@ -35,7 +35,7 @@ from .walk import Arm, Walk
 MOST_POINTS = 20_000
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Branch(Labelled):
     """A branch of periodic orbits over one knob.
 

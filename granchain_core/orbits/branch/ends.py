@@ -12,9 +12,9 @@ from .newton import Near
 from .point import BranchPoint, branch_point
 from .special import SpecialPoint
 
-#: A step passes the seed if the seed lies this near to it, relative to its length.
+#: [branch] Distance of the seed from a step, relative to the step's length, within which the step passes the seed.
 _PASSING_DISTANCE = 0.2
-#: The branch has closed if the corrected point is this near to the seed.
+#: [branch] Distance of the corrected point from the seed within which the branch has closed.
 _CLOSING_DISTANCE = 1e-7
 
 

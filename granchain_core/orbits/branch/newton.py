@@ -22,38 +22,43 @@ from ...errors import NumbersFailed
 from ...steady.returns import relative_change
 from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
-#: Tolerance of the rough map, the flow where exactness is not needed.
+#: [branch] Tolerance of the rough map, the flow where exactness is not needed.
 ROUGH_TOLERANCE = 1e-10
-#: Residual above which the rough map is computed with the tolerance `_ROUGHEST_TOLERANCE`.
+#: [branch] Residual above which the rough map is computed with the tolerance `_ROUGHEST_TOLERANCE`.
 _ROUGHEST_ABOVE = 1e-3
-#: That tolerance; the map is then good to 1e-6 (measured: 7e-7 on the branch of sec2 over f).
+#: [branch] Tolerance of the rough map where the residual is large. The map is then good to 1e-6 (measured: 7e-7 on the
+#: branch of sec2 over f).
 _ROUGHEST_TOLERANCE = 1e-7
-#: Relative residual at which Newton's method stops.
+#: [branch] Relative residual at which Newton's method stops.
 RESIDUAL_GOAL = 1e-11
-#: Largest residual that is accepted where rounding does not let it fall that far.
+#: [branch] Largest residual that is accepted where rounding does not let it fall that far.
 ACCEPTED_RESIDUAL = 1e-10
-#: The quick map is left at this residual: its own error is as large.
+#: [branch] Residual at which the quick map is left. Its own error is as large.
 QUICK_RESIDUAL = 1e-8
-#: Largest residual at which a derivative from nearby is used.
+#: [branch] Largest residual at which a derivative from nearby is used.
 _LARGEST_WITH_REUSED = 3e-3
-#: A step that does not lower the residual to this part of it is followed by a derivative.
+#: [branch] A step that does not lower the residual to this part of it is followed by a derivative.
 _SLOW_DECREASE = 0.4
-#: A step with its own derivative that does not lower the residual to this part of it fails: a shorter step along the
-#: branch is safer than a way that may lead to another branch (Deuflhard 2004, Newton Methods for Nonlinear Problems).
+#: [branch] A step with its own derivative that does not lower the residual to this part of it fails. A shorter step
+#: along the branch is safer than a way that may lead to another branch (Deuflhard 2004, Newton Methods for Nonlinear
+#: Problems).
 _FAILED_DECREASE = 0.5
-#: A step with the derivative of the exact map that does not lower the residual to this part of it has met rounding.
+#: [branch] A step with the derivative of the exact map that does not lower the residual to this part of it has met
+#: rounding.
 _STALLED_DECREASE = 0.3
-#: The exact map with its derivative is computed where its residual should be below this part of `RESIDUAL_GOAL`.
+#: [branch] The exact map with its derivative is computed where its residual should be below this part of
+#: `RESIDUAL_GOAL`.
 _SAFETY = 0.3
-#: Most derivatives of the rough and of the exact map each.
+#: [branch] Most derivatives of the rough and of the exact map each.
 _MOST_DERIVATIVES = 6
-#: Least residual before a step of `solve_with_derivatives` that may be followed by one that reuses its derivative.
+#: [branch] Least residual before a step of `solve_with_derivatives` that may be followed by one that reuses its
+#: derivative.
 _LEAST_BEFORE_REUSE = 1e-6
-#: Largest residual before a step that reuses the derivative of the step before it.
+#: [branch] Largest residual before a step that reuses the derivative of the step before it.
 _LARGEST_REUSE = 1e-4
-#: Most steps of `solve_with_derivatives`.
+#: [branch] Most steps of `solve_with_derivatives`.
 _MOST_STEPS = 8
-#: Most steps by the corrected map.
+#: [branch] Most steps by the corrected map.
 _MOST_CORRECTED_STEPS = 6
 
 

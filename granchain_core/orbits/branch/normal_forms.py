@@ -35,16 +35,23 @@ REASONS = (SEQUENCE_IN_INTERVAL, SEQUENCE_NEAR, DISAGREE, ANOTHER_MULTIPLIER, NO
 EARLIER_REASONS = {"a contact grazes in the same interval of the knob": SEQUENCE_IN_INTERVAL,
                    "a contact grazes within the smallest amplitude": SEQUENCE_NEAR}
 
-#: Amplitudes ξ of the differences, tried in this order; the value on the second side has half of it. With 1e-4 rounding
-#: changes the cubic coefficients of sec2, some hundreds to 20,000, by up to 0.3. A fold needs no second differences.
-AMPLITUDES = {"fold": (2e-5,), "period_doubling": (1e-4, 2e-5), "neimark_sacker": (1e-4, 2e-5)}
-#: Largest difference of the two values, relative to their mean, at which the sign is believed: it would take an error
-#: of four times the difference to change it.
+#: [branch] Amplitude ξ of the differences of a period doubling or Neimark–Sacker point. The value on the second side
+#: has half of it. Rounding then changes the cubic coefficients of sec2, some hundreds to 20,000, by up to 0.3.
+_AMPLITUDE = 1e-4
+#: [branch] Amplitude ξ of a fold, which needs no second differences, and of the others where `_AMPLITUDE` decides
+#: nothing.
+_SMALL_AMPLITUDE = 2e-5
+#: Amplitudes by kind, tried in this order.
+AMPLITUDES = {"fold": (_SMALL_AMPLITUDE,), "period_doubling": (_AMPLITUDE, _SMALL_AMPLITUDE),
+              "neimark_sacker": (_AMPLITUDE, _SMALL_AMPLITUDE)}
+#: [branch] Largest difference of the two values of a coefficient, relative to their mean, at which its sign is decided.
+#: It would take an error of four times the difference to change it.
 _LARGEST_ERROR = 0.25
-#: A multiplier whose modulus is this near to 1 is at the unit circle; the passing one mostly is within 5e-4 of it.
+#: [branch] Another multiplier is at the unit circle if its modulus is this near to 1. The passing one mostly is within
+#: 5e-4.
 _AT_CIRCLE = 1e-3
-#: |μᵏ − 1|, k = 1 to 4, below which a resonance is strong: near μ³ = 1 the coefficient grows as 1/|μ³ − 1|, and the
-#: amplitude up to which it describes the motion falls with it.
+#: [branch] |μᵏ − 1|, k = 1 to 4, below which a resonance is strong. Near μ³ = 1 the coefficient grows as 1/|μ³ − 1|,
+#: and the amplitude up to which it describes the motion falls with it.
 _STRONG_RESONANCE = 0.02
 
 

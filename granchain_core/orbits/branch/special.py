@@ -26,21 +26,24 @@ from .point import CONTACT, OVERLAP, SENSE, TIME, BranchPoint
 #: Where stability changes, and all kinds of special points; results, files and JSON spell them so.
 BIFURCATIONS = ("fold", "period_doubling", "neimark_sacker")
 SPECIAL_KINDS = (*BIFURCATIONS, "grazing")
-#: An interval is narrow enough at this width relative to the knob, or to a thousandth of the range's larger end.
+#: [branch] Width of an interval that is narrow enough, relative to the knob or to a thousandth of the range's larger
+#: end.
 RELATIVE_WIDTH = 1e-5
-#: The tangents at both ends of a bracket meet within this factor times its length: in a plane within once the length
-#: where the branch turns by less than 90°, and it turns by at most 30° in a step (`LEAST_COSINE` in steps.py).
+#: [branch] The tangents at both ends of a bracket meet within this factor times its length. In a plane it is within
+#: once the length where the branch turns by less than 90°, and `_LARGEST_TURN` in steps.py is below that.
 _TANGENT_REACH = 1.25
-#: Offset of the next orbit from the root of the straight line through the test function, as a fraction of the bracket.
+#: [branch] Offset of the next orbit from the root of the straight line through the test function, as a fraction of the
+#: bracket.
 _OFFSET_FROM_ROOT = 0.02
-#: Where a third value is known, the offset from the root of the parabola has two parts. The first is this fraction of
-#: the width that is narrow enough.
+#: [branch] First part of the offset from the root of the parabola, where a third value is known, as a fraction of the
+#: width that is narrow enough.
 _WIDTH_PART = 0.4
-#: The second is this fraction of the distance between both roots: the parabola's error is a small part of the line's.
+#: [branch] Second part of that offset, as a fraction of the distance between both roots. The parabola's error is a
+#: small fraction of the line's.
 _ERROR_PART = 0.1
-#: Every this many levels the middle is taken, whatever the test function says.
+#: [branch] Levels of bisection from one that takes the middle, whatever the test function says, to the next.
 _LEVELS_TO_MIDDLE = 5
-#: Most levels of bisection between two neighbours; the interval is then taken as it is.
+#: [branch] Most levels of bisection between two neighbours. The interval is then taken as it is.
 _MOST_LEVELS = 60
 
 
@@ -150,12 +153,12 @@ def _distance(axis: KnobAxis, a: BranchPoint, b: BranchPoint) -> float:
 
 def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
               beyond: BranchPoint | None) -> tuple[float, bool]:
-    """Fraction of the next orbit, and whether it should be an end of a narrow bracket.
+    """Where to compute the next orbit, as a fraction of the bracket from a to b, and whether to solve it exactly.
 
-    It is beside the root of a test function, towards the farther end, or the middle.
-
-    Two such orbits, one on each side, close the bracket. The first is beside the root of a straight line; with a third
-    value the root is known so well that the two can be as near as the bracket is to be narrow.
+    The orbit lies just beyond the estimated root of the test function, on the side of the longer part, so that the
+    bracket shrinks from both ends; at times, or without a test function, it is the middle. The first root is that of a
+    straight line. With a third value the root is known so well that the orbits on both sides of it can be as near to
+    each other as the bracket is to be narrow; then they are its ends and are solved exactly.
     """
     values = _test_values(a, b)
     if depth % _LEVELS_TO_MIDDLE == _LEVELS_TO_MIDDLE - 1 or values is None or not values[0] * values[1] < 0.0:

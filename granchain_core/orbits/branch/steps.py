@@ -11,23 +11,25 @@ import numpy as np
 
 from .between import across
 
-#: First step in arclength.
+#: [branch] First step in arclength.
 FIRST_STEP = 0.02
-#: Longest step.
+#: [branch] Longest step.
 LONGEST_STEP = 0.2
-#: Shortest step.
+#: [branch] Shortest step.
 SHORTEST_STEP = 1e-7
-#: Angle by which the branch turns in a step of the length aimed at.
-_TURN_OF_STEP = np.radians(8.0)
-#: Distance of its orbit from the predicted one, as a fraction of the step.
+#: [branch] Angle by which the branch turns in a step of the length aimed at [degrees].
+_TURN_OF_STEP = 8.0
+#: [branch] Distance of the orbit from its prediction in a step of the length aimed at, as a fraction of the step.
 _MISS_OF_STEP = 0.02
-#: Largest factor from one step to the next.
+#: [branch] Largest factor from one step to the next.
 _GROWTH_FACTOR = 2.0
-#: Smallest factor from one step to the next.
+#: [branch] Smallest factor from one step to the next.
 _SHRINK_FACTOR = 0.5
-#: Cosine of the turn beyond which a step is rejected.
-LEAST_COSINE = np.cos(np.radians(30.0))
-#: Largest distance from the predicted to the corrected point, as a fraction of the step.
+#: [branch] Angle of the turn beyond which a step is rejected [degrees].
+_LARGEST_TURN = 30.0
+#: [no threshold] Its cosine.
+LEAST_COSINE = np.cos(np.radians(_LARGEST_TURN))
+#: [branch] Largest distance from the predicted to the corrected point, as a fraction of the step.
 LARGEST_CORRECTION = 0.3
 
 
@@ -52,5 +54,5 @@ def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
     """
     angle = max(float(np.arccos(min(1.0, cosine))), 1e-9)
     most = 1.0 if failed else _GROWTH_FACTOR
-    wanted = min(_TURN_OF_STEP / angle, np.sqrt(_MISS_OF_STEP * step / max(off, 1e-9 * step)), most)
+    wanted = min(np.radians(_TURN_OF_STEP) / angle, np.sqrt(_MISS_OF_STEP * step / max(off, 1e-9 * step)), most)
     return min(LONGEST_STEP, max(_SHRINK_FACTOR, float(wanted)) * step)

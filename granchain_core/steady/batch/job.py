@@ -15,7 +15,7 @@ from ...kernels.batch.checks import CHECK_DISTANCE, CHECK_PERIOD
 from ...regime import Regime
 from ...scaling import ScaledChain
 from ...scene import Scene
-from ...state import State, rest
+from ...state import State
 from ...stop import Stop
 from ..exponent_measurements import ExponentMeasurements
 from ..orbit_errors import errors_between, force_distances, orbit_force_errors
@@ -43,24 +43,24 @@ class Start:
 
 @dataclass(eq=False)
 class BatchJob:
-    """A scene that is being settled, in a member of a batch or waiting for one.
+    """A scene that is being settled, as a member of a batch or waiting for a lane.
 
     Attributes
     ----------
     scene, scaled : Scene, ScaledChain
         The scene, and its chain in scaled quantities.
     y : np.ndarray
-        Scaled state (2(N+2),) at phase 0 from which it goes on.
+        Scaled state (2(N+2),) at phase 0 from which the motion goes on.
     periods_run : int
-        Drive periods from its start to `y`.
+        Drive periods from the start to `y`.
     coarse : tuple of (Regime, np.ndarray) or None
-        What the coarse run found, regime and scaled largest forces (3,), once the finer run is due.
+        Regime and scaled largest forces (3,) of the coarse run, once the finer run is due.
     measuring : bool
-        Whether its Lyapunov exponent is to be measured, or is being measured.
+        Whether the Lyapunov exponent is to be measured, or is being measured.
     record : np.ndarray
-        Its last strobes (P, 2, N), scaled, from the time when it was first to be measured.
+        The last strobes (P, 2, N), scaled, from the time when a measurement was first due.
     maxima : np.ndarray
-        Largest forces (3,) [N] of a job that is measured.
+        Largest forces (3,) [N] of a motion whose exponent is measured.
     measurements : ExponentMeasurements
         Measurements so far.
     number : int
@@ -102,7 +102,7 @@ class BatchJob:
         maxima, jumps = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
         left = force_distances(farther, self.scaled, maxima, y)
-        # each of the two runs has come to its own orbit: the change is the difference of these orbits
+        # coarse and fine run have each come to an orbit of their own: the change is the difference of these orbits
         errors = orbit_force_errors(relative_changes(maxima, before), left,
                                     least=_FINER_ERROR / (1.0 - regime.contraction))
         if jumps.any() and (jumps > AT_A_JUMP * maxima[:2]).any():
@@ -117,9 +117,9 @@ class BatchJob:
                         stop: Stop) -> tuple[np.ndarray, np.ndarray]:
         """Largest forces (3,) on the orbit through the scaled state y with located events, and their relative errors.
 
-        A batch steps across events, so the jumps it sees have an error of the order of the step. A second orbit with
-        half the step shows how much the forces still change on the way from the batch's orbit to this method's, and how
-        much they depend on the step at a jump, where the order is uneven.
+        A batch steps across events, so its jumps have an error of the order of the step. A second orbit with half the
+        step shows how much the forces still change between the batch's orbit and this method's orbit, and how much the
+        forces depend on the step at a jump, where the order is uneven.
         """
         assert regime.period is not None
         engine = Engine(self.scene, _LOCATED_SETTING, 1, stop=stop, scaled=self.scaled)
@@ -143,7 +143,10 @@ def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
 
 
 def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadyState | BatchJob | None:
-    """The job for the finer run or the Lyapunov exponent, the end of its budget, or None where the member goes on."""
+    """What follows a coarse run: a job for the finer run or the exponent, a result at the end of the budget, or None.
+
+    None means that the member goes on.
+    """
     here = int(batch.state.periods[member])
     periods_run = job.periods_run + here
     period = batch.state.last_check[member, CHECK_PERIOD]
@@ -170,7 +173,7 @@ def _periodic(batch: Batch, member: int, periods_run: int) -> Regime:
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:
-    """The job with what is needed to decide whether it is chaotic, quasi-periodic or on its way."""
+    """A job that has the data to decide whether the motion is chaotic, quasi-periodic or on its way to an orbit."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
     return BatchJob(job.scene, job.scaled, y, periods_run, measuring=True, record=record, maxima=maxima,
@@ -186,8 +189,10 @@ def unsettled(job: BatchJob, batch: Batch, member: int, periods_run: int) -> Ste
 
 
 def failed(job: BatchJob) -> SteadyState:
-    """A member whose numbers stopped being finite."""
-    sentence = (f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping, or compute this frequency "
-                f"alone: granchain run SCENE --set f={job.scene.f:g}.")
-    return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(0), None, rest(job.scene), sentence,
-                       "not-finite", job.number)
+    """A member whose numbers stopped being finite, with the state from which it went on.
+
+    Which bead failed and when is found where it is settled alone (starts.py).
+    """
+    sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping."
+    return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(job.periods_run), None, job.scaled.to_si(job.y),
+                       sentence, "not-finite", job.number)

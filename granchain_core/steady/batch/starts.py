@@ -31,7 +31,8 @@ def methods_alone(scene: Scene) -> str:
 def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
     """Steady states from starts of one structure and one N, in the order in which they are decided.
 
-    What a batch leaves undecided is settled alone. Raises `Cancelled`.
+    A start that a batch leaves undecided is settled alone. So is a start that fails in the batch: settled alone, its
+    failure says which bead failed and when. Raises `Cancelled`.
     """
     others = iter(starts)
     first = next(others, None)
@@ -40,7 +41,7 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
     together = itertools.chain([first], others)
     if can_share_batch(first.scene):
         for result in batch_states(together, stop):
-            yield settled_alone(result, stop) if result.undecided else result
+            yield settled_alone(result, stop) if result.undecided or result.failure else result
         return
     for one in together:
         yield replace(settle_or_failure(one.scene, one.state, stop), number=one.number)

@@ -43,8 +43,8 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
                  pause: Callable[[], None] | None = None) -> Iterator[Result]:
     """What `work` yields from `items`, in one thread for each core, in the order found.
 
-    `stop` is read between results and ends it; closing the generator does too, and `ended`, which the kernels
-    of `work` poll, is then set. `pause` is called before an item is drawn and may wait. A problem in a thread is raised
+    `stop` is read between results and ends the iteration, as closing the generator does; `ended`, which the kernels of
+    `work` poll, is then set. `pause` is called before an item is drawn and may wait. An exception of a thread is raised
     here.
     """
     shared: _Shared[Item] = _Shared(items, pause)

@@ -83,7 +83,7 @@ class CurvePoint:
         return self.force_errors.output
 
 
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class Curve(Labelled):
     """A resonance curve in ascending frequency.
 

@@ -13,7 +13,7 @@ from ...errors import BadInput, Cancelled
 from ...input_checks import numbers_in
 from ...integrate.batch import can_share_batch
 from ...scene import Amplitude, Scene
-from ...scene.driven import refuse_undriven
+from ...scene.refusals import refuse_undriven
 from ...scheduler import dealt, results
 from ...stop import Stop
 from ..batch.engine import batch_results

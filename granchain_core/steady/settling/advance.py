@@ -16,7 +16,7 @@ from ...integrate import METHODS, Engine, following_setting
 from ...integrate.start import at_phase_0
 from ...regime import Regime
 from ...scene import Scene
-from ...scene.driven import refuse_undriven
+from ...scene.refusals import refuse_undriven
 from ...state import State, rest
 from ...stop import Stop
 from ..regime_criteria import find_period, rounding_of

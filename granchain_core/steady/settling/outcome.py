@@ -14,7 +14,7 @@ from ...tables.provenance import Attribute
 from ...tables.words import state_columns
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Settled(Labelled):
     """A settled chain as a recorded motion, or its motion so far; `SteadyState` is the same without the record.
 

@@ -9,7 +9,7 @@ from ...input_checks import whole_number
 from ...recorded_motion import MOST_SAMPLES
 from ...result import start_words
 from ...scene import Scene
-from ...scene.given import require_scene
+from ...scene.refusals import require_scene
 from ...state import State
 from ...stop import Stop
 from .advance import SettlingRun, run_until_settled

@@ -1,4 +1,4 @@
-"""The refusal of what is not a scene, where one was to be given."""
+"""Refusals of what is no scene, and of scenes without a drive where a computation needs one."""
 
 from __future__ import annotations
 
@@ -14,6 +14,15 @@ def require_scene(value: object) -> None:
 
     near = value if isinstance(value, str) and value in scene_names() else "sec2"
     raise BadInput(f"A chain is given as a Scene, not as {_shown(value)}; scene({near!r}) is one.")
+
+
+def refuse_undriven(scene: Description) -> None:
+    """`BadInput` for a scene whose driver is at rest: its motion has no period, no orbit and no resonance curve."""
+    require_scene(scene)
+    if not scene.is_driven:
+        raise BadInput(f"Scene {scene.name!r} has drive = rest: it only moves from its start, so there is no steady "
+                       "state, orbit or resonance curve; the nearest valid value is drive = harmonic, or use "
+                       "granchain run.")
 
 
 def _shown(value: object) -> str:
