@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from functools import partial
 
@@ -10,6 +11,9 @@ from bokeh.document import Document
 from ..serve.changes import gathered
 from ..serve.channel import Channel
 from ..serve.document_lock import with_document_lock
+from ..serve.meters import METERS
+
+log = logging.getLogger("granchain.page")
 
 
 class Calls:
@@ -51,11 +55,18 @@ class Calls:
         self._closing.append(action)
 
     def close(self) -> None:
-        """The visitor left: call what was given to `on_close`, and nothing from then on."""
+        """The visitor left: call what was given to `on_close`, and nothing from then on.
+
+        An action that fails keeps none of the others from being called.
+        """
         if self._closed:
             return
         self._closed = True
         self._channel.close()
         for action in self._closing:
-            action()
+            try:
+                action()
+            except Exception:
+                METERS.errors += 1
+                log.exception("a visitor who left was not quite forgotten")
         self._closing.clear()

@@ -28,8 +28,8 @@ from .part_messages import take
 
 log = logging.getLogger("granchain.requests")
 
-#: Websocket frames that a visitor may send, over a long time [1/s]: the rate at which the token bucket of a connection is
-#: filled. A drag sends 60 messages a second, and a message is three frames.
+#: Websocket frames that a visitor may send, over a long time [1/s]: the rate at which the token bucket of a connection
+#: is filled. A drag sends 60 messages a second, and a message is three frames.
 FRAME_RATE = 600.0
 #: Frames that a visitor may send at once: what the bucket holds.
 FRAME_BURST = 3000.0

@@ -150,8 +150,8 @@ LOADING = Queue("loading", 1)
 CURVES = Queue("curves", 200)
 #: The computations of these curves. Each uses all cores, which the system divides among them.
 SWEEPS = Queue("sweeps", 8, patient=True)
-#: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper, virtual experiments.
-#: One visitor can start all six, so two visitors could fill the queue: each has two at a time.
+#: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper, virtual
+#: experiments. One visitor can start all six, so two visitors could fill the queue: each has two at a time.
 LONG = Queue("long", 8, patient=True, share=2)
 #: Timings and hard cases, one at a time for all visitors: two timings at once would disturb each other.
 MEASUREMENTS = Queue("measurements", 1)

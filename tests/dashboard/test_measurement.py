@@ -7,6 +7,7 @@ import gc
 import re
 import threading
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -223,12 +224,14 @@ def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashb
 
 def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """It settles a chain, in a queue where each visitor has a share; two threads read and write the files of all."""
-    threads = {}
+    threads: dict[str, str] = {}
+
+    def noting(of: str, original: Any, *words: Any, **named: Any) -> Any:
+        threads[of] = threading.current_thread().name.split()[0]
+        return original(*words, **named)
+
     for name in ("settling", "read_data"):
-        def noting(*words: Any, _name: str = name, _is: Any = getattr(measurement, name), **named: Any) -> Any:
-            threads[_name] = threading.current_thread().name.split()[0]
-            return _is(*words, **named)
-        monkeypatch.setattr(measurement, name, noting)
+        monkeypatch.setattr(measurement, name, partial(noting, name, getattr(measurement, name)))
     show(dashboard)
     assert "virtual experiment" in after(dashboard, {"do": "csv-virtual"}, "understood")
     assert threads == {"settling": "long", "read_data": "files"}

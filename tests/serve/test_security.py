@@ -82,8 +82,8 @@ def dashboard() -> Iterator[Listening]:
     one.stop()
 
 
-#: The whole policy of contents. No source is another host or a bare scheme of the network, so that data can neither come
-#: from elsewhere nor go there.
+#: The whole policy of contents. No source is another host or a bare scheme of the network, so that data can neither
+#: come from elsewhere nor go there.
 POLICY = {
     "default-src": {"'self'"}, "script-src": {"'self'", "'unsafe-inline'", "'unsafe-eval'", "blob:"},
     "style-src": {"'self'", "'unsafe-inline'"}, "img-src": {"'self'", "data:", "blob:"}, "font-src": {"'self'", "data:"},
