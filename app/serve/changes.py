@@ -1,14 +1,15 @@
 """Changes of a document on their way to the browser: those of one action leave as one message, in one write.
 
 It is the message that Bokeh would send, but it is made without a search of all the document's models. Bokeh encodes
-values that are not plain, such as new models. The parts of Tornado and Bokeh that are used here are not public; where a
-release does not have them, changes leave as Bokeh sends them.
+values that are not plain, such as new models. The parts of Tornado and Bokeh that are used here are not documented;
+where a release does not have them, changes leave as Bokeh sends them.
 """
 
 from __future__ import annotations
 
 import base64
 import gzip
+import importlib
 import itertools
 import json
 import math
@@ -34,6 +35,30 @@ _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
 #: Arrays up to this size are written into the text [bytes]: a larger one costs both sides two more frames.
 _LARGEST_INLINE_ARRAY = 8192
 _NUMBERS = itertools.count(1)
+#: What is used of Bokeh's classes that its documentation does not name, by class.
+NEEDED = {
+    "bokeh.document.callbacks.DocumentCallbackManager": ("hold", "unhold", "hold_value", "trigger_on_change"),
+    "bokeh.server.connection.ServerConnection": ("protocol",),
+    "bokeh.protocol.Protocol": ("create",),
+    "bokeh.protocol.message.Message": ("header_json", "metadata_json", "content_json", "buffers"),
+    "bokeh.core.serialization.Buffer": ("ref", "to_bytes"),
+}
+
+
+def is_complete() -> bool:
+    """Whether this release of Bokeh has all of `NEEDED`."""
+    for path, names in NEEDED.items():
+        module, _, name = path.rpartition(".")
+        try:
+            found = getattr(importlib.import_module(module), name)
+        except (ImportError, AttributeError):
+            return False
+        if not all(hasattr(found, one) for one in names):
+            return False
+    return True
+
+
+_COMPLETE = is_complete()
 
 
 class _NotPlainValue(Exception):
@@ -194,7 +219,7 @@ def gathered(document: Document) -> Iterator[None]:
     """Send the changes made inside as one message. To be used with the document locked."""
     session = getattr(document.session_context, "session", None)
     callbacks = document.callbacks
-    known = session is not None and hasattr(callbacks, "_held_events")
+    known = _COMPLETE and session is not None and hasattr(callbacks, "_held_events")
     if not known or callbacks.hold_value is not None or not pn.state.loaded:
         yield
         return
@@ -210,7 +235,7 @@ def gathered(document: Document) -> Iterator[None]:
 def _gathering(model: Model) -> Document | None:
     """The document whose changes are being gathered, if the model is in one."""
     document = model.document
-    if document is None or document.callbacks.hold_value is None:
+    if document is None or not _COMPLETE or document.callbacks.hold_value is None:
         return None
     known = hasattr(document.callbacks, "_held_events") and hasattr(model, "_property_values")
     return document if known else None

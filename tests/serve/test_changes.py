@@ -126,6 +126,26 @@ def test_of_two_changes_of_a_property_the_last_is_kept_and_an_equal_one_is_none(
     assert events == [("start", 4)] and axis.start == 4
 
 
+@pytest.mark.parametrize("path", changes.NEEDED)
+def test_a_release_without_what_is_needed_is_noticed(path: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert changes.is_complete()
+    for name in changes.NEEDED[path]:
+        with monkeypatch.context() as patch:
+            patch.delattr(f"{path}.{name}")
+            assert not changes.is_complete()
+
+
+@in_a_thread
+def test_answers_come_where_something_needed_is_missing(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bokeh sends the changes itself."""
+    monkeypatch.setattr(changes, "_COMPLETE", False)
+    monkeypatch.setattr(changes, "_send", lambda *_: pytest.fail("gathered"))
+    session = pull_session(url=served.address)
+    ask(session, "first")
+    wait_for(session, "first, yes")
+    session.close()
+
+
 @pytest.mark.parametrize(("owner", "name"), [(ServerSession, "_subscribed_connections"), (WSHandler, "ws_connection"),
                                              (WSHandler, "write_lock")], ids=lambda value: getattr(value, "__name__", value))
 @in_a_thread
