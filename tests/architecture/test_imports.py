@@ -181,7 +181,11 @@ def test_the_tables_name_modules_that_are_there() -> None:
 
 #: Attributes that app/serve/changes.py uses of documented classes: Bokeh's documents, models and their events, Panel's
 #: state, Tornado's streams and locks, NumPy's arrays and what Python has.
-DOCUMENTED_ATTRIBUTES = set(["acquire", "add_done_callback", "append", "closed", "done", "result", "rpartition", "write", "state", "loaded", "char", "dtype", "nbytes", "shape", "tobytes", "attr", "cols", "data", "document", "event_name", "id", "model", "msg_data", "msg_type", "new", "session_context", "update", "encode", "extend", "items", "join"])
+DOCUMENTED_ATTRIBUTES = {
+    "acquire", "add_done_callback", "append", "closed", "done", "result", "rpartition", "write", "state", "loaded",
+    "char", "dtype", "nbytes", "shape", "tobytes", "attr", "cols", "data", "document", "event_name", "id", "model",
+    "msg_data", "msg_type", "new", "session_context", "update", "encode", "extend", "items", "join",
+}
 
 
 def test_the_documentation_names_what_is_used_of_bokeh_without_an_underscore() -> None:
