@@ -92,7 +92,7 @@ class MainPicture:
         self._note = note
         self._picture_ready = picture_ready
         self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
-        self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
+        self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.next_live_step)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LivePicture | None = None
@@ -143,7 +143,7 @@ class MainPicture:
             if self.live is not None:
                 self.live.change(scene)
             if session.playing:
-                self.idle()
+                self.next_live_step()
             else:
                 self.advance(1)  # a paused chain shows the new knobs, too
         else:
@@ -251,6 +251,8 @@ class MainPicture:
             self._note("")
         self._accepted = picture
         self._pacer.offer(picture)
+        if live:
+            self.next_live_step()  # two are in transit from the first step on, not only once a knob was moved
 
     def _failed(self, error: Exception) -> None:
         """Pass a failure on; the next picture is timed from its own request."""
@@ -295,7 +297,7 @@ class MainPicture:
         """The page is visible again: forget outstanding acknowledgements, which will never come."""
         self._pacer.restart()
 
-    def idle(self) -> None:
-        """The browser has painted everything: in live mode, take the next step."""
+    def next_live_step(self) -> None:
+        """Take the next step of a run that goes on, unless as many of its pictures are in transit as may be."""
         if self._session.mode == "live" and self._session.playing and not self._pacer.waits:
             self.advance()

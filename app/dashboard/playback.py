@@ -51,7 +51,7 @@ class Playback:
             self._pictures.live.hold()
             if not self._session.playing:
                 self._pictures.advance(1)
-        self._pictures.idle()
+        self._pictures.next_live_step()
 
     def _reconnected(self, message: dict[str, Any]) -> None:
         """The browser lost its server and reloaded the page from its share link, which does not contain the pause."""

@@ -51,3 +51,26 @@ def test_a_live_run_is_made_in_a_thread(dashboard: Dashboard, monkeypatch: pytes
     pictures.advance(7)
     dashboard.run_callbacks_until(lambda: pictures.run() is not None)
     assert threads == ["visitors", "visitors"]
+
+
+def test_two_pictures_are_in_transit_from_the_first_step_on(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many as before a knob was moved are there afterwards: the next begins when one has been painted."""
+    sent: list[int] = []
+    monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: sent.append(message["number"]))
+
+    def quiet() -> bool:
+        return not (dashboard.pictures.busy or dashboard.callbacks)
+
+    def in_transit(painted: int) -> int:
+        dashboard.run_callbacks_until(lambda: quiet() and len(sent) > painted)
+        return len(sent) - painted
+
+    dashboard.received({"do": "mode", "value": "live"})
+    assert in_transit(0) == 2
+    for painted in range(1, 4):
+        dashboard.received({"do": "painted", "number": painted})
+        assert in_transit(painted) == 2
+    dashboard.received({"do": "set", "name": "f", "value": 400.0})
+    assert in_transit(3) == 2
+    dashboard.received({"do": "painted", "number": 4})
+    assert in_transit(4) == 2
