@@ -18,7 +18,7 @@ from ..parts.figure_style import OUTPUT, quiet_axis, quiet_plot, together
 from ..pictures.curve import DASHES, FILLS, curve_columns, curve_tooltips
 from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..pictures.theme import GREY
-from ..serve.changes import change
+from ..serve.changes import set_properties
 from .pinned_curves import PinnedCurves
 
 
@@ -213,9 +213,9 @@ class CurveFigure:
         if (shown, self._scale) == self._place:
             return
         self._shown, self._place = shown, (shown, self._scale)
-        change(self._current, location=frequency)
+        set_properties(self._current, location=frequency)
         factor = self._scale[0]
-        change(self._now, data={"frequency": [frequency] if force is not None else [],
+        set_properties(self._now, data={"frequency": [frequency] if force is not None else [],
                                 "force": [force / factor] if force is not None else []})
 
     def features(self, features: Sequence[Feature]) -> None:
@@ -268,9 +268,9 @@ class CurveFigure:
             if self._measurement is not None:
                 self.measured(self._measurement)
         # Room for the names of the peaks, and for those that the paper states above them.
-        change(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
+        set_properties(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
         # The heading of the figure says that this is the largest force.
-        change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
+        set_properties(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}
@@ -288,4 +288,4 @@ class CurveFigure:
                 sources[direction] = self._line(direction, grey=sources is self._old)
         if direction in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            change(sources[direction], data=curve_columns(ordered, self._scale[0]))
+            set_properties(sources[direction], data=curve_columns(ordered, self._scale[0]))

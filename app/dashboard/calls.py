@@ -8,10 +8,10 @@ from functools import partial
 
 from bokeh.document import Document
 
-from ..serve.changes import gathered
+from ..serve.changes import batched_changes
 from ..serve.channel import Channel
 from ..serve.document_lock import with_document_lock
-from ..serve.meters import METERS
+from ..serve.metrics import METRICS
 
 log = logging.getLogger("granchain.page")
 
@@ -44,7 +44,7 @@ class Calls:
         """Call `action` now, where the document is locked already; `failed` takes its error."""
         if self._closed:
             return
-        with gathered(self._document):  # no second time inside `run_locked`, which has begun to gather
+        with batched_changes(self._document):  # no second time inside `run_locked`, which has begun to gather
             try:
                 action(*arguments)
             except Exception as error:
@@ -67,6 +67,6 @@ class Calls:
             try:
                 action()
             except Exception:
-                METERS.errors += 1
+                METRICS.count("errors")
                 log.exception("a visitor who left was not quite forgotten")
         self._closing.clear()

@@ -157,7 +157,7 @@ class MeasurementActions:
         self._views.trains.measured(None)
         self._tabs.update_state(understood=f"{self._name}: {measured.understood}", question=None,
                                 series=measured.word if self._series is not None else "", misfit=_misfit(difference))
-        picture = self._host.session.picture
+        picture = self._host.session.settled
         if picture is not None:
             self.picture_ready(picture)
 

@@ -135,7 +135,7 @@ def _frame(payload: bytes | memoryview, binary: bool = False) -> Iterator[bytes 
     yield payload
 
 
-def written(events: list[DocumentPatchedEvent]) -> bytes | None:
+def encode_patch(events: list[DocumentPatchedEvent]) -> bytes | None:
     """The frames of a message with these events; None if Bokeh has to encode one of them."""
     message = _Message()
     try:
@@ -206,7 +206,7 @@ def _send(document: Document, session: Any, events: list[Any]) -> None:
     patches = [event for event in events if isinstance(event, DocumentPatchedEvent)]
     sockets = [_Socket(one) for one in getattr(session, "_subscribed_connections", ())]
     if patches and sockets and all(one.usable for one in sockets):
-        data = written(patches)
+        data = encode_patch(patches)
         for one in sockets:
             one.write(_encoded(document, patches, one.connection) if data is None else data)
         events = [event for event in events if not isinstance(event, DocumentPatchedEvent)]
@@ -215,7 +215,7 @@ def _send(document: Document, session: Any, events: list[Any]) -> None:
 
 
 @contextmanager
-def gathered(document: Document) -> Iterator[None]:
+def batched_changes(document: Document) -> Iterator[None]:
     """Send the changes made inside as one message. To be used with the document locked."""
     session = getattr(document.session_context, "session", None)
     callbacks = document.callbacks
@@ -232,7 +232,7 @@ def gathered(document: Document) -> Iterator[None]:
         _send(document, session, events)
 
 
-def _gathering(model: Model) -> Document | None:
+def _batching_document(model: Model) -> Document | None:
     """The document whose changes are being gathered, if the model is in one."""
     document = model.document
     if document is None or not _COMPLETE or document.callbacks.hold_value is None:
@@ -241,17 +241,17 @@ def _gathering(model: Model) -> Document | None:
     return document if known else None
 
 
-def is_gathered(model: Model) -> bool:
+def is_batched(model: Model) -> bool:
     """Whether changes of the model are being gathered."""
-    return _gathering(model) is not None
+    return _batching_document(model) is not None
 
 
-def change(model: Model, **values: Any) -> None:
+def set_properties(model: Model, **values: Any) -> None:
     """Change properties of a model to valid values: Bokeh neither checks nor converts them.
 
     An equal value is not a change. Where nothing is gathered, this is the model's own `update`.
     """
-    document = _gathering(model)
+    document = _batching_document(model)
     if document is None:
         model.update(**values)
         return
@@ -260,11 +260,11 @@ def change(model: Model, **values: Any) -> None:
         if name != "data" and name in known and known[name] == value:
             continue
         known[name] = value
-        _hold(events, ModelChangedEvent(document, model, name, value) if name != "data"
+        _keep_last(events, ModelChangedEvent(document, model, name, value) if name != "data"
               else ColumnDataChangedEvent(document, model, name, value))
 
 
-def _hold(events: list[Any], event: Any) -> None:
+def _keep_last(events: list[Any], event: Any) -> None:
     """Keep an event; it replaces an earlier one of the same property, which is out of date."""
     for place, one in enumerate(events):
         if type(one) is type(event) and one.model is event.model and one.attr == event.attr:
@@ -273,9 +273,9 @@ def _hold(events: list[Any], event: Any) -> None:
     events.append(event)
 
 
-def tell(model: Model, event: ModelEvent) -> bool:
+def send_event(model: Model, event: ModelEvent) -> bool:
     """Send an event to a model's view in the browser with the gathered changes; False if nothing is being gathered."""
-    document = _gathering(model)
+    document = _batching_document(model)
     if document is None:
         return False
     document.callbacks._held_events.append(MessageSentEvent(document, "bokeh_event", event))

@@ -23,8 +23,8 @@ from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 from .compressed import CompressedFiles
 from .limits import USUAL_VISITORS
 from .message_rules import LARGEST_HEADER, RefusedMessage, check
-from .meters import METERS
-from .part_messages import take
+from .metrics import METRICS
+from .part_messages import dispatch
 
 log = logging.getLogger("granchain.requests")
 
@@ -112,7 +112,7 @@ class Guard(RequestHandler):
             raise HTTPError(403, "a session id of the client's own")
         if isinstance(self, SessionHandler) \
                 and len(list(self.application_context.sessions)) >= self.rules.most_visitors:
-            METERS.refused_visitors += 1
+            METRICS.count("refused_visitors")
             raise HTTPError(503, "there are %d visitors", self.rules.most_visitors)
 
     def write_error(self, status_code: int, **_: Any) -> None:
@@ -129,7 +129,7 @@ class Guard(RequestHandler):
         if isinstance(value, HTTPError):
             log.warning("refused: %s", value, extra=words)
         else:
-            METERS.errors += 1
+            METRICS.count("errors")
             log.error("request failed", exc_info=(typ, value, tb), extra=words)
 
 
@@ -185,7 +185,7 @@ class GuardedSocket(Guard):
         except RefusedMessage as reason:
             self._refuse(str(reason))
             return None
-        return None if take(getattr(self, "connection", None), asked) else self._to_bokeh(frames)
+        return None if dispatch(getattr(self, "connection", None), asked) else self._to_bokeh(frames)
 
     async def _to_bokeh(self, frames: tuple[str, ...]) -> None:
         for frame in frames:
@@ -193,7 +193,7 @@ class GuardedSocket(Guard):
 
     def _refuse(self, reason: str) -> None:
         self._refused, self._frames = True, ()
-        METERS.refused_messages += 1
+        METRICS.count("refused_messages")
         log.warning("refused: %s", reason, extra={"request": self.request_id, "remote": self.request.remote_ip})
         self.close(1008, reason)  # type: ignore[attr-defined]
 
@@ -214,7 +214,7 @@ class GuardedSocket(Guard):
     async def send_message(self, message: Any) -> None:
         """Send errors with the request's id in place of a traceback."""
         if message.msgtype == "ERROR":
-            METERS.errors += 1
+            METRICS.count("errors")
             log.error("message failed: %s", message.content["text"],
                       extra={"request": self.request_id, "remote": self.request.remote_ip})
             message.content = {"text": f"The message could not be handled (request {self.request_id}).",

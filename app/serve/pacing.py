@@ -8,9 +8,10 @@ from typing import Generic, TypeVar
 Frame = TypeVar("Frame")
 
 
-#: Frames in transit at once: one being painted, one travelling. Live mode keeps as many on their way. Measured there with
-#: `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, two cores with other work, a round trip of 50 ms
-#: added on the way: 14 frames a second with one, 26 with two; without it 54 and 69, and a median lag of 14 and 17 ms.
+#: Frames in transit at once: one being painted, one travelling. Live mode keeps as many on their way. Measured there
+#: with `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, two cores with other work, a round trip of
+#: 50 ms added on the way: 14 frames a second with one, 26 with two; without it 54 and 69, and a median lag of 14 and
+#: 17 ms.
 _MOST_IN_TRANSIT = 2
 
 

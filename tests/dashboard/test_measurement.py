@@ -161,8 +161,8 @@ def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> No
 def show(dashboard: Dashboard) -> None:
     """A settled picture, as the worker that computes it hands it over."""
     chain = dashboard.session.scene
-    dashboard.session.picture = settle(chain, samples=samples_for(chain))
-    show_settled(dashboard.views, 1, dashboard.session.picture)
+    dashboard.session.settled = settle(chain, samples=samples_for(chain))
+    show_settled(dashboard.views, 1, dashboard.session.settled)
 
 
 def with_series(dashboard: Dashboard, chain: Scene) -> str:
@@ -183,10 +183,10 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     lines = [[one for one in plot.renderers if one.level == "overlay"] for plot in (trains.left, trains.right)]
     assert [len(one) for one in lines] == [1, 1]
     assert all(len(one[0].data_source.data["time"]) > 1000 for one in lines)
-    preview = replace(dashboard.session.picture, final=False)  # of knobs that have moved
+    preview = replace(dashboard.session.settled, final=False)  # of knobs that have moved
     dashboard.files.picture_ready(preview)
     assert dashboard.views.tabs.state["misfit"] is None
-    dashboard.files.picture_ready(dashboard.session.picture)
+    dashboard.files.picture_ready(dashboard.session.settled)
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
     dashboard.received({"do": "csv-remove"})
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)

@@ -26,7 +26,7 @@ from app.serve import guard
 from app.serve.compiler import Compiler
 from app.serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from app.serve.message_rules import LARGEST_PLAIN_CONTENT
-from app.serve.meters import Metrics
+from app.serve.metrics import MetricsPage
 from app.serve.queues import LONG
 from app.server import Access
 from app.session import starts
@@ -174,7 +174,7 @@ def test_an_error_has_an_id_that_is_in_the_log_and_no_traceback(dashboard: Liste
     def fails(*_: object) -> Any:
         raise ZeroDivisionError("the words of an error of ours")
 
-    monkeypatch.setattr("app.serve.meters.METERS.text", fails)
+    monkeypatch.setattr("app.serve.metrics.METRICS.text", fails)
     with caplog.at_level(logging.WARNING, logger="granchain.requests"):
         status, headers, text = dashboard.ask("/metrics")
     assert status == 500 and headers["X-Request-Id"] in text
@@ -234,10 +234,10 @@ def test_metrics_are_for_known_private_addresses(remote_ip: str | None, allowed:
     """Tornado says 0.0.0.0 where it does not know the address."""
     asked = SimpleNamespace(request=SimpleNamespace(remote_ip=remote_ip), set_header=lambda *_: None, write=lambda _: None)
     if allowed:
-        Metrics.get(asked)  # type: ignore[arg-type]
+        MetricsPage.get(asked)  # type: ignore[arg-type]
     else:
         with pytest.raises(HTTPError, match="403"):
-            Metrics.get(asked)  # type: ignore[arg-type]
+            MetricsPage.get(asked)  # type: ignore[arg-type]
 
 
 def test_too_large_a_body_is_refused(dashboard: Listening) -> None:
