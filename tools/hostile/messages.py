@@ -15,7 +15,7 @@ from collections import Counter
 
 from app.dashboard.controller import Controller
 from tools.visitors.started import Started
-from tools.visitors.viewer import Viewer
+from tools.visitors.visitor import Visitor
 
 from .values import text, value
 
@@ -26,7 +26,7 @@ _EVENTS = ("ModelChanged", "MessageSent", "ColumnDataChanged", "ColumnsStreamed"
            "RootRemoved", "Nothing")
 
 
-class Attacker(Viewer):
+class Attacker(Visitor):
     """A visitor who means harm: `attack` sends one hostile message."""
 
     def __init__(self, address: str, rng: random.Random, actions: tuple[str, ...]) -> None:
@@ -87,7 +87,7 @@ async def run(server: Started, count: int, seed: int) -> int:
     """Send `count` hostile messages beside a visitor who goes on moving; the number of moves without an answer."""
     rng, sent = random.Random(seed), Counter[str]()
     actions = actions_of_the_page()
-    neighbour = Viewer(server.address)
+    neighbour = Visitor(server.address)
     await neighbour.open()
     moves = asyncio.create_task(_move(neighbour, random.Random(seed)))
     attacker, connections, unanswered = Attacker(server.address, rng, actions), 0, 0
@@ -106,7 +106,7 @@ async def run(server: Started, count: int, seed: int) -> int:
             sent[f"closed: {type(closed).__name__}"] += 1
         await asyncio.sleep(0.01)  # below the limit of messages a second, whose own test is tests/serve/test_security.py
     await attacker.leave()
-    last = Viewer(server.address)
+    last = Visitor(server.address)
     await last.open()
     answered = await last.move("f", 341.7)
     await last.leave()
@@ -122,9 +122,9 @@ async def run(server: Started, count: int, seed: int) -> int:
 _TIMES: list[float | None] = []
 
 
-async def _move(viewer: Viewer, rng: random.Random) -> None:
+async def _move(visitor: Visitor, rng: random.Random) -> None:
     while True:
-        _TIMES.append(await viewer.move("f", round(rng.uniform(300.0, 900.0), 1)))
+        _TIMES.append(await visitor.move("f", round(rng.uniform(300.0, 900.0), 1)))
         await asyncio.sleep(1.0)
 
 
