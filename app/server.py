@@ -35,8 +35,8 @@ from .session.session import Session
 #: The largest message a page sends is an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: How long a thread may keep the interpreter from the event loop [s]; Python's default is 5 ms. The answer to a moved
-#: knob needs it some ten times. Measured with 60 visitors when answers took longer than now (docs/reliability.md): 95 %
-#: came within 0.84 s, and within 1.55 s with 5 ms.
+#: knob needs it some ten times. p95 of the answers to 60 visitors: 0.84 s with 0.5 ms, 1.55 s with 5 ms (2026-11-24,
+#: before answers became as fast as in docs/reliability.md; not measured since).
 SWITCH_INTERVAL = 5e-4
 #: Time until a connection that sends nothing is closed [s]; a request's head must have come by then.
 IDLE_TIME = 60

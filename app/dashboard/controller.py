@@ -35,7 +35,8 @@ from .table import CURVE_NAME, PAGES, overlay_names
 class Controller:
     """One visitor's dashboard, and the `Host` of its pages.
 
-    Everything runs with the document locked, except `next_tick` and the three flags that any thread may read.
+    Everything runs with the document locked, except `next_tick` and the flags `busy`, `awaiting_picture` and
+    `curve_computing`, which any thread may read.
     """
 
     def __init__(self, document: Document, session: Session, start: State | None = None) -> None:

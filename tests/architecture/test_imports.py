@@ -7,6 +7,7 @@ import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from panel.custom import JSComponent
@@ -109,6 +110,24 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None
         elif mine in USES:
             fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
             assert theirs in fits | SHARED, f"{module} imports {name}"
+
+
+def components(of: type) -> Iterator[type]:
+    """All classes of components of the page."""
+    for one in of.__subclasses__():
+        yield from components(one)
+        yield one
+
+
+@pytest.mark.parametrize("part", sorted({one for one in components(Component) if one.__module__.startswith("app.")},
+                                        key=lambda one: one.__name__))
+def test_a_component_loads_only_styles_of_folders_that_it_may_import(part: Any) -> None:
+    """A page has the styles of app/parts and its own, none of another page's."""
+    folders = {path.read_text(encoding="utf-8"): path.parent for path in (ROOT / "app").rglob("*.css")}
+    mine = layer(part.__module__)
+    fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
+    for sheet in part._stylesheets:
+        assert folders[sheet].relative_to(ROOT / "app").as_posix().replace("/", ".") in fits
 
 
 def test_the_core_imports_nothing_of_the_app() -> None:
