@@ -16,7 +16,8 @@ from granchain_core.regime import Regime
 from ..format import figures_of, in_words, short_error
 from .axes import force_scale, knob_scale
 from .regimes import REGIME_MARKS, regime_key
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 #: Dashes of the line by the start of a sweep.
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}

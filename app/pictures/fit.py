@@ -17,7 +17,8 @@ from ..format import prefixed
 from .axes import Scale, force_scale
 from .curve import curve_columns
 from .measured import measured_over, residuals_over
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 #: Most parameters whose landscape is drawn.
 _MOST_LANDSCAPES = 4

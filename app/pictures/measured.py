@@ -11,7 +11,7 @@ from bokeh.plotting import figure
 from granchain_core.experiment import Measured
 
 from ..format import given_in_words, signed_in_words
-from .theme import frame, themed
+from .themed import frame, themed
 
 COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual", "word")
 TOOLTIPS = [("", "@word"), ("frequency", "@frequency{0.0} Hz"), ("force", "@value"), ("repeats", "@repeats"),

@@ -13,7 +13,8 @@ from granchain_core.paper import RigCurves, RigResponse, Trains
 
 from ..curve import FORCES, forces_in_words
 from ..regimes import REGIME_MARKS, regime_key
-from ..theme import Theme, apply_theme, frame, themed
+from ..theme import Theme
+from ..themed import apply_theme, frame, themed
 from .panels import inside_legend, measured_curve
 from .trains import trains
 

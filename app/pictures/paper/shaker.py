@@ -6,7 +6,8 @@ from bokeh.models import HoverTool, LayoutDOM
 
 from granchain_core.paper import ShakerAmplitude
 
-from ..theme import Theme, apply_theme, frame, themed
+from ..theme import Theme
+from ..themed import apply_theme, frame, themed
 from .panels import grid, hollow_points, inside_legend
 
 _DASHES = ("dashed", "solid", "dotted")
