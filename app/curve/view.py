@@ -15,7 +15,8 @@ from granchain_core.steady.curve.resonance import Place, place_of
 from ..format import prefixed
 from ..frames import round_up
 from ..parts.figure_style import quiet_axis, quiet_plot, together
-from ..pictures.curve import DASHES, FILLS, curve_columns, curve_tooltips
+from ..pictures.axes import knob_scale
+from ..pictures.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
 from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..pictures.theme import GREY, OUTPUT_COLOUR
 from ..serve.changes import set_properties
@@ -60,7 +61,7 @@ class CurveFigure:
                           y_range=Range1d(0, 1))
         plot.min_border_top = 10
         plot.min_border_bottom = 6
-        plot.xaxis.axis_label = "drive frequency f (Hz)"
+        plot.xaxis.axis_label = knob_scale("f").label
         quiet_axis(plot.yaxis[0], OUTPUT_COLOUR)
         plot.on_event(Tap, lambda event: choose(event.x))
         return plot
@@ -68,12 +69,9 @@ class CurveFigure:
     def _line(self, direction: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource(curve_columns([], 1.0))
         made = [self.figure.add_glyph(source, Line(
-            x="frequency", y="force", line_dash=DASHES[direction] or "solid",
-            line_color=GREY if grey else OUTPUT_COLOUR, line_width=1.5, line_alpha=0.45 if grey else 0.9))]
+            **curve_line(direction), line_color=GREY if grey else OUTPUT_COLOUR, line_alpha=0.45 if grey else 0.9))]
         if not grey:
-            marks = self.figure.add_glyph(source, Scatter(
-                x="frequency", y="force", marker="marker", size="size", line_color="colour", line_width=1.5,
-                fill_color=FILLS[direction]))
+            marks = self.figure.add_glyph(source, Scatter(**curve_marks(direction)))
             made.append(marks)
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(direction)))
         for renderer in made:

@@ -29,6 +29,8 @@ LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈
 KEY = "Solid line: from rest; dashed: frequency rising; dotted, with hollow marks: frequency falling."
 #: Filling of the marks by the start of a curve: a column, or none, so that one sees where the two sweeps differ.
 FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
+#: Width of the line through a curve [px].
+LINE_WIDTH = 1.8
 #: A tooltip's lines for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 
@@ -46,10 +48,9 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure
     for one in found:
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
         source = ColumnDataSource(name=one.start, data=curve_columns(points, scale.factor, 3, drawn))
-        line = plot.line("frequency", "force", source=source, line_dash=DASHES[one.start] or "solid")
-        marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", line_color="colour",
-                             fill_color=FILLS[one.start], line_width=1.5, legend_group="regime")
-        themed(line, line_color="output", line_width=1.8)
+        line = plot.line(**curve_line(one.start), source=source)
+        marks = plot.scatter(**curve_marks(one.start), source=source, legend_group="regime")
+        themed(line, line_color="output", line_width=LINE_WIDTH)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(one.start)))
     plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, scale.label
     for legend in plot.legend:
@@ -57,6 +58,17 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False) -> figure
     if plot.legend:
         plot.add_layout(plot.legend[0], "below")
     return apply_theme(plot, theme)
+
+
+def curve_line(start: str) -> dict[str, Any]:
+    """The properties of the line through a curve, here and on the page."""
+    return {"x": "frequency", "y": "force", "line_dash": DASHES[start] or "solid", "line_width": LINE_WIDTH}
+
+
+def curve_marks(start: str) -> dict[str, Any]:
+    """The properties of a curve's marks, here and on the page."""
+    return {"x": "frequency", "y": "force", "marker": "marker", "size": "size", "line_color": "colour",
+            "line_width": 1.5, "fill_color": FILLS[start]}
 
 
 def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,
