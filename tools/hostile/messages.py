@@ -14,6 +14,7 @@ import re
 from collections import Counter
 
 from app.dashboard.controller import Controller
+from tools.visitors.soak import figures
 from tools.visitors.started import Started
 from tools.visitors.visitor import Visitor
 
@@ -46,7 +47,8 @@ class Attacker(Visitor):
     async def attack(self) -> str:
         """Send something; returns what kind of thing."""
         name, send = self._rng.choice((("message of a part", self._part), ("message of a part", self._part),
-                                       ("property", self._property), ("document event", self._document_event),
+                                       ("property", self._property), ("large property", self._large_property),
+                                       ("document event", self._document_event),
                                        ("kind of message", self._kind), ("frame", self._frame)))
         await send()
         return name
@@ -62,6 +64,10 @@ class Attacker(Visitor):
         await self._send("PATCH-DOC", {"events": [{
             "kind": "ModelChanged", "model": {"id": self._rng.choice((*self._ids, "p0", ""))},
             "attr": self._rng.choice(_ATTRIBUTES), "new": value(self._rng)}]})
+
+    async def _large_property(self) -> None:
+        await self._send("PATCH-DOC", {"events": [{
+            "kind": "ModelChanged", "model": {"id": self._rng.choice(self._ids)}, "attr": "tags", "new": ["x" * 1_600_000]}]})
 
     async def _document_event(self) -> None:
         event = {"kind": self._rng.choice(_EVENTS), "model": value(self._rng), "attr": text(self._rng)[:50], "new": value(self._rng),
@@ -89,6 +95,7 @@ async def run(server: Started, count: int, seed: int) -> int:
     actions = actions_of_the_page()
     neighbour = Visitor(server.address)
     await neighbour.open()
+    before = figures(server.number)[0] if server.process else float("nan")
     moves = asyncio.create_task(_move(neighbour, random.Random(seed)))
     attacker, connections, unanswered = Attacker(server.address, rng, actions), 0, 0
     while sum(sent.values()) < count:
@@ -113,6 +120,8 @@ async def run(server: Started, count: int, seed: int) -> int:
     moves.cancel()
     times = _TIMES[:]
     print(f"{count} messages, seed {seed}: {dict(sent)}; {connections} connections")
+    if server.process:
+        print(f"memory of the server: {before:.0f} MB with the first visitor, {figures(server.number)[0]:.0f} MB at the end")
     late = sum(one is None for one in times) + (answered is None) + unanswered
     print(f"moves of the visitor beside it and first pictures: {len(times) + connections}, without an answer {late}, "
           f"slowest {1e3 * max((one for one in times if one is not None), default=0.0):.0f} ms")
