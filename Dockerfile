@@ -1,4 +1,5 @@
-# granchain's dashboard:  docker build -t granchain .  then  docker run --rm -p 5006:5006 granchain
+# granchain's dashboard, for this machine only:
+#     docker build -t granchain . && docker run --rm -p 127.0.0.1:5006:5006 granchain
 #
 # Numba compiles for the kind of CPU it runs on and keeps that in the name of its cache files. The cache that is baked in
 # is therefore used by machines of the builder's kind; on another kind the kernels are compiled at the first visit

@@ -25,7 +25,7 @@ from .serve.bokeh_defaults import remember_defaults
 from .serve.compiler import COMPILER
 from .serve.guard import Rules, guard_handlers, guarded
 from .serve.limits import LARGEST_UPLOAD, USUAL_VISITORS
-from .serve.meters import METERS, Liveness, Metrics
+from .serve.metrics import METRICS, Liveness, MetricsPage
 from .serve.panel_pages import remember_resources
 from .serve.queues import PICTURES, SWEEPS
 from .serve.shared import Shared
@@ -35,8 +35,8 @@ from .session.session import Session
 #: The largest message a page sends is an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: How long a thread may keep the interpreter from the event loop [s]; Python's default is 5 ms. The answer to a moved
-#: knob needs it some ten times. Measured with 60 visitors when answers took longer than now (docs/reliability.md): 95 %
-#: came within 0.84 s, and within 1.55 s with 5 ms.
+#: knob needs it some ten times. p95 of the answers to 60 visitors: 0.84 s with 0.5 ms, 1.55 s with 5 ms (2026-11-24,
+#: before answers became as fast as in docs/reliability.md; not measured since).
 SWITCH_INTERVAL = 5e-4
 #: Time until a connection that sends nothing is closed [s]; a request's head must have come by then.
 IDLE_TIME = 60
@@ -100,7 +100,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
     gc.enable()
     server.start()
-    server.io_loop.add_callback(lambda: asyncio.ensure_future(METERS.watch()))
+    server.io_loop.add_callback(lambda: asyncio.ensure_future(METRICS.watch()))
     server.io_loop.start()  # until a signal ends the process (app/cli/ending.py); Bokeh's own waits for its threads
 
 
@@ -114,7 +114,7 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
         {"/": page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
         websocket_max_message_size=LARGEST_MESSAGE,
-        extra_patterns=[(r"/liveness", Liveness), (r"/metrics", Metrics)],
+        extra_patterns=[(r"/liveness", Liveness), (r"/metrics", MetricsPage)],
         http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
                             "max_body_size": LARGEST_BODY, "xheaders": access.proxy},
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
@@ -128,12 +128,12 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
 
 def _count_what_is_shared() -> None:
     """The queues and caches of all visitors, for `/metrics`."""
-    METERS.turn_wait = lambda: TURNS.wait
-    METERS.gauges.update(queue=lambda: TURNS.waiting + PICTURES.waiting + SWEEPS.waiting,
+    METRICS.turn_wait = lambda: TURNS.wait
+    METRICS.gauges.update(queue=lambda: TURNS.waiting + PICTURES.waiting + SWEEPS.waiting,
                          computing=lambda: PICTURES.busy + SWEEPS.busy)
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
     for name, cache in shared.items():
-        METERS.gauges.update({f"{name}_cache_hits_total": partial(getattr, cache, "hits"),
+        METRICS.gauges.update({f"{name}_cache_hits_total": partial(getattr, cache, "hits"),
                               f"{name}_cache_misses_total": partial(getattr, cache, "misses"),
                               f"{name}_cache_bytes": partial(getattr, cache, "used")})
 

@@ -49,7 +49,7 @@ class FakeHost:
         """What has no place on a page."""
         self.failures.append(error)
 
-    def fault(self, error: Exception, sentence: str) -> None:
+    def report_fault(self, error: Exception, sentence: str) -> None:
         """An error of granchain itself, and what is said of it beside the page."""
         self.faults.append((error, sentence))
 

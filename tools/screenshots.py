@@ -27,10 +27,10 @@ sys.path.insert(0, str(ROOT / "tests" / "browser"))
 from server import dashboard, launch  # noqa: E402  (the browser tests start them in the same way)
 
 from app.dashboard.table import TABS, overlay_names  # noqa: E402
+from app.pictures.theme import THEMES  # noqa: E402
 from app.session.stories import Story, stories  # noqa: E402
 
 SIZES = {"laptop": (1280, 800), "screen": (1920, 1080), "hall": (2560, 1440), "phone": (390, 844)}
-LOOKS = ("light", "dark", "projector")
 #: The 1:3 resonance of the paper's figure 3b.
 SHOWN = "?v=1&scene=sec2&f=1130"
 #: A first visit would be shown round.
@@ -50,7 +50,7 @@ REST = """() => performance.now() - window.changes.at > 1000
 
 def views() -> dict[str, str]:
     """The query of each picture but those of the stories, by its name."""
-    found = {f"main-{look}": f"{SHOWN}&look={look}" for look in LOOKS}
+    found = {f"main-{theme}": f"{SHOWN}&look={theme}" for theme in THEMES}
     for row in TABS:
         found[f"tab-{row.name.replace(' ', '-')}"] = f"{SHOWN}&look=light&tab={quote(row.name)}"
         if getattr(row, "view", None) is not None:

@@ -11,6 +11,7 @@ from typing import Any
 
 from granchain_core import BadInput
 
+from ..pictures.theme import THEMES
 from .common import in_background, say, show_percent
 from .data_options import add_answers, with_answers
 
@@ -25,7 +26,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="your measurement over it: a curve, the shaker's amplitude, or a series (HZ is its "
                              "frequency in the paper); CSV in any dialect, WebPlotDigitizer, HDF5, netCDF-4")
     add_answers(parser)
-    parser.add_argument("--theme", default="light", metavar="light|dark|projector", help="colours of the picture")
+    parser.add_argument("--theme", default="light", metavar="|".join(THEMES), help="colours of the picture")
 
 
 def do(arguments: argparse.Namespace) -> None:
@@ -63,8 +64,6 @@ def _checked(name: str, theme: str) -> str:
     if kind not in _KINDS:
         raise BadInput(f"A figure is written as .html, .png, .svg or .csv; name it "
                        f"{Path(name).with_suffix('.html')}, not {name}.")
-    from ..pictures.theme import THEMES
-
     if theme not in THEMES:
         raise unknown_name("theme", theme, THEMES)
     if kind in (".png", ".svg"):
@@ -81,7 +80,6 @@ def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
     from ..pictures.browser import png_of, svg_of
     from ..pictures.file import captioned_page
     from ..pictures.paper import paper_figure, size_of
-    from ..pictures.theme import THEMES
 
     colours = THEMES[theme]
     drawn, title = paper_figure(result, colours), f"Figure {figure.number}: {figure.title}"

@@ -11,6 +11,8 @@ import socket
 import threading
 from pathlib import Path
 
+from ..pictures.theme import style_sheet
+
 #: Longest wait for the head of a request [s].
 _LONGEST_WAIT = 2.0
 #: Most that is read of such a head [bytes].
@@ -20,10 +22,11 @@ _HERE = {"127.0.0.1": socket.AF_INET, "localhost": socket.AF_INET, "::1": socket
 
 
 def answer() -> bytes:
-    """The whole answer: the skeleton with the page's own layout."""
+    """The whole answer: the skeleton with the page's own layout and themes."""
     folder = Path(__file__).resolve().parent
     layout = folder.parent / "dashboard"
-    sheets = "".join((layout / name).read_text(encoding="utf-8") for name in ("page.css", "skeleton.css"))
+    files = [layout / name for name in ("page.css", "skeleton.css")]
+    sheets = style_sheet() + "".join(one.read_text(encoding="utf-8") for one in files)
     body = (folder / "waiting.html").read_text(encoding="utf-8").replace("/* style sheets */", sheets).encode()
     head = ("HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/html; charset=utf-8\r\nCache-Control: no-store\r\n"
             "Retry-After: 1\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n"

@@ -14,11 +14,12 @@ from granchain_core.steady.curve.resonance import Place, place_of
 
 from ..format import prefixed
 from ..frames import round_up
-from ..parts.figure_style import OUTPUT, quiet_axis, quiet_plot, together
-from ..pictures.curve import DASHES, FILLS, curve_columns, curve_tooltips
+from ..parts.figure_style import quiet_axis, quiet_plot, together
+from ..pictures.axes import knob_scale
+from ..pictures.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
 from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
-from ..pictures.theme import GREY
-from ..serve.changes import change
+from ..pictures.theme import GREY, OUTPUT_COLOUR
+from ..serve.changes import set_properties
 from .pinned_curves import PinnedCurves
 
 
@@ -60,20 +61,17 @@ class CurveFigure:
                           y_range=Range1d(0, 1))
         plot.min_border_top = 10
         plot.min_border_bottom = 6
-        plot.xaxis.axis_label = "drive frequency f (Hz)"
-        quiet_axis(plot.yaxis[0], OUTPUT)
+        plot.xaxis.axis_label = knob_scale("f").label
+        quiet_axis(plot.yaxis[0], OUTPUT_COLOUR)
         plot.on_event(Tap, lambda event: choose(event.x))
         return plot
 
     def _line(self, direction: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource(curve_columns([], 1.0))
         made = [self.figure.add_glyph(source, Line(
-            x="frequency", y="force", line_dash=DASHES[direction] or "solid", line_color=GREY if grey else OUTPUT,
-            line_width=1.5, line_alpha=0.45 if grey else 0.9))]
+            **curve_line(direction), line_color=GREY if grey else OUTPUT_COLOUR, line_alpha=0.45 if grey else 0.9))]
         if not grey:
-            marks = self.figure.add_glyph(source, Scatter(
-                x="frequency", y="force", marker="marker", size="size", line_color="colour", line_width=1.5,
-                fill_color=FILLS[direction]))
+            marks = self.figure.add_glyph(source, Scatter(**curve_marks(direction)))
             made.append(marks)
             self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(direction)))
         for renderer in made:
@@ -213,9 +211,9 @@ class CurveFigure:
         if (shown, self._scale) == self._place:
             return
         self._shown, self._place = shown, (shown, self._scale)
-        change(self._current, location=frequency)
+        set_properties(self._current, location=frequency)
         factor = self._scale[0]
-        change(self._now, data={"frequency": [frequency] if force is not None else [],
+        set_properties(self._now, data={"frequency": [frequency] if force is not None else [],
                                 "force": [force / factor] if force is not None else []})
 
     def features(self, features: Sequence[Feature]) -> None:
@@ -268,9 +266,9 @@ class CurveFigure:
             if self._measurement is not None:
                 self.measured(self._measurement)
         # Room for the names of the peaks, and for those that the paper states above them.
-        change(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
+        set_properties(self.figure.y_range, end=(1.3 if self._features.data["top"] else 1.15) * high / scale[0])
         # The heading of the figure says that this is the largest force.
-        change(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
+        set_properties(self.figure.yaxis[0], axis_label=f"output force ({scale[1]}N)")
         top = [self.figure.y_range.end] * len(self._features.data["top"])
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}
@@ -288,4 +286,4 @@ class CurveFigure:
                 sources[direction] = self._line(direction, grey=sources is self._old)
         if direction in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            change(sources[direction], data=curve_columns(ordered, self._scale[0]))
+            set_properties(sources[direction], data=curve_columns(ordered, self._scale[0]))

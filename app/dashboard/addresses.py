@@ -24,7 +24,7 @@ T = TypeVar("T")
 _NOT_A_MOTION = {"v", "story", *BROWSER_FIELDS}
 
 
-def take_address(session: Session, query: str) -> tuple[State | None, list[str]]:
+def apply_address(session: Session, query: str) -> tuple[State | None, list[str]]:
     """Make the session what an address says; fields that it leaves out get their defaults.
 
     Returns the state in which the motion begins, None for rest, and a sentence for every field that was refused.
@@ -37,7 +37,7 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
         step = story_step(fields["story"], overlay_names())
         session.scene, session.story_to_settle = step.scene, bool(step.via)
         fields = {**({"curves": step.curves} if step.curves else {}), **fields}
-    session.take_view(fields)
+    session.apply_view(fields)
     session.place = {name: fields[name] for name in places if name in fields}
     if session.place.get("page", "") not in ("", *overlay_names()):  # a page without an overlay has only its tab
         session.place["tab"] = session.place.pop("page")
@@ -46,7 +46,7 @@ def take_address(session: Session, query: str) -> tuple[State | None, list[str]]
     session.question = fields.get(QUESTION, "")
     if session.question and _read(lambda: read_question(session.question, scene), sentences) is None:
         session.question = ""
-    session.picture, session.started_from = None, None
+    session.settled, session.started_from = None, None
     return _read(lambda: read_start(fields[START], scene), sentences) if START in fields else None, sentences
 
 

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from functools import partial
 
 from bokeh.document import Document
 
-from ..serve.changes import gathered
+from ..serve.changes import batched_changes
 from ..serve.channel import Channel
 from ..serve.document_lock import with_document_lock
+from ..serve.metrics import METRICS
+
+log = logging.getLogger("granchain.page")
 
 
 class Calls:
@@ -40,7 +44,7 @@ class Calls:
         """Call `action` now, where the document is locked already; `failed` takes its error."""
         if self._closed:
             return
-        with gathered(self._document):  # no second time inside `run_locked`, which has begun to gather
+        with batched_changes(self._document):  # no second time inside `run_locked`, which has begun to gather
             try:
                 action(*arguments)
             except Exception as error:
@@ -51,11 +55,18 @@ class Calls:
         self._closing.append(action)
 
     def close(self) -> None:
-        """The visitor left: call what was given to `on_close`, and nothing from then on."""
+        """The visitor left: call what was given to `on_close`, and nothing from then on.
+
+        An action that fails keeps none of the others from being called.
+        """
         if self._closed:
             return
         self._closed = True
         self._channel.close()
         for action in self._closing:
-            action()
+            try:
+                action()
+            except Exception:
+                METRICS.count("errors")
+                log.exception("a visitor who left was not quite forgotten")
         self._closing.clear()

@@ -13,7 +13,7 @@ from granchain_core import BadInput, CurvePoint, Scene, Settled, State
 from ..curve.controller import CurveController
 from ..pictures.theme import Theme
 from ..serve.compiler import COMPILER
-from ..serve.meters import METERS
+from ..serve.metrics import METRICS
 from ..serve.socket_tuning import disable_nagle
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.hooks import Actions, Page, all_actions
@@ -35,26 +35,27 @@ from .table import CURVE_NAME, PAGES, overlay_names
 class Controller:
     """One visitor's dashboard, and the `Host` of its pages.
 
-    Everything runs with the document locked, except `next_tick` and the three flags that any thread may read.
+    Everything runs with the document locked, except `next_tick` and the flags `busy`, `awaiting_picture` and
+    `curve_computing`, which any thread may read.
     """
 
     def __init__(self, document: Document, session: Session, start: State | None = None) -> None:
         self._document = document
         self._calls = Calls(document, self.failed)
         self._first_start = start
-        METERS.visitors += 1
-        METERS.opened += 1
-        self.on_close(METERS.visitor_left)
+        METRICS.visitor_came()
+        self.on_close(METRICS.visitor_left)
         self.session = session
         self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
-        self.pictures = MainPicture(self, views, self.sentences.note, self.picture_ready)
+        self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
         self.curves = CurveController(self, views.curve, views.curvebar, self._curve_placed)
         self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self.pictures.redraw)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
-        self._scenes = SceneChanges(session, views, self.pictures, self.curves, self.pinned, self.pages, self.say)
+        self._scenes = SceneChanges(session, views, self.pictures, self.curves, self.pinned, self.pages,
+                                    self.show_message)
         self._looked_at: dict[str, Page | CurveController] = {
             CURVE_NAME: self.curves, **{row.name: page for row, page in zip(PAGES, self.pages, strict=True)}}
         own: Actions = {
@@ -67,7 +68,7 @@ class Controller:
             "gallery": lambda _: views.header.send(type="gallery", cards=cards()),
             **self.sentences.actions,
         }
-        playback = Playback(session, views.header, self.pictures, self._compute, self.say)
+        playback = Playback(session, views.header, self.pictures, self._compute, self.show_message)
         self.owners: dict[str, Actions] = {
             "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
             "display choices": self.choices.actions, "pins": self.pinned.actions,
@@ -87,7 +88,7 @@ class Controller:
         self._calls.now(action, message)
 
     def _unknown(self, message: dict[str, Any]) -> None:
-        self.say(f"The server does not know the request {message['name']}; reload the page.")
+        self.show_message(f"The server does not know the request {message['name']}; reload the page.")
 
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
@@ -118,17 +119,17 @@ class Controller:
         """See `Host`."""
         self._calls.on_close(action)
 
-    def say(self, sentence: str) -> None:
+    def show_message(self, sentence: str) -> None:
         """Show the visitor one sentence until the next valid action; an empty one removes it."""
-        self.sentences.say(sentence)
+        self.sentences.show_message(sentence)
 
     def failed(self, error: Exception) -> None:
         """See `Host`."""
         self.sentences.failed(error)
 
-    def fault(self, error: Exception, sentence: str) -> None:
+    def report_fault(self, error: Exception, sentence: str) -> None:
         """See `Host`."""
-        self.sentences.fault(error, sentence)
+        self.sentences.report_fault(error, sentence)
 
     def close(self, session_context: object) -> None:
         """The visitor left: everything that is computed for this page ends, and nothing is called any more."""

@@ -11,7 +11,7 @@ from bokeh.core.property.validation import validate
 from bokeh.document import Document
 
 from ..session.session import Session
-from .addresses import take_address
+from .addresses import apply_address
 from .controller import Controller
 
 
@@ -23,13 +23,13 @@ def page() -> None:
         raise RuntimeError("the page is made inside a request; serve it, do not call it")
     session = Session()
     query = _query(document)
-    start, sentences = take_address(session, query) if query.strip("?") else (None, [])
+    start, sentences = apply_address(session, query) if query.strip("?") else (None, [])
     with validate(False):  # validation takes a sixth of an opening, and tests find what it would
         controller = Controller(document, session, start)
         controller.views.put_into(document)
     pn.config.exception_handler = _handler(controller)
     if sentences:
-        controller.say(" ".join(sentences))
+        controller.show_message(" ".join(sentences))
     pn.state.on_session_destroyed(controller.close)
 
 

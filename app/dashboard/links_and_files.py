@@ -69,7 +69,7 @@ class LinksAndFiles:
         if what in ("script", "notebook"):
             if session.mode == "live":
                 raise BadInput(_PASSES)
-            if session.picture is None or not session.picture.final or run.scene != session.scene:
+            if session.settled is None or not session.settled.final or run.scene != session.scene:
                 raise BadInput("The picture is still being computed; save it when the status line no longer says "
                                "“preview”.")
         curves = self._curves.complete(session.scene)

@@ -18,7 +18,7 @@ from granchain_core.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
 
 from ..frames import Frames, prepared_frames, samples_for
 from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
-from ..serve.meters import METERS
+from ..serve.metrics import METRICS
 from ..serve.pacing import FramePacer
 from ..serve.queues import PICTURES, LatestWins
 from ..serve.shared import Shared
@@ -79,20 +79,20 @@ def _refusing(scene: Scene) -> Iterator[None]:
 
 
 class MainPicture:
-    """Settled pictures and the live run. `note` shows a message that the next picture clears.
+    """Settled pictures and the live run. `show_notice` shows a message that the next picture clears.
 
     `picture_ready` is called with every settled picture, before it is sent.
     """
 
-    def __init__(self, host: Host, views: Views, note: Callable[[str], None],
+    def __init__(self, host: Host, views: Views, show_notice: Callable[[str], None],
                  picture_ready: Callable[[Settled], None]) -> None:
         self._host = host
         self._session = host.session
         self._views = views
-        self._note = note
+        self._show_notice = show_notice
         self._picture_ready = picture_ready
         self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
-        self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.idle)
+        self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.next_live_step)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LivePicture | None = None
@@ -143,7 +143,7 @@ class MainPicture:
             if self.live is not None:
                 self.live.change(scene)
             if session.playing:
-                self.idle()
+                self.next_live_step()
             else:
                 self.advance(1)  # a paused chain shows the new knobs, too
         else:
@@ -158,7 +158,7 @@ class MainPicture:
         """The motion on the screen as a run."""
         if self.live is not None:
             return self.live.window_run()
-        return None if self._session.picture is None else self._session.picture.run
+        return None if self._session.settled is None else self._session.settled.run
 
     # In a worker thread
 
@@ -198,7 +198,7 @@ class MainPicture:
         needed = MOTION_KERNELS if scene.cuts_tension else (FIXED_STEP_KERNELS,)  # dop853 settles it then
         if not COMPILER.has(scene, *needed):
             words = compiling_words("the kernels for this set of effects", FIXED_STEP_KERNELS).capitalize()
-            self._host.next_tick(self._note, f"{words}; the picture then appears by itself.")
+            self._host.next_tick(self._show_notice, f"{words}; the picture then appears by itself.")
             for piece in PICTURE_PIECES:
                 COMPILER.ask(scene, piece)
             if not all(COMPILER.await_piece(scene, piece, stop) for piece in needed):
@@ -242,15 +242,17 @@ class MainPicture:
         live = isinstance(picture, LivePicture)
         if live != (self._session.mode == "live") or picture.run.scene.name != self._session.scene.name:
             return
-        METERS.pictures += 1
+        METRICS.count("pictures")
         self._count_answer()
         if isinstance(picture, Settled):
-            self._session.picture = picture
+            self._session.settled = picture
             self._picture_ready(picture)
         if self._session.notice:
-            self._note("")
+            self._show_notice("")
         self._accepted = picture
         self._pacer.offer(picture)
+        if live:
+            self.next_live_step()  # two are in transit from the first step on, not only once a knob was moved
 
     def _failed(self, error: Exception) -> None:
         """Pass a failure on; the next picture is timed from its own request."""
@@ -262,8 +264,8 @@ class MainPicture:
         if self._requested_at is None:
             return
         seconds, self._requested_at = time.monotonic() - self._requested_at, None
-        METERS.answered(seconds)
-        words = f"The server is busy: pictures follow every {seconds:.1f} s." if METERS.busy else ""
+        METRICS.answered(seconds)
+        words = f"The server is busy: pictures follow every {seconds:.1f} s." if METRICS.busy else ""
         self._views.status_line.update_state(busy=words)
 
     def _send(self, number: int, picture: Settled | LivePicture) -> None:
@@ -295,7 +297,7 @@ class MainPicture:
         """The page is visible again: forget outstanding acknowledgements, which will never come."""
         self._pacer.restart()
 
-    def idle(self) -> None:
-        """The browser has painted everything: in live mode, take the next step."""
+    def next_live_step(self) -> None:
+        """Take the next step of a run that goes on, unless as many of its pictures are in transit as may be."""
         if self._session.mode == "live" and self._session.playing and not self._pacer.waits:
             self.advance()

@@ -5,11 +5,12 @@ from __future__ import annotations
 import base64
 import binascii
 import math
+import time
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from granchain_core import BadInput, Run, Scene, Settled, settle
+from granchain_core import BadInput, Run, Scene, Settled, settling
 from granchain_core.experiment import (
     Answers,
     Difference,
@@ -26,13 +27,14 @@ from granchain_core.experiment.reader import TABLE_KINDS
 from granchain_core.experiment.units import QUANTITIES, UNITS
 from granchain_core.scene import ASSETS
 from granchain_core.scene.refusals import refuse_undriven
+from granchain_core.stop import Stop
 
 from ..curve.controller import CurveController
 from ..format import given_in_words, in_words, signed_in_words
 from ..serve.compiler import PICTURE_PIECES
 from ..serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
-from ..serve.queues import FILES
-from ..session.budget import check_first_picture
+from ..serve.queues import FILES, LONG
+from ..session.budget import WHOLE_PICTURE, check_first_picture
 from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.task import Job, Task, say_nothing
@@ -73,8 +75,11 @@ class MeasurementActions:
         #: What is drawn over the pictures, and goes into their files.
         self.shown: Measured | Series | None = None
         self._moving = Task(host, FILES, say_nothing, "Moving the series to the picture", host.failed)
-        self._task = Task(host, FILES, say_nothing, "Reading the measurement", host.failed)
-        self._name, self._content, self._answers = "", b"", Answers()
+        self._reading = Task(host, FILES, say_nothing, "Reading the measurement", host.failed)
+        self._recording = Task(host, LONG, say_nothing, "The virtual experiment", host.failed)
+        self._name, self._answers = "", Answers()
+        #: The file, for as long as a question about it is open.
+        self._content = b""
         curves.compared = self._compared
         self.actions: Actions = {"csv": self._read, "csv-answer": self._answer, "csv-too-large": self._too_large,
                                  "csv-remove": self._remove, "csv-sample": self._sample,
@@ -90,12 +95,14 @@ class MeasurementActions:
             self._tabs.update_state(misfit=None)
 
     def _read(self, message: dict[str, Any]) -> None:
-        self._take(str(message.get("name", "data"))[:60], _content(message))
-        self._task.start(partial(self._read_in_thread, self._content, self._name, self._answers))
+        content = _content(message)
+        self._recording.cancel()
+        self._replace(str(message.get("name", "data"))[:60])
+        self._reading.start(partial(self._read_in_thread, content, self._name, self._answers))
 
-    def _take(self, name: str, content: bytes) -> None:
+    def _replace(self, name: str) -> None:
         """Other data: a question about the data before is no longer asked."""
-        self._name, self._content, self._answers = name, content, Answers()
+        self._name, self._content, self._answers = name, b"", Answers()
         if self._tabs.state.get("question"):
             self._tabs.update_state(question=None)
 
@@ -111,18 +118,19 @@ class MeasurementActions:
         before = self._answers
         self._answers = replace(before, columns=given.columns or before.columns,
                                 decimal=given.decimal or before.decimal, dataset=given.dataset or before.dataset)
-        self._task.start(partial(self._read_in_thread, self._content, self._name, self._answers))
+        self._reading.start(partial(self._read_in_thread, self._content, self._name, self._answers))
 
     def _read_in_thread(self, content: bytes, name: str, answers: Answers, job: Job) -> None:
         """In a worker thread: read the file. A `BadInput` names the line that cannot be read."""
         try:
             found = _found(content, answers, name)
         except Unclear as unclear:
-            job.next_tick(self._ask, unclear.question)
+            job.next_tick(self._ask, content, unclear.question)
             return
         job.next_tick(self._show, found)
 
-    def _ask(self, question: Question) -> None:
+    def _ask(self, content: bytes, question: Question) -> None:
+        self._content = content
         self._tabs.update_state(question={
             "reason": question.reason, "about": list(question.about), "datasets": list(question.datasets),
             "columns": [[one.number, one.title, one.quantity if one.quantity in CHOICES else "", one.likely_unit]
@@ -143,12 +151,13 @@ class MeasurementActions:
 
     def _show(self, measured: Measured | Series) -> None:
         """Draw a curve over the curve, or a series over the force trains."""
+        self._content = b""
         self.shown, self._series = measured, measured if isinstance(measured, Series) else None
         difference = self._curves.measured(measured if isinstance(measured, Measured) else None)
         self._views.trains.measured(None)
         self._tabs.update_state(understood=f"{self._name}: {measured.understood}", question=None,
                                 series=measured.word if self._series is not None else "", misfit=_misfit(difference))
-        picture = self._host.session.picture
+        picture = self._host.session.settled
         if picture is not None:
             self.picture_ready(picture)
 
@@ -164,8 +173,9 @@ class MeasurementActions:
     def _virtual(self, _: dict[str, Any]) -> None:
         """Make a series of the present scene with simulated sensors, in place of a file."""
         refuse_undriven(self._host.session.scene)
-        self._take(VIRTUAL_FILE, b"")
-        self._task.start(partial(self._record_in_thread, self._host.session.scene))
+        self._reading.cancel()
+        self._replace(VIRTUAL_FILE)
+        self._recording.start(partial(self._record_in_thread, self._host.session.scene))
 
     def _record_in_thread(self, scene: Scene, job: Job) -> None:
         from granchain_core.virtual import Sensors, virtual_series_csv  # imported late: only a fit needs it
@@ -173,24 +183,37 @@ class MeasurementActions:
         check_first_picture(scene)
         job.give_way()
         job.compile(scene, *PICTURE_PIECES)
-        largest = settle(scene, stop=job.stop).run.max_output_force
+        largest = _settled(scene, job.stop).run.max_output_force
         rate = _VIRTUAL_RATE * scene.f
         sensors = Sensors(noise=_VIRTUAL_NOISE * largest, velocity_noise=_VIRTUAL_NOISE * scene.A0 * scene.f,
                           bandwidth=0.1 * rate, rate=rate)
         content = virtual_series_csv(scene, _VIRTUAL_PERIODS, sensors, stop=job.stop).encode()
-        job.next_tick(self._take, VIRTUAL_FILE, content)
-        self._read_in_thread(content, VIRTUAL_FILE, Answers(), job)
+        job.next_tick(self._recorded, content)
+
+    def _recorded(self, content: bytes) -> None:
+        self._reading.start(partial(self._read_in_thread, content, VIRTUAL_FILE, Answers()))
 
     def _too_large(self, _: dict[str, Any]) -> None:
         raise BadInput(_TOO_LARGE)
 
     def _remove(self, _: dict[str, Any]) -> None:
-        self._task.cancel()
-        self._moving.cancel()
+        for task in (self._recording, self._reading, self._moving):
+            task.cancel()
+        self._content = b""
         self.shown = self._series = None
         self._curves.measured(None)
         self._views.trains.measured(None)
         self._tabs.update_state(understood="", question=None, series="", misfit=None)
+
+
+def _settled(scene: Scene, stop: Stop) -> Settled:
+    """The steady state, of which a virtual experiment needs the largest force."""
+    began = time.thread_time()
+    for found in settling(scene, stop=stop):
+        if time.thread_time() - began > WHOLE_PICTURE and not found.final:
+            raise BadInput(f"After {WHOLE_PICTURE:g} s of computing this chain has not settled, so the virtual "
+                           "experiment was not made.")
+    return found
 
 
 def _content(message: dict[str, Any]) -> bytes:

@@ -72,11 +72,11 @@ class Pinned:
 
     def _add(self) -> None:
         session = self._session
-        if session.mode != "settled" or session.picture is None:
+        if session.mode != "settled" or session.settled is None:
             raise BadInput("Only a settled picture can be pinned: a live run keeps changing. Choose “settled” first.")
         if len(session.pins) == len(NAMES):
             raise BadInput(f"{len(NAMES)} pictures are pinned already; remove one of them in the tab “numbers” first.")
-        picture = session.picture
+        picture = session.settled
         if picture.run.scene != session.scene:  # where it begins is not known yet
             raise BadInput("The picture of these knobs is still being computed; pin it when it is shown.")
         pin = Pin(session.scene, session.started_from)
@@ -152,7 +152,7 @@ class Pinned:
 
     def _tell(self) -> None:
         session = self._session
-        picture = session.picture
+        picture = session.settled
         self._views.tabs.send(
             type="compare", now=setting_words(session.scene, session.scene),
             pins=[{"name": name, "sign": sign, "words": setting_words(pin.scene, session.scene),

@@ -16,12 +16,12 @@ class Playback:
     """Actions of the bar on top that deal with time; `compute` asks for a picture."""
 
     def __init__(self, session: Session, header: Header, pictures: MainPicture, compute: Callable[[], None],
-                 say: Callable[[str], None]) -> None:
+                 show_message: Callable[[str], None]) -> None:
         self._session = session
         self._header = header
         self._pictures = pictures
         self._compute = compute
-        self._say = say
+        self._show_message = show_message
         self.actions: Actions = {
             "mode": self._mode, "start": self._start, "speed": self._speed, "playing": self._playing,
             "reset": self._reset, "next-period": self._next_period, "reconnected": self._reconnected,
@@ -51,7 +51,7 @@ class Playback:
             self._pictures.live.hold()
             if not self._session.playing:
                 self._pictures.advance(1)
-        self._pictures.idle()
+        self._pictures.next_live_step()
 
     def _reconnected(self, message: dict[str, Any]) -> None:
         """The browser lost its server and reloaded the page from its share link, which does not contain the pause."""
@@ -66,12 +66,12 @@ class Playback:
         if message.get("uploaded"):
             different.append("your uploaded data are gone")
         but = f", but {' and '.join(different)}" if different else ""
-        self._say(f"The connection was lost. Your settings are restored{but}.")
+        self._show_message(f"The connection was lost. Your settings are restored{but}.")
 
     def _reset(self, _: dict[str, Any]) -> None:
         if self._pictures.live is not None:
             self._pictures.live.reset()
-        self._session.picture = None
+        self._session.settled = None
         self._compute()
 
     def _next_period(self, _: dict[str, Any]) -> None:

@@ -11,7 +11,7 @@ from ..curve.controller import CurveController
 from ..parts.knobs import beside_knobs, knob_state
 from ..session.hooks import Actions, Page
 from ..session.session import Session, clicked_frequency
-from .addresses import take_address
+from .addresses import apply_address
 from .layout import Views
 from .main_picture import MainPicture
 from .pinned import Pinned
@@ -21,14 +21,14 @@ class SceneChanges:
     """Turns the knobs of one visitor, opens scenes, and informs the pages and the other parts of the dashboard."""
 
     def __init__(self, session: Session, views: Views, pictures: MainPicture, curves: CurveController, pinned: Pinned,
-                 pages: Sequence[Page], say: Callable[[str], None]) -> None:
+                 pages: Sequence[Page], show_message: Callable[[str], None]) -> None:
         self._session = session
         self._views = views
         self._pictures = pictures
         self._curves = curves
         self._pinned = pinned
         self._pages = pages
-        self._say = say
+        self._show_message = show_message
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
     def show(self, scene: Scene, state: State | None, mode: str) -> None:
@@ -44,7 +44,7 @@ class SceneChanges:
         another = scene.name != session.scene.name
         session.open(scene)
         self._pictures.end_live()
-        self._say("")
+        self._show_message("")
         if another:
             self.opened(state, curves)
             return
@@ -96,16 +96,16 @@ class SceneChanges:
 
     def _scene(self, message: dict[str, Any]) -> None:
         self._session.choose(message.get("name"))
-        self._say("")
+        self._show_message("")
         self.opened(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
         """A step back or forward: the session becomes what the address says, its picture to the last digit."""
         session, name, curves = self._session, self._session.scene.name, self._session.curves
-        start, refused = take_address(session, str(message.get("query", "")))
+        start, refused = apply_address(session, str(message.get("query", "")))
         self._follow_mode()
         for page in self._pages:
-            page.address_taken()
+            page.address_applied()
         self._pinned.show()
         if session.scene.name != name:
             self.opened(start, session.curves)
@@ -113,7 +113,7 @@ class SceneChanges:
             if session.curves != curves:
                 session.curves = self._curves.select(session.scene, session.curves)
             self._knobs_turned(start)
-        self._say(" ".join(refused))
+        self._show_message(" ".join(refused))
         self._views.header.send(type="address-applied", query=session.link)
 
     # What follows
@@ -134,7 +134,7 @@ class SceneChanges:
     def _changed(self, start: State | None = None) -> None:
         self.compute(start)
         if self._session.sentence:
-            self._say("")
+            self._show_message("")
         self._tell_pages()
         self._curves.moved(self._session.scene)
 

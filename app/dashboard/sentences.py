@@ -9,7 +9,7 @@ from typing import Any
 from granchain_core import BadInput, NumbersFailed, Scene
 
 from ..parts.status_line import StatusLine
-from ..serve.meters import METERS
+from ..serve.metrics import METRICS
 from ..session.budget import RefusedPicture
 from ..session.hooks import Actions
 from ..session.session import Session
@@ -27,13 +27,13 @@ class Sentences:
         self._refused: Scene | None = None
         self.actions: Actions = {"dismiss-sentence": self._dismiss, "insist": self._insist}
 
-    def say(self, sentence: str) -> None:
+    def show_message(self, sentence: str) -> None:
         """Show one sentence until the next valid action; an empty one removes it."""
         self._session.sentence = sentence
         self._refused = None
         self._show()
 
-    def note(self, notice: str) -> None:
+    def show_notice(self, notice: str) -> None:
         """Show one sentence that the next picture removes."""
         self._session.notice = notice
         self._show()
@@ -41,25 +41,25 @@ class Sentences:
     def failed(self, error: Exception) -> None:
         """Say in one sentence what happened; the last good picture stays."""
         if isinstance(error, RefusedPicture):
-            METERS.refused_pictures += 1
+            METRICS.count("refused_pictures")
             if error.scene == self._session.scene:  # otherwise a knob has moved since and requested another picture
-                self.say(str(error))
+                self.show_message(str(error))
                 self._refused = error.scene
                 self._show()
         elif isinstance(error, BadInput):
-            self.say(str(error))
+            self.show_message(str(error))
         elif isinstance(error, NumbersFailed):
-            self.note(error.sentence)
+            self.show_notice(error.sentence)
         else:
-            self.fault(error, f"Something went wrong inside granchain ({type(error).__name__}); the last picture "
-                              "stays. Move the knob back or reset, and please report it.")
+            self.report_fault(error, f"Something went wrong inside granchain ({type(error).__name__}); the last "
+                                     "picture stays. Move the knob back or reset, and please report it.")
 
-    def fault(self, error: Exception, sentence: str) -> None:
+    def report_fault(self, error: Exception, sentence: str) -> None:
         """Log and count an error of granchain itself, and show `sentence`, unless it is empty."""
-        METERS.errors += 1
+        METRICS.count("errors")
         log.error("unexpected failure", exc_info=error)
         if sentence:
-            self.say(sentence)
+            self.show_message(sentence)
 
     def _show(self) -> None:
         self._line.update_state(sentence=f"{self._session.sentence} {self._session.notice}".strip(),
@@ -69,9 +69,9 @@ class Sentences:
         """Compute what was refused because it takes long; the other visitors still have their turns."""
         if self._refused is not None and self._refused == self._session.scene:
             self._session.insisted = self._refused
-            self.say("")
+            self.show_message("")
             self._compute()
 
     def _dismiss(self, _: dict[str, Any]) -> None:
         self._session.notice = ""
-        self.say("")
+        self.show_message("")

@@ -12,7 +12,7 @@ from ..format import prefixed
 from ..frames import PERIODS, Frames, prepared_frames, round_up
 from ..parts.chain import frames_message
 from ..parts.status_line import run_entries, settled_entries
-from ..serve.changes import change
+from ..serve.changes import set_properties
 from ..session.live import LivePicture
 from .layout import Views
 
@@ -62,7 +62,7 @@ def _periods_shown(frames: Frames, scene: Scene) -> str:
 def _draw(views: Views, number: int, frames: Frames, run: Run, time: np.ndarray, unit: str,
           largest: tuple[float, float], live: bool = False, running: bool = False, final: bool = False) -> None:
     scene, errors = run.scene, (run.force_errors.input, run.force_errors.output)
-    change(views.time, start=float(time[-1]), end=float(time[0]))
+    set_properties(views.time, start=float(time[-1]), end=float(time[0]))
     high = views.scales.of(frames, scene)
     high = replace(high, kinetic_energy=round_up(high.kinetic_energy))
     views.trains.update(frames, time, high, scene.is_driven)

@@ -57,10 +57,10 @@ class Component(WithPlainChanges, WithCommonProperties, WithoutChildren, Without
             if not self.try_change("state", merged):
                 self.state = merged
 
-    def heard(self, data: Any) -> None:
+    def handle_message(self, data: Any) -> None:
         """Take a message of this part in the browser."""
         if self._received is not None and isinstance(data, dict):
             self._received(data)
 
     def _handle_msg(self, data: Any) -> None:
-        self.heard(data)
+        self.handle_message(data)

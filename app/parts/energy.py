@@ -8,7 +8,7 @@ from bokeh.models import ColumnDataSource, HoverTool, Image, Plot, Range1d, Sing
 from ..format import prefixed
 from ..frames import Frames
 from ..pictures.energies import bead_interval, energy_hover, energy_mapper
-from ..serve.changes import change
+from ..serve.changes import set_properties
 from .figure_style import GAP, quiet_plot
 
 
@@ -35,22 +35,22 @@ class EnergyMap:
     def set_compact(self, compact: bool) -> None:
         """Number fewer beads where there is little room."""
         self._compact = compact
-        change(self._axis, axis_label="bead" if compact else "bead, numbered as above")
-        change(self._axis.ticker, interval=bead_interval(self._beads, 6 if compact else 12))
+        set_properties(self._axis, axis_label="bead" if compact else "bead, numbered as above")
+        set_properties(self._axis.ticker, interval=bead_interval(self._beads, 6 if compact else 12))
 
     def update(self, frames: Frames, time: np.ndarray, unit: str, high: float) -> None:
         """Show `frames`, whose rows are at `time` (in `unit`), in colours that end at `high` [J]."""
         factor, letter = prefixed(high)
         step = float(time[1] - time[0])
-        change(self._source, data={
+        set_properties(self._source, data={
             "image": [np.asarray(frames.kinetic_energy / factor, dtype=np.float32)],
             "x": [0.5],
             "y": [float(time[0]) - step / 2],
             "dw": [frames.beads],
             "dh": [step * frames.rows],
         })
-        change(self._mapper, high=high / factor)
-        change(self.figure.x_range, end=frames.beads + 0.5)
+        set_properties(self._mapper, high=high / factor)
+        set_properties(self.figure.x_range, end=frames.beads + 0.5)
         self._beads = frames.beads
         self.set_compact(self._compact)
-        change(self._hover, tooltips=energy_hover(unit, f"{letter}J"))
+        set_properties(self._hover, tooltips=energy_hover(unit, f"{letter}J"))

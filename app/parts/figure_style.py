@@ -7,16 +7,11 @@ from typing import Any
 
 from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
 
-from ..pictures.theme import THEMES
-
 # Borders [px], the same for all time pictures, so that one cursor and the chain fit them exactly.
 TOP = 78
 BOTTOM = 82
 LEFT = 60
 GAP = 6
-
-#: The colour of the output force, the same in every theme.
-OUTPUT = THEMES["light"].output
 
 
 def quiet_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str, str | None],

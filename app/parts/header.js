@@ -64,7 +64,8 @@ class Header {
     const words = "Export: pictures, tables, a program";
     this.exports = iconButton(icon("export", "export"), words, () => this.popovers.toggle("exports"), "export");
     this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp());
-    this.theme = iconButton(icon("theme"), "Theme: light, dark, projector", () => window.granchain.nextTheme());
+    const themes = `Theme: ${window.granchain.themes.join(", ")}`;
+    this.theme = iconButton(icon("theme"), themes, () => window.granchain.nextTheme());
     this.sound = iconButton(icon("sound", "hear"), "Hear the force at the wall", () => this.toggleSound());
     this.sound.ariaPressed = "false";
     this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "more");

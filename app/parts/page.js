@@ -22,7 +22,7 @@ window.granchain = (() => {
     emit(`page:${name}`, data);
   };
 
-  const KEPT_AS = "granchain-look"; // in the browser, from visit to visit
+  const KEPT_AS = "granchain-look"; // the theme, in the browser from visit to visit
   const THEMES = ["light", "dark", "projector"];
   const remembered = () => {
     try {
@@ -110,6 +110,7 @@ window.granchain = (() => {
     setTheme,
     restoreTheme,
     embedded,
+    themes: THEMES,
     nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % THEMES.length], true),
     drawer,
     showCurve,

@@ -14,7 +14,7 @@ from bokeh.model import Model, collect_models
 from bokeh.models import ImportedStyleSheet
 from panel.reactive import Syncable
 
-from ..serve.changes import change, is_gathered, tell
+from ..serve.changes import is_batched, send_event, set_properties
 
 try:
     from panel.io.state import set_curdoc
@@ -145,14 +145,14 @@ class WithPlainChanges:
     def try_send(self, message: dict[str, Any]) -> bool:
         """Send a message to the part in the browser, if that can be done here."""
         model = self._shown()
-        return model is not None and ESMEvent is not None and tell(model, ESMEvent(model=model, data=message))
+        return model is not None and ESMEvent is not None and send_event(model, ESMEvent(model=model, data=message))
 
     def try_change(self, name: str, value: Any) -> bool:
         """Give a property of the part another value here and in the browser, if that can be done here."""
         data = getattr(self._shown(), "data", None)
         values = getattr(getattr(self, "_param__private", None), "values", None)
-        if not isinstance(data, Model) or not isinstance(values, dict) or not is_gathered(data):
+        if not isinstance(data, Model) or not isinstance(values, dict) or not is_batched(data):
             return False
         values[name] = value
-        change(data, **{name: value})
+        set_properties(data, **{name: value})
         return True

@@ -17,7 +17,7 @@ from ..format import figures_of, prefixed, with_decimals, with_figures
 from ..frames import Extremes, Frames, round_up
 from ..pictures.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
 from ..pictures.theme import GREY
-from ..serve.changes import change
+from ..serve.changes import set_properties
 from .figure_style import GAP, LEFT, quiet_axis, quiet_plot
 from .measured_trains import MeasuredTrains
 from .pinned_trains import PinnedTrains
@@ -97,9 +97,9 @@ class ForceTrains:
 
         A chain that is not `driven` has no line of the drive and no axis for it.
         """
-        change(self._axes[0], visible=driven)
-        change(self._lines[0], visible=driven)
-        change(self._zero_of_drive, visible=driven)
+        set_properties(self._axes[0], visible=driven)
+        set_properties(self._lines[0], visible=driven)
+        set_properties(self._zero_of_drive, visible=driven)
         far = -1 if frames.time[-1] else 0  # of a live picture the last row is now, at 0
         scale = float(time[far] / frames.time[far]) if frames.time[far] else 1.0
         moved = max(float(np.abs(frames.drive_displacement).max()), self._measured.largest_displacement)
@@ -112,23 +112,23 @@ class ForceTrains:
         drive, drive_letter = prefixed(drive_high)
         push, push_letter = prefixed(max(map(abs, input_range)))
         out, out_letter = prefixed(max(map(abs, output_range)))
-        change(self._source, data=columns(time, drive=(frames.drive_displacement, drive),
+        set_properties(self._source, data=columns(time, drive=(frames.drive_displacement, drive),
                                           elastic=(frames.output_force_elastic, out)))
-        change(self._input, data=force_columns(time, frames.input_force, push, frames.input_jumps, scale))
-        change(self._output, data=force_columns(time, frames.output_force, out, frames.output_jumps, scale))
+        set_properties(self._input, data=force_columns(time, frames.input_force, push, frames.input_jumps, scale))
+        set_properties(self._output, data=force_columns(time, frames.output_force, out, frames.output_jumps, scale))
         shown = 0.0 if frames.time[-1] == 0.0 else float(frames.time[-1])
         self._pinned.update(shown, scale, push, out)
         self._measured.update(shown, scale, push, out, drive)
         edge = 1.15 * drive_high / drive
-        change(self.left.extra_x_ranges["drive"], start=-edge, end=edge)
-        change(self.left.x_range, start=input_range[0] / push, end=input_range[1] / push)
-        change(self.right.x_range, start=output_range[0] / out, end=output_range[1] / out)
+        set_properties(self.left.extra_x_ranges["drive"], start=-edge, end=edge)
+        set_properties(self.left.x_range, start=input_range[0] / push, end=input_range[1] / push)
+        set_properties(self.right.x_range, start=output_range[0] / out, end=output_range[1] / out)
         self._units, self._factors = (f"{drive_letter}m", f"{push_letter}N", f"{out_letter}N"), (push, out)
         self._write_titles()
 
     def name_time(self, title: str) -> None:
         """The title of the axis of time."""
-        change(self._time_axis, axis_label=title)
+        set_properties(self._time_axis, axis_label=title)
 
     def peak_words(self, frames: Frames, largest: tuple[float, float],
                    errors: tuple[float | None, float | None]) -> list[list[str]]:
@@ -185,7 +185,7 @@ class ForceTrains:
 
     def _write_titles(self) -> None:
         for axis, style, unit in zip(self._axes, _AXES, self._units, strict=True):
-            change(axis, axis_label=style.label(unit, self._compact))
+            set_properties(axis, axis_label=style.label(unit, self._compact))
 
     def thicken(self, factor: float) -> None:
         """Wider lines for the projector."""

@@ -13,7 +13,8 @@ from bokeh.plotting import figure
 from granchain_core.accuracy import Row, compared_methods
 
 from ..format import duration, short_error
-from .theme import AMBER, GREY, TEAL, VIOLET, Theme, apply_theme, frame, themed
+from .theme import AMBER, GREY, TEAL, VIOLET, Theme
+from .themed import apply_theme, frame, themed
 
 _PALETTE = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")

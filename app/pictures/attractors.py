@@ -12,7 +12,8 @@ from granchain_core import Attractor
 from ..format import figures_of, in_words
 from .axes import force_scale
 from .regimes import REGIME_MARKS, regime_key
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 
 def attractors(found: Sequence[Attractor], theme: Theme) -> figure:

@@ -11,7 +11,8 @@ from granchain_core import Basins
 
 from ..format import in_words, prefixed
 from .axes import Scale
-from .theme import GREY, Theme, apply_theme, frame
+from .theme import GREY, Theme
+from .themed import apply_theme, frame
 
 #: Patterns beside the colours, so that the colours need not be told apart.
 _HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")

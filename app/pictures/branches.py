@@ -16,7 +16,8 @@ from granchain_core.regime import modulus_words
 
 from ..format import in_words, short_error
 from .axes import Scale, force_scale, knob_scale
-from .theme import AMBER, GREY, TEAL, VIOLET, Theme, apply_theme, frame, themed
+from .theme import AMBER, GREY, TEAL, VIOLET, Theme
+from .themed import apply_theme, frame, themed
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
            "grazing": "grazing"}

@@ -11,7 +11,8 @@ from bokeh.plotting import figure
 
 from granchain_core.hard import Picture
 
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 _LOGARITHM = ", log10"
 #: Pictures with at most this many points have a dot at each.

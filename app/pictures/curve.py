@@ -18,7 +18,8 @@ from ..format import figures_of, in_words, short_error
 from .axes import force_scale, knob_scale
 from .measured import measured_over
 from .regimes import REGIME_MARKS, regime_key
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 #: Dashes of the line by the start of a sweep.
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
@@ -30,6 +31,8 @@ LABELS = {"rest": "from rest ─", "up": "sweep up ╌", "down": "sweep down ┈
 KEY = "Solid line: from rest; dashed: frequency rising; dotted, with hollow marks: frequency falling."
 #: Filling of the marks by the start of a curve: a column, or none, so that one sees where the two sweeps differ.
 FILLS: dict[str, str | None] = {"rest": "colour", "up": "colour", "down": None}
+#: Width of the line through a curve [px].
+LINE_WIDTH = 1.8
 #: A tooltip's lines for the columns of `forces_in_words`.
 FORCES = [("largest output force", "@total"), ("its elastic part", "@elastic"), ("largest input force", "@input")]
 
@@ -50,10 +53,9 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False, measured:
     for one in found:
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
         source = ColumnDataSource(name=one.start, data=curve_columns(points, scale.factor, 3, drawn))
-        line = plot.line("frequency", "force", source=source, line_dash=DASHES[one.start] or "solid")
-        marks = plot.scatter("frequency", "force", source=source, marker="marker", size="size", line_color="colour",
-                             fill_color=FILLS[one.start], line_width=1.5, legend_group="regime")
-        themed(line, line_color="output", line_width=1.8)
+        line = plot.line(**curve_line(one.start), source=source)
+        marks = plot.scatter(**curve_marks(one.start), source=source, legend_group="regime")
+        themed(line, line_color="output", line_width=LINE_WIDTH)
         plot.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(one.start)))
     if measured is not None:
         measured_over(plot, measured, scale.factor)
@@ -63,6 +65,17 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False, measured:
     if plot.legend:
         plot.add_layout(plot.legend[0], "below")
     return apply_theme(plot, theme)
+
+
+def curve_line(start: str) -> dict[str, Any]:
+    """The properties of the line through a curve, here and on the page."""
+    return {"x": "frequency", "y": "force", "line_dash": DASHES[start] or "solid", "line_width": LINE_WIDTH}
+
+
+def curve_marks(start: str) -> dict[str, Any]:
+    """The properties of a curve's marks, here and on the page."""
+    return {"x": "frequency", "y": "force", "marker": "marker", "size": "size", "line_color": "colour",
+            "line_width": 1.5, "fill_color": FILLS[start]}
 
 
 def curve_columns(points: Sequence[CurvePoint], factor: float, larger: int = 0,

@@ -31,7 +31,8 @@ from granchain_core.regime import exponent_words
 from ..format import figures_of, in_words, short_error
 from .axes import Scale, knob_scale
 from .regimes import REGIME_MARKS, regime_key
-from .theme import BROWN, Theme, apply_theme, frame, themed
+from .theme import BROWN, Theme
+from .themed import apply_theme, frame, themed
 
 #: What a cell may be, in the curve's colours, each with a hatch of its own.
 CATEGORIES = (*REGIME_MARKS, "failed")

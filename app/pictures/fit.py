@@ -14,10 +14,11 @@ from granchain_core import Curve, Fit
 from granchain_core.fit import CurveTarget, FeatureTarget, Free, RecordsTarget, SeriesTarget
 
 from ..format import prefixed
-from .axes import Scale, force_scale
+from .axes import Scale, force_scale, knob_scale
 from .curve import curve_columns
 from .measured import measured_over, residuals_over
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 #: Most parameters whose landscape is drawn.
 _MOST_LANDSCAPES = 4
@@ -84,7 +85,7 @@ def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
                                line_width=1.8))
         if math.isfinite(model):
             plot.add_layout(themed(Span(location=float(model), dimension="height"), line_color=role, line_width=0.8))
-    plot.yaxis.axis_label, plot.xaxis.axis_label = scale.label, "drive frequency f (Hz)"
+    plot.yaxis.axis_label, plot.xaxis.axis_label = scale.label, knob_scale("f").label
     plot.title.text = "Dotted: stated; thin: the model's nearest of its kind (peak red, valley grey)"
     below = residuals_over(target.frequencies, found.evaluation.residuals, "residual / σ")
     below.x_range = plot.x_range

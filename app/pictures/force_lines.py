@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..frames import with_jumps
-from .theme import THEMES
+from .theme import Theme
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class LineStyle:
     @property
     def colour(self) -> str:
         """The line's colour, which is the same in every theme."""
-        return str(getattr(THEMES["light"], self.role))
+        return str(getattr(Theme, self.role))
 
     def label(self, unit: str, compact: bool = False) -> str:
         """The title of the axis, shorter where there is little room."""

@@ -11,7 +11,8 @@ from bokeh.plotting import figure
 from granchain_core.experiment import Measured
 
 from ..format import given_in_words, signed_in_words
-from .theme import frame, themed
+from .axes import knob_scale
+from .themed import frame, themed
 
 COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual", "word")
 TOOLTIPS = [("", "@word"), ("frequency", "@frequency{0.0} Hz"), ("force", "@value"), ("repeats", "@repeats"),
@@ -56,5 +57,5 @@ def residuals_over(frequencies: np.ndarray, residuals: np.ndarray, unit: str) ->
     themed(plot.segment("frequency", 0, "frequency", "residual", source=source), line_color="ink", line_width=1.0)
     themed(plot.scatter("frequency", "residual", source=source, marker="square", size=6, fill_color=None),
            line_color="ink")
-    plot.xaxis.axis_label, plot.yaxis.axis_label = "drive frequency f (Hz)", unit
+    plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, unit
     return plot

@@ -29,7 +29,8 @@ from granchain_core import Driven, Run
 from ..format import prefixed
 from .energies import bead_interval, energy_bar, energy_hover, energy_mapper
 from .force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 #: Most rows of the picture of energies, and most points of a line.
 _MOST_ROWS = 2000

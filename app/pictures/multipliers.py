@@ -16,7 +16,8 @@ from granchain_core.orbits import Orbit
 from granchain_core.regime import modulus_words
 
 from ..format import duration
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 #: Multipliers farther out are drawn at the edge, with their modulus beside them.
 _LARGEST_DRAWN = 2.4

@@ -8,7 +8,8 @@ import numpy as np
 from bokeh.layouts import column
 from bokeh.models import Column, ColumnDataSource, HoverTool
 
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 
 def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | None, time_unit: str, unit: str,

@@ -10,7 +10,8 @@ from granchain_core.observe import Observation
 
 from ..format import prefixed
 from .axes import force_scale
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 
 def observation(found: Observation, theme: Theme) -> figure:

@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from bokeh.models import ColumnDataSource, DataRange1d, HoverTool, Range1d
 from bokeh.plotting import figure
 
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 #: Drive periods that are shown at once; panning shows the earlier ones that are kept.
 SHOWN_PERIODS = 60

@@ -18,7 +18,8 @@ from granchain_core import Run
 from granchain_core.analysis.spectrum import cosines
 
 from ..format import prefixed
-from .theme import Theme, apply_theme, frame, span_of, themed
+from .theme import Theme
+from .themed import apply_theme, frame, span_of, themed
 
 #: Most points of a line; a longer motion is thinned out evenly.
 _MOST_ROWS = 700

@@ -7,11 +7,11 @@ because the pictures in docs/paper and docs/dashboard.png show them.
 
 from __future__ import annotations
 
-from .theme import BLUE, GREY, THEMES
+from .theme import BLUE, GREY, OUTPUT_COLOUR
 
 #: Marker, colour and size of every regime: told apart with and without colour.
 REGIME_MARKS = {
-    "period 1": ("circle", THEMES["light"].output, 7), "period 2": ("diamond", "#a855f7", 11),
+    "period 1": ("circle", OUTPUT_COLOUR, 7), "period 2": ("diamond", "#a855f7", 11),
     "period 3": ("triangle", "#f59e0b", 10), "period 4": ("square", "#06b6d4", 8),
     "period 5+": ("star", "#ec4899", 12), "quasi-periodic": ("circle_dot", BLUE, 9),
     "chaotic": ("x", "#ef4444", 9), "unsettled": ("dash", GREY, 10),

@@ -7,7 +7,8 @@ from bokeh.plotting import figure
 
 from granchain_core import RotationNumber
 
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 
 def rotation(found: RotationNumber, theme: Theme) -> figure:

@@ -9,7 +9,8 @@ import numpy as np
 from bokeh.models import ColumnDataSource, HoverTool, Range1d
 from bokeh.plotting import figure
 
-from .theme import Theme, apply_theme, frame, span_of, themed
+from .theme import Theme
+from .themed import apply_theme, frame, span_of, themed
 
 #: Sections with fewer points than this have their transient drawn larger.
 _FEW_POINTS = 150

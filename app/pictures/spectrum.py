@@ -10,7 +10,8 @@ from granchain_core import BadInput, Spectrum
 
 from ..format import prefixed
 from .axes import force_scale
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 #: Decades below the largest line that are drawn.
 _DECADES = 6.0

@@ -11,7 +11,8 @@ from granchain_core import StrobeDiagram
 from ..format import prefixed
 from .axes import knob_scale
 from .regimes import REGIME_MARKS, regime_key
-from .theme import Theme, apply_theme, frame
+from .theme import Theme
+from .themed import apply_theme, frame
 
 
 def strobe_diagram(found: StrobeDiagram, bead: int, theme: Theme) -> figure:

@@ -1,16 +1,9 @@
-"""Themes: their colours and line widths, and how they are applied to a figure."""
+"""Themes: their colours and line widths, for the page and for its pictures (themed.py)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any
-
-from bokeh.models import Model, Range1d
-from bokeh.plotting import figure
-
-TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
-
+from typing import ClassVar
 
 #: Colours of marks in several pictures, the same in every theme. Blue is the input force; it is also quasi-periodic
 #: motion, because no picture of regimes shows the input force.
@@ -20,14 +13,23 @@ TEAL = "#0fa3b8"
 BROWN = "#7a3b00"
 GREY = "#8a8f98"
 BLUE = "#3b82f6"
+#: The drive and the forces at the two ends of the chain.
+DRIVE_COLOUR = "#e5484d"
+INPUT_COLOUR = BLUE
+OUTPUT_COLOUR = "#2f9e6a"
 
 
 @dataclass(frozen=True)
 class Theme:
     """Colours by role. `line` multiplies all line widths; `type` and `small` are sizes of words in pixels.
 
-    `style_sheet` gives the page the same.
+    `scheme` is "light" or "dark", the colour scheme of what the browser draws itself. The roles `drive`, `input` and
+    `output` have one colour in all themes. `style_sheet` gives the page the same.
     """
+
+    drive: ClassVar[str] = DRIVE_COLOUR
+    input: ClassVar[str] = INPUT_COLOUR
+    output: ClassVar[str] = OUTPUT_COLOUR
 
     scheme: str
     paper: str
@@ -45,9 +47,6 @@ class Theme:
     line: float = 1.0
     type: int = 15
     small: int = 14
-    drive: str = "#e5484d"
-    input: str = BLUE
-    output: str = "#2f9e6a"
     naive: str = "#d97706"
     second: str = VIOLET
 
@@ -76,7 +75,8 @@ def style_sheet() -> str:
     rules: list[str] = []
     first: dict[str, str] = {}
     for name, theme in THEMES.items():
-        roles = {f"--{role.replace('_', '-')}": str(value) for role, value in asdict(theme).items()}
+        values = {**asdict(theme), "drive": theme.drive, "input": theme.input, "output": theme.output}
+        roles = {f"--{role.replace('_', '-')}": str(value) for role, value in values.items()}
         roles["color-scheme"] = roles.pop("--scheme")
         for size in ("--type", "--small"):
             roles[size] += "px"
@@ -84,58 +84,3 @@ def style_sheet() -> str:
         rules.append(f':root{(first and f"[data-theme={name}]") or ""} {{ {own} }}\n')
         first = first or roles
     return "".join(rules)
-
-
-def frame(tools: str = TOOLS, **options: Any) -> figure:
-    """An empty figure with the tools that every picture has; `apply_theme` gives it its colours."""
-    plot = figure(tools=tools, output_backend="canvas", outline_line_color=None,
-                  **{"sizing_mode": "stretch_both", "toolbar_location": "right", **options})
-    plot.toolbar.logo = None
-    plot.toolbar.autohide = True
-    plot.title.text_font_style = "normal"
-    plot.title.standoff = 4
-    for axis in (*plot.xaxis, *plot.yaxis):
-        axis.axis_line_color = axis.major_tick_line_color = axis.minor_tick_line_color = None
-        axis.axis_label_text_font_style = "normal"
-        axis.axis_label_standoff = 4
-        axis.major_label_standoff = 3
-    return plot
-
-
-def themed(model: Any, **roles: str | float) -> Any:
-    """Mark what follows the theme: a string is a colour's role, a number a line width in pixels. Returns `model`."""
-    model.tags = [*model.tags, {"theme": roles}]
-    return model
-
-
-def apply_theme(plot: figure, theme: Theme) -> figure:
-    """Give a figure, and all in it that `themed` has named, the colours and widths of a theme. Returns `plot`."""
-    plot.background_fill_color = plot.border_fill_color = theme.card
-    plot.grid.grid_line_color = theme.faint
-    small = f"{theme.small}px"
-    plot.title.update(text_color=theme.soft, text_font_size=small)
-    for axis in (*plot.xaxis, *plot.yaxis):
-        axis.update(axis_label_text_color=theme.soft, major_label_text_color=theme.ink,
-                    axis_label_text_font_size=small, major_label_text_font_size=small)
-    for legend in plot.legend:
-        legend.update(label_text_color=theme.ink, label_text_font_size=small, background_fill_color=theme.card,
-                      border_line_color=None)
-    for model, roles in _followers(plot):
-        model.update(**{name: getattr(theme, role) if isinstance(role, str) else role * theme.line
-                        for name, role in roles.items()})
-    return plot
-
-
-def _followers(plot: figure) -> Iterator[tuple[Model, dict[str, str | float]]]:
-    for model in (*plot.renderers, *plot.center):
-        for tag in model.tags:
-            if isinstance(tag, dict) and "theme" in tag:
-                yield getattr(model, "glyph", model), tag["theme"]
-
-
-def span_of(low: float, high: float, room: float = 0.07) -> Range1d:
-    """A range with some room on both sides; one that is empty is widened."""
-    if not high > low:
-        wide = 0.1 * abs(high) or 1.0
-        low, high = low - wide, high + wide
-    return Range1d(low - room * (high - low), high + room * (high - low))

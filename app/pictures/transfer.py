@@ -11,7 +11,8 @@ from bokeh.plotting import figure
 from granchain_core import BadInput, Transfer
 
 from ..format import prefixed
-from .theme import Theme, apply_theme, frame, themed
+from .theme import Theme
+from .themed import apply_theme, frame, themed
 
 
 def transfer(found: Transfer, theme: Theme) -> LayoutDOM:

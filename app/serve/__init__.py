@@ -1,1 +1,1 @@
-"""The server's machinery: document lock, sockets, guards, logs, meters, pace, turns, shared results, compiling."""
+"""The server's machinery: document lock, sockets, guards, logs, metrics, pace, turns, shared results, compiling."""

@@ -1,14 +1,15 @@
 """Changes of a document on their way to the browser: those of one action leave as one message, in one write.
 
 It is the message that Bokeh would send, but it is made without a search of all the document's models. Bokeh encodes
-values that are not plain, such as new models. The parts of Tornado and Bokeh that are used here are not public; where a
-release does not have them, changes leave as Bokeh sends them.
+values that are not plain, such as new models. The parts of Tornado and Bokeh that are used here are not documented;
+where a release does not have them, changes leave as Bokeh sends them.
 """
 
 from __future__ import annotations
 
 import base64
 import gzip
+import importlib
 import itertools
 import json
 import math
@@ -34,6 +35,30 @@ _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
 #: Arrays up to this size are written into the text [bytes]: a larger one costs both sides two more frames.
 _LARGEST_INLINE_ARRAY = 8192
 _NUMBERS = itertools.count(1)
+#: What is used of Bokeh's classes that its documentation does not name, by class.
+NEEDED = {
+    "bokeh.document.callbacks.DocumentCallbackManager": ("hold", "unhold", "hold_value", "trigger_on_change"),
+    "bokeh.server.connection.ServerConnection": ("protocol",),
+    "bokeh.protocol.Protocol": ("create",),
+    "bokeh.protocol.message.Message": ("header_json", "metadata_json", "content_json", "buffers"),
+    "bokeh.core.serialization.Buffer": ("ref", "to_bytes"),
+}
+
+
+def is_complete() -> bool:
+    """Whether this release of Bokeh has all of `NEEDED`."""
+    for path, names in NEEDED.items():
+        module, _, name = path.rpartition(".")
+        try:
+            found = getattr(importlib.import_module(module), name)
+        except (ImportError, AttributeError):
+            return False
+        if not all(hasattr(found, one) for one in names):
+            return False
+    return True
+
+
+_COMPLETE = is_complete()
 
 
 class _NotPlainValue(Exception):
@@ -110,7 +135,7 @@ def _frame(payload: bytes | memoryview, binary: bool = False) -> Iterator[bytes 
     yield payload
 
 
-def written(events: list[DocumentPatchedEvent]) -> bytes | None:
+def encode_patch(events: list[DocumentPatchedEvent]) -> bytes | None:
     """The frames of a message with these events; None if Bokeh has to encode one of them."""
     message = _Message()
     try:
@@ -181,7 +206,7 @@ def _send(document: Document, session: Any, events: list[Any]) -> None:
     patches = [event for event in events if isinstance(event, DocumentPatchedEvent)]
     sockets = [_Socket(one) for one in getattr(session, "_subscribed_connections", ())]
     if patches and sockets and all(one.usable for one in sockets):
-        data = written(patches)
+        data = encode_patch(patches)
         for one in sockets:
             one.write(_encoded(document, patches, one.connection) if data is None else data)
         events = [event for event in events if not isinstance(event, DocumentPatchedEvent)]
@@ -190,11 +215,11 @@ def _send(document: Document, session: Any, events: list[Any]) -> None:
 
 
 @contextmanager
-def gathered(document: Document) -> Iterator[None]:
+def batched_changes(document: Document) -> Iterator[None]:
     """Send the changes made inside as one message. To be used with the document locked."""
     session = getattr(document.session_context, "session", None)
     callbacks = document.callbacks
-    known = session is not None and hasattr(callbacks, "_held_events")
+    known = _COMPLETE and session is not None and hasattr(callbacks, "_held_events")
     if not known or callbacks.hold_value is not None or not pn.state.loaded:
         yield
         return
@@ -207,26 +232,26 @@ def gathered(document: Document) -> Iterator[None]:
         _send(document, session, events)
 
 
-def _gathering(model: Model) -> Document | None:
+def _batching_document(model: Model) -> Document | None:
     """The document whose changes are being gathered, if the model is in one."""
     document = model.document
-    if document is None or document.callbacks.hold_value is None:
+    if document is None or not _COMPLETE or document.callbacks.hold_value is None:
         return None
     known = hasattr(document.callbacks, "_held_events") and hasattr(model, "_property_values")
     return document if known else None
 
 
-def is_gathered(model: Model) -> bool:
+def is_batched(model: Model) -> bool:
     """Whether changes of the model are being gathered."""
-    return _gathering(model) is not None
+    return _batching_document(model) is not None
 
 
-def change(model: Model, **values: Any) -> None:
+def set_properties(model: Model, **values: Any) -> None:
     """Change properties of a model to valid values: Bokeh neither checks nor converts them.
 
     An equal value is not a change. Where nothing is gathered, this is the model's own `update`.
     """
-    document = _gathering(model)
+    document = _batching_document(model)
     if document is None:
         model.update(**values)
         return
@@ -235,11 +260,11 @@ def change(model: Model, **values: Any) -> None:
         if name != "data" and name in known and known[name] == value:
             continue
         known[name] = value
-        _hold(events, ModelChangedEvent(document, model, name, value) if name != "data"
+        _keep_last(events, ModelChangedEvent(document, model, name, value) if name != "data"
               else ColumnDataChangedEvent(document, model, name, value))
 
 
-def _hold(events: list[Any], event: Any) -> None:
+def _keep_last(events: list[Any], event: Any) -> None:
     """Keep an event; it replaces an earlier one of the same property, which is out of date."""
     for place, one in enumerate(events):
         if type(one) is type(event) and one.model is event.model and one.attr == event.attr:
@@ -248,9 +273,9 @@ def _hold(events: list[Any], event: Any) -> None:
     events.append(event)
 
 
-def tell(model: Model, event: ModelEvent) -> bool:
+def send_event(model: Model, event: ModelEvent) -> bool:
     """Send an event to a model's view in the browser with the gathered changes; False if nothing is being gathered."""
-    document = _gathering(model)
+    document = _batching_document(model)
     if document is None:
         return False
     document.callbacks._held_events.append(MessageSentEvent(document, "bokeh_event", event))

@@ -22,8 +22,8 @@ try:
 except ImportError:  # it is not in Panel's documentation
     set_curdoc = None  # type: ignore[assignment]
 
-from .changes import gathered
-from .meters import METERS
+from .changes import batched_changes
+from .metrics import METRICS
 
 log = logging.getLogger("granchain.page")
 
@@ -72,12 +72,12 @@ def _act(session: Any, actions: list[Callable[[], None]]) -> list[Any]:
     """Run actions with the lock held; return what Bokeh still has to write."""
     session._pending_writes = []
     try:
-        with set_curdoc(session.document), gathered(session.document):
+        with set_curdoc(session.document), batched_changes(session.document):
             for action in actions:
                 try:
                     action()
                 except Exception:
-                    METERS.errors += 1
+                    METRICS.count("errors")
                     log.exception("an action failed")
     finally:
         pending, session._pending_writes = session._pending_writes, None

@@ -34,23 +34,16 @@ def compressed(path: str, modified: int, size: int) -> bytes | None:
     return packed if len(packed) < len(whole) else None
 
 
-#: Files by handler and path of the address.
-_resolved: dict[tuple[type, str], str] = {}
-
-
 class CompressedFiles(StaticFileHandler):
     """Mixed into a handler of files: compresses a file for a browser that accepts that and asks for all of it."""
 
     def parse_url_path(self, url_path: str) -> str:
-        """The file of an address. It is remembered, because Panel resolves every module of a component to find one."""
-        key = type(self), url_path
-        found = _resolved.get(key)
-        if found is None:
-            ours = file_at(url_path)
-            found = super().parse_url_path(url_path) if ours is None else str(ours)
-            if Path(found).is_absolute():  # found by Panel's handler, which lists what may be served
-                _resolved[key] = found
-        return found
+        """The file of an address: one of our modules, or what the handler itself finds.
+
+        Nothing is remembered here: strangers may ask for any number of addresses.
+        """
+        ours = file_at(url_path)
+        return super().parse_url_path(url_path) if ours is None else str(ours)
 
     def _packed(self) -> bytes | None:
         wanted = self.request.headers.get("Accept-Encoding", "")

@@ -22,17 +22,17 @@ from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 
 from .compressed import CompressedFiles
 from .limits import USUAL_VISITORS
-from .message_rules import RefusedMessage, check
-from .meters import METERS
-from .part_messages import take
+from .message_rules import LARGEST_HEADER, RefusedMessage, check
+from .metrics import METRICS
+from .part_messages import dispatch
 
 log = logging.getLogger("granchain.requests")
 
-#: Websocket frames that a visitor may send in a second, over a long time. A drag sends 60 messages a second, and a
-#: message is three frames.
-FRAMES_A_SECOND = 600.0
-#: Frames that a visitor may send at once.
-FRAMES_AT_ONCE = 3000.0
+#: Websocket frames that a visitor may send, over a long time [1/s]: the rate at which the token bucket of a connection
+#: is filled. A drag sends 60 messages a second, and a message is three frames.
+FRAME_RATE = 600.0
+#: Frames that a visitor may send at once: what the bucket holds.
+FRAME_BURST = 3000.0
 #: Time in which a session's id is remembered, longer than Bokeh's tokens live [s].
 _SESSIONS_REMEMBERED = 600.0
 
@@ -51,14 +51,15 @@ class Rules:
         """The headers of every answer.
 
         BokehJS makes functions of text, Panel loads modules from blobs, and both write style into the page: scripts and
-        styles cannot be forbidden there. Nothing may come from another host.
+        styles cannot be forbidden there. Nothing may come from or go to another host; 'self' covers websockets of the
+        page's own origin.
         """
         ancestors = " ".join(("'self'", *self.embedding))
         found = {
             "Content-Security-Policy":
                 "default-src 'self'; script-src 'self' 'unsafe-inline' 'unsafe-eval' blob:; "
                 "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; "
-                "connect-src 'self' ws: wss: blob: data:; worker-src 'self' blob:; object-src 'none'; base-uri 'self'; "
+                "connect-src 'self' blob: data:; worker-src 'self' blob:; object-src 'none'; base-uri 'self'; "
                 f"form-action 'self'; frame-ancestors {ancestors}",
             "X-Content-Type-Options": "nosniff",
             "Referrer-Policy": "same-origin",
@@ -71,8 +72,8 @@ class Rules:
         plain = host.lower().strip("[]")  # Tornado leaves the brackets of IPv6, which are a set of letters in a pattern
         return not self.hosts or any(fnmatchcase(plain, name) for name in self.hosts)
 
-    def connects(self, session: str) -> bool:
-        """Remember that this session has its connection; False if it had one before."""
+    def claim_connection(self, session: str) -> bool:
+        """Give the session its one connection; False if it had one before."""
         now = time.monotonic()
         for old in [one for one, at in self.connected.items() if at < now - _SESSIONS_REMEMBERED]:
             del self.connected[old]
@@ -111,7 +112,7 @@ class Guard(RequestHandler):
             raise HTTPError(403, "a session id of the client's own")
         if isinstance(self, SessionHandler) \
                 and len(list(self.application_context.sessions)) >= self.rules.most_visitors:
-            METERS.refused_visitors += 1
+            METRICS.count("refused_visitors")
             raise HTTPError(503, "there are %d visitors", self.rules.most_visitors)
 
     def write_error(self, status_code: int, **_: Any) -> None:
@@ -128,15 +129,18 @@ class Guard(RequestHandler):
         if isinstance(value, HTTPError):
             log.warning("refused: %s", value, extra=words)
         else:
-            METERS.errors += 1
+            METRICS.count("errors")
             log.error("request failed", exc_info=(typ, value, tb), extra=words)
 
 
 class GuardedSocket(Guard):
-    """The guard of a websocket: one connection for a session, not too many messages, and only those that pages send."""
+    """The guard of a websocket: one connection for a session, not too many messages, and only those that pages send.
 
-    _tokens = FRAMES_AT_ONCE
-    _at = 0.0
+    The rate of frames is limited by a token bucket.
+    """
+
+    _tokens = FRAME_BURST
+    _refilled_at = 0.0
     #: Frames of a message that is not whole yet: header, metadata and content come one by one.
     _frames: tuple[str, ...] = ()
     _refused = False
@@ -156,7 +160,7 @@ class GuardedSocket(Guard):
             session = None
         if session is None:
             raise HTTPError(403, "no token of ours")
-        if not self.rules.connects(session):
+        if not self.rules.claim_connection(session):
             raise HTTPError(403, "a second connection to one session")
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
@@ -164,8 +168,8 @@ class GuardedSocket(Guard):
         if self._refused:  # frames may still arrive after the connection was closed
             return None
         now = time.monotonic()
-        self._tokens = min(FRAMES_AT_ONCE, self._tokens + (now - self._at) * FRAMES_A_SECOND) - 1.0
-        self._at = now
+        self._tokens = min(FRAME_BURST, self._tokens + (now - self._refilled_at) * FRAME_RATE) - 1.0
+        self._refilled_at = now
         try:
             if self._tokens < 0.0:
                 raise RefusedMessage("too many messages")
@@ -173,13 +177,15 @@ class GuardedSocket(Guard):
                 raise RefusedMessage("binary data")
             self._frames = (*self._frames, fragment)
             if len(self._frames) < 3:
+                if len(fragment) > LARGEST_HEADER:
+                    raise RefusedMessage("too long a header")
                 return None
             frames, self._frames = self._frames, ()
             asked = check(frames[0], frames[2])
         except RefusedMessage as reason:
             self._refuse(str(reason))
             return None
-        return None if take(getattr(self, "connection", None), asked) else self._to_bokeh(frames)
+        return None if dispatch(getattr(self, "connection", None), asked) else self._to_bokeh(frames)
 
     async def _to_bokeh(self, frames: tuple[str, ...]) -> None:
         for frame in frames:
@@ -187,7 +193,7 @@ class GuardedSocket(Guard):
 
     def _refuse(self, reason: str) -> None:
         self._refused, self._frames = True, ()
-        METERS.refused_messages += 1
+        METRICS.count("refused_messages")
         log.warning("refused: %s", reason, extra={"request": self.request_id, "remote": self.request.remote_ip})
         self.close(1008, reason)  # type: ignore[attr-defined]
 
@@ -208,7 +214,7 @@ class GuardedSocket(Guard):
     async def send_message(self, message: Any) -> None:
         """Send errors with the request's id in place of a traceback."""
         if message.msgtype == "ERROR":
-            METERS.errors += 1
+            METRICS.count("errors")
             log.error("message failed: %s", message.content["text"],
                       extra={"request": self.request_id, "remote": self.request.remote_ip})
             message.content = {"text": f"The message could not be handled (request {self.request_id}).",

@@ -1,48 +1,51 @@
-"""Sending pictures at the pace of the browser: at most two are in transit until one is acknowledged."""
+"""Sending frames at the pace of the browser: at most two are in transit until one is acknowledged."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-Picture = TypeVar("Picture")
+Frame = TypeVar("Frame")
 
 
-#: Pictures on their way at once: one being painted, one travelling. Measured on two cores: 21 frames a second and 45
-#: ms of lag (p95) with one, 28 and 43 with two.
+#: Frames in transit at once: one being painted, one travelling. Live mode keeps as many on their way. Measured there
+#: with `live_figures` of tests/benchmarks/browser_latency.py, 2026-11-26, two cores with other work, a round trip of
+#: 50 ms added on the way: 14 frames a second with one, 26 with two; without it 54 and 69, and a median lag of 14 and
+#: 17 ms.
 _MOST_IN_TRANSIT = 2
 
 
-class FramePacer(Generic[Picture]):
-    """Passes pictures to the browser; of those that wait, only the latest is sent.
+class FramePacer(Generic[Frame]):
+    """Passes frames to the browser; of those that wait, only the latest is sent.
 
     Without acknowledgements, a server that computes faster than the browser paints would fill the websocket, and the
-    picture would lag a second behind the knob.
+    picture would lag a second behind the knob. `on_idle` is called when the browser has acknowledged a frame and none
+    waits.
     """
 
-    def __init__(self, send: Callable[[int, Picture], None], idle: Callable[[], None]) -> None:
+    def __init__(self, send: Callable[[int, Frame], None], on_idle: Callable[[], None]) -> None:
         self._send = send
-        self._idle = idle
-        self._waiting: Picture | None = None
+        self._on_idle = on_idle
+        self._waiting: Frame | None = None
         self._sent = 0
         self._painted = 0
 
     @property
     def waits(self) -> bool:
-        """Whether the browser still owes an acknowledgement."""
+        """Whether as many frames are in transit as may be."""
         return self._sent - self._painted >= _MOST_IN_TRANSIT
 
-    def offer(self, picture: Picture) -> None:
-        """Send `picture` now, or as soon as the browser is ready, unless a newer one is offered before."""
+    def offer(self, frame: Frame) -> None:
+        """Send `frame` now, or as soon as the browser is ready, unless a newer one is offered before."""
         if self.waits:
-            self._waiting = picture
+            self._waiting = frame
             return
         self._waiting = None
         self._sent += 1
-        self._send(self._sent, picture)
+        self._send(self._sent, frame)
 
     def painted(self, number: object) -> None:
-        """The browser says that picture `number` is on the screen."""
+        """The browser says that frame `number` is on the screen."""
         if not isinstance(number, int) or not self._painted < number <= self._sent:
             return
         self._painted = number
@@ -59,4 +62,4 @@ class FramePacer(Generic[Picture]):
         if self._waiting is not None:
             self.offer(self._waiting)
         else:
-            self._idle()
+            self._on_idle()

@@ -30,7 +30,7 @@ def register(document: Document, model: str, receive: Receive) -> None:
     _RECEIVERS.setdefault(document, {})[model] = weakref.WeakMethod(receive)
 
 
-def take(connection: Any, content: dict[str, Any]) -> bool:
+def dispatch(connection: Any, content: dict[str, Any]) -> bool:
     """Pass a message on to its part, with the document locked; False if it is for Bokeh."""
     session = getattr(connection, "session", None)
     if session is None or not can_lock(session) or session.destroyed:

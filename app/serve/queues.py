@@ -21,8 +21,8 @@ from typing import TypeVar
 from granchain_core import Cancelled
 
 from .cpu_time import CpuTime
-from .meters import METERS
-from .priorities import begin, give_way, gives_way
+from .metrics import METRICS
+from .priorities import begin, has_lower_priority, lower_priority
 from .turns import TurnFlag
 
 Result = TypeVar("Result")
@@ -34,7 +34,7 @@ class Queue:
     """Work of one kind, first come, first served, on at most `workers` threads, each started when it is needed.
 
     The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
-    `patient` queue give way to others (priorities.py).
+    `low_priority` queue leave the processor to others (priorities.py).
 
     Where a queue has a `share`, at most that many pieces of one owner's work run or wait for a thread. Further ones
     join the queue, behind the work of others, as the owner's earlier ones end.
@@ -43,11 +43,11 @@ class Queue:
     would be given to the same thread, and wait although another thread could begin it.
     """
 
-    def __init__(self, name: str, workers: int, patient: bool = False, share: int | None = None) -> None:
+    def __init__(self, name: str, workers: int, low_priority: bool = False, share: int | None = None) -> None:
         self.name = name
         self.share = share
         self._workers = workers
-        self._patient = patient
+        self._low_priority = low_priority
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._numbers = count()
@@ -115,14 +115,14 @@ class Queue:
         begin(thread)
 
     def _serve(self) -> None:
-        if self._patient:
-            give_way()
+        if self._low_priority:
+            lower_priority()
         while True:
             work = self._given.get()
             work()
             del work  # or a waiting thread would keep objects of the visitor it served last
             with self._lock:
-                if gives_way() and not self._patient:  # this thread ends; the next work gets a new one
+                if has_lower_priority() and not self._low_priority:  # this thread ends; the next work gets a new one
                     self._threads.remove(threading.current_thread())
                     if self.waiting:
                         self.waiting -= 1
@@ -140,7 +140,7 @@ VISITORS = Queue("visitors", 1000)
 #: for the compiler keeps its thread.
 PICTURES = Queue("pictures", 200)
 #: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
-ANALYSES = Queue("analyses", 8, patient=True)
+ANALYSES = Queue("analyses", 8, low_priority=True)
 #: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody.
 FILES = Queue("files", 2)
 #: Loading kernels before a visitor asks.
@@ -149,10 +149,10 @@ LOADING = Queue("loading", 1)
 #: maps could take all threads and wait for curves that have none.
 CURVES = Queue("curves", 200)
 #: The computations of these curves. Each uses all cores, which the system divides among them.
-SWEEPS = Queue("sweeps", 8, patient=True)
-#: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper. One visitor can
-#: start all five, so two visitors could fill the queue: each has two at a time.
-LONG = Queue("long", 8, patient=True, share=2)
+SWEEPS = Queue("sweeps", 8, low_priority=True)
+#: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper, virtual
+#: experiments. One visitor can start all six, so two visitors could fill the queue: each has two at a time.
+LONG = Queue("long", 8, low_priority=True, share=2)
 #: Timings and hard cases, one at a time for all visitors: two timings at once would disturb each other.
 MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
@@ -266,7 +266,7 @@ class LatestWins:
     def _drain(self) -> None:
         while (work := self._next()) is not None:
             self._do(work)
-            if gives_way():
+            if has_lower_priority():
                 VISITORS.submit(self._drain)
                 return
 
@@ -281,7 +281,7 @@ class LatestWins:
                     if self._waiting is not None or self._closed:
                         break
         except Cancelled:
-            METERS.cancelled += 1
+            METRICS.count("cancelled")
         except Exception as error:
             self._report(error)
 

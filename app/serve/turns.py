@@ -19,7 +19,7 @@ from granchain_core.cores import usable_cores
 from granchain_core.stop import Stop
 
 from .cpu_time import CpuTime
-from .priorities import give_way
+from .priorities import lower_priority
 
 Result = TypeVar("Result")
 
@@ -123,19 +123,21 @@ class FairScheduler:
             self._running.discard(turn)
             self._grant()
 
-    def should_yield(self, turn: _Turn, is_new: bool) -> bool:
-        """Whether a computation has to give up its turn; `is_new` says whether it still counts as just begun.
+    def note_progress(self, turn: _Turn) -> None:
+        """The computation no longer counts as just begun, which makes room for another that has just begun."""
+        if turn.is_new:
+            with self._lock:
+                turn.is_new = False
+                self._grant()
+
+    def should_yield(self, turn: _Turn) -> bool:
+        """Whether a computation has to give up its turn; one that has just begun has not.
 
         It has to if another has a better claim, or if more than `at_once` compute and its visitor has used most.
         """
-        if is_new:
-            return False
         with self._lock:
-            if turn.is_new:
-                turn.is_new = False
-                self._grant()
             now = self._clock()
-            if now - turn.at < _TIME_SLICE:
+            if turn.is_new or now - turn.at < _TIME_SLICE:
                 return False
             mine = _Claim(refines=True, waited_little=True, used=turn.cpu_time.used)
             if any(other.claim(now) < mine for other in self._waiting):
@@ -215,8 +217,10 @@ class TurnFlag(Flag):
         if self._turn is None:
             return
         self._charge()
-        self._give_way()
-        if self._scheduler.should_yield(self._turn, self.is_new):
+        self._lower_priority()
+        if not self.is_new:
+            self._scheduler.note_progress(self._turn)
+        if self._scheduler.should_yield(self._turn):
             self._leave()
             self._enter()
 
@@ -257,13 +261,13 @@ class TurnFlag(Flag):
             self._spent = math.inf
             yield result
 
-    def _give_way(self) -> None:
+    def _lower_priority(self) -> None:
         """Lower the priority of this thread, unless its computation has only just begun."""
         if not self.is_new:
-            give_way()
+            lower_priority()
 
     def _enter(self) -> None:
-        self._give_way()
+        self._lower_priority()
         self._turn = self._scheduler.begin(self.cpu_time, self, self.is_new)
         self._began = time.thread_time()
 

@@ -14,7 +14,7 @@ Activity = tuple[str, str, str]
 
 def picture_activities(session: Session, busy: bool) -> list[Activity]:
     """The chain and its pictures, the live run, the steady state and its Lyapunov exponent."""
-    picture, live = session.picture, session.mode == "live"
+    picture, live = session.settled, session.mode == "live"
     running = COMPUTING if busy else READY
     return [
         ("chain, map, forces", running, f"from one {'live' if live else 'settled'} run"),
@@ -39,7 +39,7 @@ def _lyapunov(picture: Settled | None) -> tuple[str, str]:
 
 
 def _account(session: Session, busy: bool) -> tuple[str, str]:
-    picture = session.picture
+    picture = session.settled
     if not session.energy_account:
         return OFF, "switched off"
     if session.mode == "live":

@@ -32,7 +32,7 @@ class Page:
     def scene_changed(self) -> None:
         """The knobs have changed, or another scene was opened."""
 
-    def address_taken(self) -> None:
+    def address_applied(self) -> None:
         """The session became what an address says: a visit, or a step back or forward."""
 
     def picture_ready(self, picture: Settled) -> None:

@@ -54,7 +54,7 @@ class Host(Protocol):
     def failed(self, error: Exception) -> None:
         """Tell the visitor about a failure that has no place on its own page."""
 
-    def fault(self, error: Exception, sentence: str) -> None:
+    def report_fault(self, error: Exception, sentence: str) -> None:
         """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:

@@ -15,6 +15,8 @@ from ..frames import PERIODS, Frames, LiveWindow, samples_for
 from ..serve.cpu_time import CpuTime
 from ..serve.turns import TurnFlag
 
+#: Viewing time that the first step of a run, or the first after a pause, makes up for [s]: two frames of a screen.
+_FIRST_STEP = 0.03
 #: Longest viewing time [s] that one step makes up for: the run does not jump after its tab was hidden.
 _LONGEST_STEP = 0.1
 #: Longest time [s] that one step is to compute.
@@ -33,6 +35,7 @@ class LivePicture:
 class LiveRun:
     """One chain that keeps running, from rest or from `start`.
 
+    The chain itself is made at the first step: that may compile or load kernels, for which the event loop has no time.
     `step` and `advance` are called in a worker thread, which reads `scene`, the knobs that the next sample will have;
     everything else is used by the page. The run holds its `flag` while it computes.
     """
@@ -41,8 +44,8 @@ class LiveRun:
         self.scene = scene
         self.samples = samples_for(scene)
         self.flag = TurnFlag(cpu_time)
-        begin = None if start is None else at_phase_0(scene, start, self.flag)
-        self._chain = LiveChain(scene, samples=self.samples, start=begin, stop=self.flag)
+        self._first = scene, start
+        self._chain: LiveChain | None = None
         self._window = LiveWindow(self.samples)
         self._lock = threading.Lock()
         self._new_scene: Scene | None = None
@@ -79,7 +82,7 @@ class LiveRun:
         """
         rate = periods_per_second * self.samples
         now = time.perf_counter()
-        elapsed = 0.03 if self._last is None else min(now - self._last, _LONGEST_STEP)
+        elapsed = _FIRST_STEP if self._last is None else min(now - self._last, _LONGEST_STEP)
         self._owed = min(self._owed, 1.0) + elapsed * rate
         if self._owed < 1.0:
             with self.flag.released():
@@ -94,23 +97,29 @@ class LiveRun:
 
     def advance(self, samples: int) -> LivePicture:
         """The window after `samples` more samples."""
+        chain = self._chain = self._chain or self._made()
         with self._lock:
             scene, self._new_scene = self._new_scene, None
             reset, self._reset = self._reset, False
         if scene is not None:
-            self._chain.change(scene)
+            chain.change(scene)
         if reset:
-            self._chain.reset()
+            chain.reset()
             self._window = LiveWindow(self.samples)
             self._runs.clear()
             self._shown = 0
         self._owed = max(0.0, self._owed - samples)
         began = time.thread_time()
-        run = self._chain.advance(samples)
+        run = chain.advance(samples)
         self._most = max(1, int(samples * _LONGEST_COMPUTING / max(time.thread_time() - began, 1e-6)))
         self._shown += samples
         self._remember(run)
         return LivePicture(self._window.add(run), run, self._shown / self.samples)
+
+    def _made(self) -> LiveChain:
+        scene, start = self._first
+        begin = None if start is None else at_phase_0(scene, start, self.flag)
+        return LiveChain(scene, samples=self.samples, start=begin, stop=self.flag)
 
     def _remember(self, run: Run) -> None:
         if self._runs and self._runs[-1].displacement.shape[1] != run.displacement.shape[1]:

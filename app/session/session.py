@@ -43,7 +43,7 @@ class Session:
     place: dict[str, str] = field(default_factory=dict)
     speed: float = 1.0
     playing: bool = True
-    picture: Settled | None = None
+    settled: Settled | None = None
     started_from: State | None = None
     sentence: str = ""
     notice: str = ""
@@ -65,7 +65,7 @@ class Session:
         texts = {START: start_text(began), "story": self.story, QUESTION: self.question, **pin_texts(self.pins)}
         return encode(self.scene, view, texts)
 
-    def take_view(self, fields: Mapping[str, str]) -> None:
+    def apply_view(self, fields: Mapping[str, str]) -> None:
         """Take over the view settings of a link; one that is not among its fields gets its default."""
         for name, setting in VIEW.items():
             setattr(self, setting.attribute, setting.read(fields.get(name, setting.values[0])))
@@ -105,13 +105,13 @@ class Session:
     def choose(self, name: object) -> None:
         """Open another preset, in the same mode."""
         self.scene = scene(name if isinstance(name, str) else str(name)[:60])
-        self.picture = None
+        self.settled = None
         self.remembered.clear()
 
     def open(self, opened: Scene) -> None:
         """Show a scene, maybe of another preset, settled from rest."""
         if opened.name != self.scene.name:
-            self.picture = None
+            self.settled = None
             self.remembered.clear()
         self.scene, self.mode, self.start = opened, "settled", "rest"
 
@@ -136,9 +136,9 @@ class Session:
 
     def previous_state(self, scene: Scene) -> State | None:
         """The state from which the next settled picture, of `scene`, starts; None is rest."""
-        if self.start == "rest" or self.picture is None:
+        if self.start == "rest" or self.settled is None:
             return None
-        state = self.picture.state
+        state = self.settled.state
         return state if len(state.displacement) == scene.N else None
 
 

@@ -17,6 +17,8 @@ from granchain_core.input_checks import unknown_name
 from granchain_core.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
 
+from ..pictures.theme import THEMES
+
 VERSION = "1"
 #: What the curve's figure may draw: curves from rest and by sweeps, and the paper's stated features.
 CURVES = (*CURVE_STARTS, "features")
@@ -51,9 +53,9 @@ VIEW: dict[str, ViewField] = {
     "mode": ViewField("mode", ("settled", "live")),
     "start": ViewField("start", ("rest", "previous")),
     "scale": ViewField("scale", ("same", "fit")),
-    "curves": ViewField("curves", ("auto", *sorted({joined(some) for size in range(5)
+    "curves": ViewField("curves", ("auto", *sorted({joined(some) for size in range(len(CURVES) + 1)
                                                     for some in combinations(CURVES, size)}))),
-    "look": ViewField("theme", ("auto", "light", "dark", "projector")),
+    "look": ViewField("theme", ("auto", *THEMES)),
     "speed": ViewField("speed", tuple(f"{speed:g}" for speed in SPEEDS), float, lambda speed: f"{speed:g}"),
     "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }

@@ -131,7 +131,7 @@ class Task:
             sentence = (f"{self._title} failed because of an error in granchain ({type(error).__name__}); "
                         "please report it.")
             job.next_tick(self._end, "failed", sentence)
-            self._host.next_tick(self._host.fault, error, "" if self._failed is None else sentence)
+            self._host.next_tick(self._host.report_fault, error, "" if self._failed is None else sentence)
         else:
             job.next_tick(self._end, "done")
 

@@ -7,6 +7,7 @@ import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from panel.custom import JSComponent
@@ -16,6 +17,7 @@ import app.dashboard.layout  # noqa: F401  (makes every component known)
 from app.parts.component import Component
 from app.parts.figure_part import FigurePart
 from app.parts.result_figure import ResultFigure
+from app.serve import changes
 from granchain_core.kernels.compiling import cache, link_only
 
 
@@ -110,6 +112,24 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None
             assert theirs in fits | SHARED, f"{module} imports {name}"
 
 
+def components(of: type) -> Iterator[type]:
+    """All classes of components of the page."""
+    for one in of.__subclasses__():
+        yield from components(one)
+        yield one
+
+
+@pytest.mark.parametrize("part", sorted({one for one in components(Component) if one.__module__.startswith("app.")},
+                                        key=lambda one: one.__name__))
+def test_a_component_loads_only_styles_of_folders_that_it_may_import(part: Any) -> None:
+    """A page has the styles of app/parts and its own, none of another page's."""
+    folders = {path.read_text(encoding="utf-8"): path.parent for path in (ROOT / "app").rglob("*.css")}
+    mine = layer(part.__module__)
+    fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
+    for sheet in part._stylesheets:
+        assert folders[sheet].relative_to(ROOT / "app").as_posix().replace("/", ".") in fits
+
+
 def test_the_core_imports_nothing_of_the_app() -> None:
     assert [(m, name) for m in MODULES if m.startswith("granchain_core") for name in imports(m) if name.startswith("app")] == []
 
@@ -176,6 +196,31 @@ def test_private_attributes_of_others_are_used_where_a_table_says(module: str) -
 
 def test_the_tables_name_modules_that_are_there() -> None:
     assert PRIVATE and PRIVATE_OF_NUMBA and {*PRIVATE, *PRIVATE_OF_NUMBA} <= set(MODULES)
+
+
+#: Attributes that app/serve/changes.py uses of documented classes: Bokeh's documents, models and their events, Panel's
+#: state, Tornado's streams and locks, NumPy's arrays and what Python has.
+DOCUMENTED_ATTRIBUTES = {
+    "acquire", "add_done_callback", "append", "closed", "done", "result", "rpartition", "write", "state", "loaded",
+    "char", "dtype", "nbytes", "shape", "tobytes", "attr", "cols", "data", "document", "event_name", "id", "model",
+    "msg_data", "msg_type", "new", "session_context", "update", "encode", "extend", "items", "join",
+}
+
+
+def test_the_documentation_names_what_is_used_of_bokeh_without_an_underscore() -> None:
+    """Most attributes without one are documented; those that changes.py uses beyond that are in its row."""
+    module = "app.serve.changes"
+    (row,) = re.findall(r"^\| ([^|]+) \| `app/serve/changes.py` \|", (ROOT / "docs/dashboard.md").read_text(encoding="utf-8"), re.MULTILINE)
+    tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
+    names = [alias.asname or alias.name for node in tree.body if isinstance(node, ast.Import) for alias in node.names]
+    own = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)} | {"arrays", "connection"}
+    used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)
+            and ast.unparse(node.value).split(".")[0] not in ({"self", *names} - {"pn"})} | set(private_uses(module))
+    strings = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
+    documented = set(re.findall(r"`(\w+)`", row))
+    assert used - own - DOCUMENTED_ATTRIBUTES <= documented
+    assert documented <= used | strings
+    assert {name for needed in changes.NEEDED.values() for name in needed} <= documented & used
 
 
 def test_the_documentation_names_what_is_used_of_numba() -> None:

@@ -7,6 +7,8 @@ from axe_playwright_python.sync_playwright import Axe
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Page, expect
 
+from app.pictures.theme import THEMES
+
 POPOVERS = ("Help and keys (?)", "Export: pictures, tables, a program", "Link to this picture")
 
 
@@ -61,8 +63,8 @@ def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
     """
     if not page.evaluate("'axe' in window"):
         page.evaluate(Axe().axe_script)  # once: it is half a megabyte, and many places are looked at
-    found = page.evaluate(RUN, [within, ["dark", "projector"]])
-    return {look: what for look, what in found.items() if what}
+    found = page.evaluate(RUN, [within, list(THEMES)[1:]])
+    return {theme: what for theme, what in found.items() if what}
 
 
 @pytest.mark.long
@@ -76,7 +78,8 @@ def test_axe_finds_nothing(visit: Visit) -> None:
     assert list(violations(page, "#bar")) == ["dark"]
     page.add_style_tag(content=":root { --ink: #999 !important }")  # enough on dark cards
     found = violations(page, "#bar")
-    assert list(found) == ["light", "projector"] and all("color-contrast" in one for look in found.values() for one in look)
+    assert list(found) == [name for name, theme in THEMES.items() if theme.scheme == "light"]
+    assert all("color-contrast" in one for rules in found.values() for one in rules)
 
 
 def everywhere(page: Page) -> dict[str, dict[str, list[str]]]:

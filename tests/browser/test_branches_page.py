@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from bokeh_figures import place, source, tooltips
+from bokeh_figures import hover, place, source
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from server import at_rest, resize, until
@@ -125,14 +125,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
         columns = source(page, "branches", name)
         return place(page, "branches", columns["x"][row], columns["y"][row])
 
-    def told(name: str, row: int, words: str) -> bool:
-        """The last of the branch is still drawn, so one hover may be lost."""
-        page.mouse.move(0, 0)
-        page.mouse.move(*at(name, row), steps=3)
-        page.wait_for_timeout(100)
-        return words in tooltips(page)
-
-    until(page, lambda: told("period_doubling", 0, "period doubling at 255.79") and "±" in tooltips(page))
+    hover(page, lambda: at("period_doubling", 0), "period doubling at 255.79", "±")
     page.mouse.click(*at("period_doubling", 0))
     expect(sheet.locator(".chosen")).to_contain_text(re.compile(r"period doubling at 255\.(79|80)"))
     expect(sheet.get_by_role("button", name="follow the doubled branch")).to_be_visible()
@@ -140,7 +133,7 @@ def test_hover_tells_and_a_click_loads_orbits_stable_and_unstable(visit: Visit) 
     for stable, words, regime in ((0, "live on the main page", "live, drive period"), (1, "settled on the main page", "period 1")):
         row = page.evaluate(LONELY, stable)
         frequency = source(page, "branches", "orbits")["x"][row]
-        until(page, lambda row=row: told("orbits", row, "elastic output force"))
+        hover(page, lambda row=row: at("orbits", row), "elastic output force")
         page.wait_for_timeout(600)  # two clicks within 300 ms are a double click to Bokeh, wherever they are
         page.mouse.click(*at("orbits", row))
         expect(sheet.locator(".chosen")).to_contain_text(words)

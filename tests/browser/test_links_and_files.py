@@ -36,7 +36,7 @@ def test_the_address_follows_the_page_and_a_reload_keeps_everything(visit: Visit
     expect(page.get_by_label("sweep down")).to_be_checked()
     page.get_by_role("button", name="fit", exact=True).click()
     page.locator("select.start").select_option("previous")
-    page.get_by_role("button", name="Theme: light, dark, projector").click()
+    page.get_by_role("button", name="Theme: ").click()
     page.get_by_role("tab", name="effects").click()
     page.wait_for_function("location.search.includes('tab=effects') && location.search.includes('look=dark')"
                            " && location.search.includes('curves=rest.down')")

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from bokeh_figures import place, source, tooltips
+from bokeh_figures import hover, place, source
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 from server import until
@@ -46,14 +46,7 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
 
     row = max(range(len(cells["x"])), key=lambda i: (1900 < cells["x"][i] < 2300) * (cells["spacing"][i] == 1) * cells["y"][i] * (cells["y"][i] < 5))
     at = place(page, "map", cells["x"][row], cells["y"][row])
-
-    def told() -> bool:
-        page.mouse.move(0, 0)
-        page.mouse.move(*at, steps=3)
-        page.wait_for_timeout(100)
-        return cells["tooltip"][row] in tooltips(page)
-
-    until(page, told)
+    hover(page, lambda: at, cells["tooltip"][row])
     for words in ("Hz", "m: ", "N"):
         assert words in cells["tooltip"][row]
     before = field(page, "f").input_value(), field(page, "A0").input_value()

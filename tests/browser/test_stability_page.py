@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from bokeh_figures import place, source, tooltips
+from bokeh_figures import hover, place, source, tooltips
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Locator, Page, expect
 from server import resize, until
@@ -87,14 +87,7 @@ def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Vis
     sheet = opened(page)
     until(page, lambda: marks(page, "within") == 22)
     within = source(page, "multipliers", "within")
-
-    def told() -> bool:
-        page.mouse.move(0, 0)
-        page.mouse.move(*place(page, "multipliers", within["x"][0], within["y"][0]), steps=3)
-        page.wait_for_timeout(100)
-        return "−0.2882" in tooltips(page)
-
-    until(page, told)
+    hover(page, lambda: place(page, "multipliers", within["x"][0], within["y"][0]), "−0.2882")
     for words in ("0.36", "of the drive frequency", "decays by a factor e in 0.981 drive periods (2.89 ms)"):
         assert words in tooltips(page)
     expect(sheet.locator(".readout")).to_contain_text("μ = −0.2882")

@@ -17,7 +17,7 @@ class Dashboard(FakeHost, Controller):
 
     busy, awaiting_picture, curve_computing = Controller.busy, Controller.awaiting_picture, Controller.curve_computing
     call_later, failed, complete_curve = Controller.call_later, Controller.failed, Controller.complete_curve
-    on_close, fault = Controller.on_close, Controller.fault
+    on_close, report_fault = Controller.on_close, Controller.report_fault
 
     def __init__(self) -> None:
         FakeHost.__init__(self)

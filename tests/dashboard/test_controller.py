@@ -23,7 +23,7 @@ from app.frames import Extremes, settled_frames
 from app.pictures.theme import THEMES, Theme
 from app.serve.compiler import COMPILER, Compiler
 from app.serve.limits import LARGEST_UPLOAD
-from app.serve.meters import METERS
+from app.serve.metrics import METRICS
 from app.session.budget import RefusedPicture
 from app.session.hooks import all_actions
 from app.session.starts import MOST_BEADS
@@ -139,15 +139,15 @@ def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeyp
     session = dashboard.session
     session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
     session.set_start("previous")
-    session.picture = before = settle(chain, samples=8)
+    session.settled = before = settle(chain, samples=8)
     session.energy_account = True
     dashboard.pictures.compute()
     assert asked.wait(60)
-    session.picture, session.energy_account, session.insisted = None, False, chain
+    session.settled, session.energy_account, session.insisted = None, False, chain
     changed.set()
     dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
-    assert session.picture is not None and session.picture.run.start == GIVEN_STATE
-    assert session.started_from is before.state and session.picture.run.energy_residual is not None
+    assert session.settled is not None and session.settled.run.start == GIVEN_STATE
+    assert session.started_from is before.state and session.settled.run.energy_residual is not None
 
 
 def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,
@@ -285,8 +285,8 @@ def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monke
     try:
         for late, wait, said in ((0.4, 0.0, True), (0.0, 0.1, False), (0.0, 0.4, True)):
             for _ in range(40):
-                METERS.loop_late(late)
-            monkeypatch.setattr(METERS, "turn_wait", lambda wait=wait: wait)
+                METRICS.lagged(late)
+            monkeypatch.setattr(METRICS, "turn_wait", lambda wait=wait: wait)
             dashboard.pictures.compute()
             clock[0] += 1.2
             dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
@@ -294,4 +294,4 @@ def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monke
             assert words == ("The server is busy: pictures follow every 1.2 s." if said else "")
     finally:
         for _ in range(40):
-            METERS.loop_late(0.0)
+            METRICS.lagged(0.0)

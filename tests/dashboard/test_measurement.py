@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import base64
+import gc
 import re
+import threading
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +16,13 @@ import numpy as np
 import pytest
 from headless_dashboard import Dashboard
 
-from app.dashboard.measurement import SAMPLES
+from app.dashboard import measurement
+from app.dashboard.measurement import SAMPLES, MeasurementActions
 from app.dashboard.show import show_settled
 from app.frames import samples_for
 from app.pictures.measured import measured_columns
-from granchain_core import CurvePoint, Scene, scene, settle
+from app.serve.queues import LONG
+from granchain_core import CurvePoint, Scene, scene, settle, settling
 from granchain_core.experiment import Measured, compared, read_data
 from granchain_core.experiment.formats import FORMATS
 from granchain_core.hdf5 import VERSIONS, seal
@@ -156,8 +161,8 @@ def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> No
 def show(dashboard: Dashboard) -> None:
     """A settled picture, as the worker that computes it hands it over."""
     chain = dashboard.session.scene
-    dashboard.session.picture = settle(chain, samples=samples_for(chain))
-    show_settled(dashboard.views, 1, dashboard.session.picture)
+    dashboard.session.settled = settle(chain, samples=samples_for(chain))
+    show_settled(dashboard.views, 1, dashboard.session.settled)
 
 
 def with_series(dashboard: Dashboard, chain: Scene) -> str:
@@ -178,10 +183,10 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     lines = [[one for one in plot.renderers if one.level == "overlay"] for plot in (trains.left, trains.right)]
     assert [len(one) for one in lines] == [1, 1]
     assert all(len(one[0].data_source.data["time"]) > 1000 for one in lines)
-    preview = replace(dashboard.session.picture, final=False)  # of knobs that have moved
+    preview = replace(dashboard.session.settled, final=False)  # of knobs that have moved
     dashboard.files.picture_ready(preview)
     assert dashboard.views.tabs.state["misfit"] is None
-    dashboard.files.picture_ready(dashboard.session.picture)
+    dashboard.files.picture_ready(dashboard.session.settled)
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
     dashboard.received({"do": "csv-remove"})
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
@@ -215,6 +220,57 @@ def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashb
     show(dashboard)
     assert "virtual experiment, nothing measured" in after(dashboard, {"do": "csv-virtual"}, "understood")
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
+
+
+def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It settles a chain, in a queue where each visitor has a share; two threads read and write the files of all."""
+    threads: dict[str, str] = {}
+
+    def noting(of: str, original: Any, *words: Any, **named: Any) -> Any:
+        threads[of] = threading.current_thread().name.split()[0]
+        return original(*words, **named)
+
+    for name in ("settling", "read_data"):
+        monkeypatch.setattr(measurement, name, partial(noting, name, getattr(measurement, name)))
+    show(dashboard)
+    assert "virtual experiment" in after(dashboard, {"do": "csv-virtual"}, "understood")
+    assert threads == {"settling": "long", "read_data": "files"}
+
+
+def test_a_virtual_experiment_that_does_not_settle_is_given_up(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(measurement, "WHOLE_PICTURE", -1.0)
+    show(dashboard)
+    assert after(dashboard, {"do": "csv-virtual"}, "understood").endswith("so the virtual experiment was not made.")
+
+
+def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, read = threading.Event(), threading.Event()
+
+    def slow(*words: Any, **named: Any) -> Any:
+        begun.set()
+        assert read.wait(20)
+        return settling(*words, **named)
+
+    monkeypatch.setattr(measurement, "settling", slow)
+    dashboard.received({"do": "csv-virtual"})
+    assert begun.wait(20)
+    assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: ")
+    read.set()
+    dashboard.run_callbacks_until(lambda: not LONG.busy)
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert dashboard.views.tabs.state["understood"].startswith("mine.csv: ")
+
+
+def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard: Dashboard) -> None:
+    def kept() -> bool:
+        found = [one for one in gc.get_objects() if isinstance(one, MeasurementActions) and one._host is dashboard]
+        return any(isinstance(value, bytes) and len(value) > 0 for one in found for value in vars(one).values())
+
+    assert after(dashboard, sent(FILE), "understood") and not kept()
+    dashboard.received({"do": "csv-remove"})
+    assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question") and kept()
+    dashboard.received({"do": "csv-remove"})
+    assert not kept()
 
 
 def test_a_question_about_other_data_is_not_answered(dashboard: Dashboard) -> None:

@@ -12,6 +12,7 @@ import app
 from app.pictures.force_lines import DRIVE, INPUT, OUTPUT
 from app.pictures.theme import THEMES, Theme, style_sheet
 from app.session.share import BROWSER_FIELDS, VIEW_VALUES
+from granchain import figure
 
 PARTS = Path(app.__file__).parent / "parts"
 
@@ -31,8 +32,8 @@ def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
     assert style.pop("color-scheme") == theme.scheme
     assert (style.pop("--small"), style.pop("--type")) == (f"{theme.small}px", f"{theme.type}px")
     assert style == {f"--{field.name.replace('_', '-')}": str(getattr(theme, field.name)) for field in fields(Theme)
-                     if field.name not in ("scheme", "small", "type")}
-    assert (theme.drive, theme.input, theme.output) == (DRIVE.colour, INPUT.colour, OUTPUT.colour)
+                     if field.name not in ("scheme", "small", "type")} | {
+        "--drive": DRIVE.colour, "--input": INPUT.colour, "--output": OUTPUT.colour}
 
 
 def test_no_theme_but_the_projectors_fixes_the_size_of_words() -> None:
@@ -55,7 +56,13 @@ def names_in(script: str, constant: str) -> tuple[str, ...]:
 
 
 def test_a_theme_is_known_everywhere() -> None:
+    """Links, tooltip, command line and screenshots take the names from these."""
     assert tuple(THEMES) == VIEW_VALUES["look"][1:] == names_in("page.js", "THEMES")
+
+
+def test_the_docstring_names_all_themes() -> None:
+    (words,) = re.findall(r"theme : str\n +(.*)\.\n", figure.__doc__ or "")
+    assert re.findall(r'"(\w+)"', words) == list(THEMES)
 
 
 def test_the_browser_keeps_the_fields_of_a_link_that_only_it_knows() -> None:

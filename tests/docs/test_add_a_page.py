@@ -47,7 +47,7 @@ from app.scripts import FILES
 
 dashboard = Controller(Document(), Session())
 picture = SimpleNamespace(run=SimpleNamespace(max_output_force=1.0, max_input_force=4.0), final=False)
-dashboard.session.picture = picture
+dashboard.session.settled = picture
 page = next(one for one in dashboard.pages if type(one).__name__ == "TransmissionPage")
 page.picture_ready(picture)
 print(dashboard.views.overlays["transmission"].state["sentence"])

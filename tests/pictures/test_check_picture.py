@@ -7,7 +7,8 @@ import pytest
 from bokeh.models import GlyphRenderer, Legend, LogScale
 
 from app.pictures.check import check
-from app.pictures.theme import THEMES, apply_theme
+from app.pictures.theme import THEMES
+from app.pictures.themed import apply_theme
 from granchain_core.hard import Picture, Trace
 
 LIGHT = THEMES["light"]
@@ -40,15 +41,15 @@ def test_a_logarithm_is_drawn_as_the_number_it_is_of() -> None:
     np.testing.assert_allclose(data["0"], [1e-8, 1e-12])
 
 
-@pytest.mark.parametrize("look", THEMES)
-def test_a_look_is_the_same_whether_drawn_in_it_or_dressed_later(look: str) -> None:
+@pytest.mark.parametrize("name", THEMES)
+def test_a_theme_is_the_same_whether_drawn_in_it_or_applied_later(name: str) -> None:
     picture = Picture(np.arange(3), "t", "F", tuple(
         Trace(label, np.arange(3.0)) for label in ("true", "granchain", "granchain, coarse", "Euler", "leapfrog")))
 
     def seen(plot: object) -> list[object]:
         return [(one.glyph.line_color, one.glyph.line_width, tuple(one.glyph.line_dash)) for one in lines(plot).values()]
 
-    theme = THEMES[look]
+    theme = THEMES[name]
     drawn = seen(check(picture, theme))
     assert drawn == seen(apply_theme(check(picture, LIGHT), theme))
     assert len(set(drawn)) == 5

@@ -82,12 +82,12 @@ def test_a_trail_is_of_one_scene_and_one_period_and_has_no_repetitions() -> None
     assert trail.before(1) == []
 
 
-@pytest.mark.parametrize("look", THEMES)
-def test_the_figure_of_an_orbit_holds_its_state(look: str) -> None:
+@pytest.mark.parametrize("theme", THEMES)
+def test_the_figure_of_an_orbit_holds_its_state(theme: str) -> None:
     state = plane_state(orbit(), rank=0)
-    plot = multipliers(orbit(), THEMES[look], rank=0)
+    plot = multipliers(orbit(), THEMES[theme], rank=0)
     for name, properties in state.items():
         (key, value), = properties.items()
         assert getattr(plot.select_one({"name": name}), key) == value
     assert [item.label.value for item in plot.legend[0].items if item.visible] == ["dies out"]
-    assert plot.xaxis[0].axis_label and plane(state, THEMES[look], compact=True).xaxis[0].axis_label is None
+    assert plot.xaxis[0].axis_label and plane(state, THEMES[theme], compact=True).xaxis[0].axis_label is None

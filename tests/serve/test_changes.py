@@ -24,7 +24,7 @@ from missing_attribute import hide
 from panel.models.esm import ESMEvent
 
 from app.serve import changes
-from app.serve.changes import change, written
+from app.serve.changes import encode_patch, set_properties
 
 pytestmark = pytest.mark.quick
 
@@ -84,7 +84,7 @@ def test_a_message_is_the_one_that_bokeh_writes() -> None:
     document = Document()
     events = events_of(document)
     theirs = Protocol().create("PATCH-DOC", events)
-    data = written(events)
+    data = encode_patch(events)
     assert data is not None
     buffers = {one.ref["id"]: bytes(one.to_bytes()) for one in theirs.buffers}
     expected = without_ids(json.loads(theirs.content_json), buffers)
@@ -102,7 +102,7 @@ def test_what_is_not_plain_is_left_to_bokeh() -> None:
     document = Document()
     words = Div()
     document.add_root(words)
-    assert written([ModelChangedEvent(document, words, "tags", [Range1d()])]) is None
+    assert encode_patch([ModelChangedEvent(document, words, "tags", [Range1d()])]) is None
 
 
 def test_a_change_where_nothing_is_gathered_is_the_models_own() -> None:
@@ -111,7 +111,7 @@ def test_a_change_where_nothing_is_gathered_is_the_models_own() -> None:
     document.add_root(axis)
     seen: list[Any] = []
     axis.on_change("start", lambda _attribute, _old, new: seen.append(new))
-    change(axis, start=3)
+    set_properties(axis, start=3)
     assert axis.start == 3 and seen == [3]
 
 
@@ -121,9 +121,29 @@ def test_of_two_changes_of_a_property_the_last_is_kept_and_an_equal_one_is_none(
     document.add_root(axis)
     document.callbacks.hold()
     for start, end in ((2, 7), (4, 7)):
-        change(axis, start=start, end=end)
+        set_properties(axis, start=start, end=end)
     events = [(one.attr, one.new) for one in document.callbacks._held_events]
     assert events == [("start", 4)] and axis.start == 4
+
+
+@pytest.mark.parametrize("path", changes.NEEDED)
+def test_a_release_without_what_is_needed_is_noticed(path: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert changes.is_complete()
+    for name in changes.NEEDED[path]:
+        with monkeypatch.context() as patch:
+            patch.delattr(f"{path}.{name}")
+            assert not changes.is_complete()
+
+
+@in_a_thread
+def test_answers_come_where_something_needed_is_missing(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bokeh sends the changes itself."""
+    monkeypatch.setattr(changes, "_COMPLETE", False)
+    monkeypatch.setattr(changes, "_send", lambda *_: pytest.fail("gathered"))
+    session = pull_session(url=served.address)
+    ask(session, "first")
+    wait_for(session, "first, yes")
+    session.close()
 
 
 @pytest.mark.parametrize(("owner", "name"), [(ServerSession, "_subscribed_connections"), (WSHandler, "ws_connection"),

@@ -16,6 +16,7 @@ from tornado.ioloop import IOLoop
 from tornado.netutil import bind_sockets
 from tornado.web import Application, StaticFileHandler
 
+from app.serve import compressed as module
 from app.serve.compressed import compressed
 from app.serve.guard import Rules, guarded
 
@@ -97,3 +98,14 @@ def test_a_file_is_compressed_once_until_it_changes(port: int, tmp_path: Path) -
 
 def test_a_file_that_is_not_there_is_none(port: int) -> None:
     assert ask(port, "b.js", Accept_Encoding="gzip")[0] == 404
+
+
+def test_addresses_that_are_refused_leave_nothing_in_memory(port: int) -> None:
+    """An absolute path is a file of nobody's: Tornado refuses it, and a stranger may send as many as there are."""
+    def remembered() -> int:
+        return sum(len(one) for name, one in vars(module).items() if isinstance(one, dict) and not name.startswith("__"))
+
+    before = remembered()
+    for number in range(20):
+        assert ask(port, f"/x{number:0500d}")[0] == 403
+    assert remembered() == before

@@ -11,16 +11,28 @@ import pytest
 from event_loop import run_async
 
 from app.serve import guard
-from app.serve.message_rules import DEEPEST, RefusedMessage, check
+from app.serve.message_rules import DEEPEST, LARGEST_HEADER, REPORTED_PROPERTIES, UPLOAD, RefusedMessage, check
 
 pytestmark = pytest.mark.quick
 
 ASKED = json.dumps({"msgid": "1", "msgtype": "PATCH-DOC"})
 
 
-def content(value: Any, kind: str = "ModelChanged") -> str:
+def content(value: Any, kind: str = "MessageSent") -> str:
+    """An event with a value."""
+    return json.dumps({"events": [{"kind": kind, "msg_type": "bokeh_event", "msg_data": value}]})
+
+
+def changed(name: object, value: object) -> str:
     """A change of one property to a value."""
-    return json.dumps({"events": [{"kind": kind, "model": {"id": "p1"}, "attr": "tags", "new": value}]})
+    return json.dumps({"events": [{"kind": "ModelChanged", "model": {"id": "p1"}, "attr": name, "new": value}]})
+
+
+def uploaded(do: str, *more: list[str]) -> str:
+    """A message of a part with a file of 200 kB."""
+    entries = [["do", do], ["name", "mine.csv"], ["content", "A" * 200_000], *more]
+    values = [["model", {"id": "p1"}], ["data", {"type": "map", "entries": entries}]]
+    return content({"type": "event", "name": "data_event", "values": {"type": "map", "entries": values}})
 
 
 def nested(depth: int) -> list[Any]:
@@ -42,6 +54,36 @@ def test_plain_values_pass(value: Any) -> None:
 def test_values_that_no_page_sends_are_refused(value: Any) -> None:
     with pytest.raises(RefusedMessage, match="too deep" if isinstance(value, list) else "of a kind that no page sends"):
         check(ASKED, content(value))
+
+
+@pytest.mark.parametrize("name", sorted(REPORTED_PROPERTIES))
+@pytest.mark.parametrize("value", [413, 0.5, None])
+def test_a_figure_reports_its_size(name: str, value: float | None) -> None:
+    check(ASKED, changed(name, value))
+
+
+@pytest.mark.parametrize("name", ["tags", "name", "data", "children", "state", "subscribed_events", "js_property_callbacks", "title",
+                                  "start", "inner_width ", "", None, 5, ["inner_width"], {"type": "map", "entries": []}])
+def test_no_other_property_is_set_by_a_browser(name: object) -> None:
+    """Bokeh keeps what a browser writes into `tags` of any model: 60 messages would take half a gigabyte."""
+    with pytest.raises(RefusedMessage, match="property that no page reports"):
+        check(ASKED, changed(name, 1))
+
+
+@pytest.mark.parametrize("value", ["text", [1], {"type": "number", "value": "nan"}, {"type": "map", "entries": []}])
+def test_a_size_is_a_number(value: object) -> None:
+    with pytest.raises(RefusedMessage, match="no number"):
+        check(ASKED, changed("inner_width", value))
+
+
+def test_only_an_upload_is_long() -> None:
+    check(ASKED, uploaded(UPLOAD))
+    for given in (uploaded("go"), uploaded(UPLOAD, ["more", "text"]), content("x" * 200_000), changed("tags", "x" * 200_000),
+                  json.dumps({"events": [json.loads(uploaded(UPLOAD))["events"][0]] * 2})):
+        with pytest.raises(RefusedMessage, match="too long a message"):
+            check(ASKED, given)
+    with pytest.raises(RefusedMessage, match="too long a message"):
+        check(json.dumps({"msgid": "1", "msgtype": "PULL-DOC-REQ"}), json.dumps({"a": "x" * 200_000}))
 
 
 @pytest.mark.parametrize(("header", "given", "why"), [
@@ -88,6 +130,14 @@ def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken()
 
     run_async(send())
     assert one.taken == list(good) and one.closed == 1008
+
+
+@pytest.mark.parametrize("frames", [("x" * (LARGEST_HEADER + 1),), (ASKED, "x" * (LARGEST_HEADER + 1))])
+def test_a_long_header_closes_the_connection_before_the_content_comes(frames: tuple[str, ...]) -> None:
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+    for frame in frames:
+        one.on_message(frame)
+    assert one.taken == [] and one.closed == 1008
 
 
 def test_a_connection_that_is_said_to_be_closed_twice_is_closed_once() -> None:

@@ -15,7 +15,7 @@ from event_loop import run_async
 from tornado.ioloop import IOLoop
 
 from app.serve.channel import Channel, run_locked
-from app.serve.part_messages import register, take
+from app.serve.part_messages import dispatch, register
 
 pytestmark = pytest.mark.quick
 
@@ -55,7 +55,7 @@ def heard(sent: dict[str, Any]) -> tuple[bool, list[Any]]:
     register(connection.session.document, "p1", part.hear)
 
     async def send() -> bool:
-        return take(connection, sent)
+        return dispatch(connection, sent)
 
     return run_async(send()), part.heard
 
@@ -81,7 +81,7 @@ def test_anything_else_is_left_to_bokeh(sent: dict[str, Any]) -> None:
 def test_a_part_that_is_gone_is_not_kept_and_hears_nothing() -> None:
     connection = Connection()
     register(connection.session.document, "p1", Part().hear)
-    assert not take(connection, content(VALUE))
+    assert not dispatch(connection, content(VALUE))
 
 
 def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from app.serve.cpu_time import CpuTime
-from app.serve.priorities import give_way, gives_way
+from app.serve.priorities import has_lower_priority, lower_priority
 from app.serve.queues import LatestWins, Queue
 from app.serve.turns import FairScheduler, TurnFlag
 
@@ -55,7 +55,7 @@ def test_work_waiting_for_a_thread_that_ends_is_done_in_its_order() -> None:
     def long() -> None:
         begun.set()
         assert go.wait(60.0)
-        give_way()
+        lower_priority()
 
     queue.submit(long)
     assert begun.wait(60.0)
@@ -82,7 +82,7 @@ def test_the_next_picture_of_a_visitor_does_not_give_way_with_the_last_one() -> 
         return results
 
     for _ in range(3):
-        jobs.submit(work(give_way))
+        jobs.submit(work(lower_priority))
         end = time.monotonic() + 60.0
         while jobs.busy:
             assert time.monotonic() < end
@@ -93,5 +93,5 @@ def test_the_next_picture_of_a_visitor_does_not_give_way_with_the_last_one() -> 
 def test_the_thread_of_the_event_loop_never_gives_way() -> None:
     assert threading.current_thread() is threading.main_thread()
     before = niceness() if sys.platform == "linux" else 0
-    give_way()
-    assert not gives_way() and (sys.platform != "linux" or niceness() == before)
+    lower_priority()
+    assert not has_lower_priority() and (sys.platform != "linux" or niceness() == before)

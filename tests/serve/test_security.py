@@ -25,7 +25,8 @@ from app.pages.analysis import questions
 from app.serve import guard
 from app.serve.compiler import Compiler
 from app.serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
-from app.serve.meters import Metrics
+from app.serve.message_rules import LARGEST_PLAIN_CONTENT
+from app.serve.metrics import MetricsPage
 from app.serve.queues import LONG
 from app.server import Access
 from app.session import starts
@@ -50,13 +51,14 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
         "a request's body": f"{server.BODY_TIME} s, {server.LARGEST_BODY // 1000} kB",
         "a connection that sends nothing": f"{server.IDLE_TIME} s",
         "a websocket that does not answer pings": f"{server.PING_INTERVAL} to {2 * server.PING_INTERVAL} s",
-        "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {LARGEST_UPLOAD / 1e6:g} MB in base64",
-        "websocket frames": f"{guard.FRAMES_A_SECOND:g} a second, {guard.FRAMES_AT_ONCE:g} at once; then the connection is closed "
+        "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {LARGEST_UPLOAD / 1e6:g} MB in base64; "
+                               f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
+        "websocket frames": f"{guard.FRAME_RATE:g} a second, {guard.FRAME_BURST:g} at once; then the connection is closed "
                             "(1008)",
         "a link": f"{LONGEST} characters",
         "pages at once": f"{Access().most_visitors}",
-        "long computations of a visitor at once": f"{LONG.share} (maps, searches, branches, analyses, figures of the paper); "
-                                                  "more wait",
+        "long computations of a visitor at once": f"{LONG.share} (maps, searches, branches, analyses, figures of the paper, virtual "
+                                                  "experiments); more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
     } == LIMITS
@@ -80,18 +82,33 @@ def dashboard() -> Iterator[Listening]:
     one.stop()
 
 
+#: The whole policy of contents. No source is another host or a bare scheme of the network, so that data can neither
+#: come from elsewhere nor go there.
+POLICY = {
+    "default-src": {"'self'"}, "script-src": {"'self'", "'unsafe-inline'", "'unsafe-eval'", "blob:"},
+    "style-src": {"'self'", "'unsafe-inline'"}, "img-src": {"'self'", "data:", "blob:"}, "font-src": {"'self'", "data:"},
+    "connect-src": {"'self'", "blob:", "data:"}, "worker-src": {"'self'", "blob:"}, "object-src": {"'none'"},
+    "base-uri": {"'self'"}, "form-action": {"'self'"}, "frame-ancestors": {"'self'"},
+}
+
+
+def policy(header: str) -> dict[str, set[str]]:
+    """The sources of each directive."""
+    return {name: set(sources) for name, *sources in (one.split() for one in header.split(";"))}
+
+
 def test_every_answer_has_its_headers(dashboard: Listening) -> None:
     for path in ("/", "/liveness", "/nothing", "/static/js/bokeh.min.js", "/metrics", "/favicon.ico"):
         headers = dashboard.ask(path)[1]
         assert headers["X-Content-Type-Options"] == "nosniff", path
-        assert "frame-ancestors 'self'" in headers["Content-Security-Policy"] and "object-src 'none'" in headers["Content-Security-Policy"]
+        assert policy(headers["Content-Security-Policy"]) == POLICY, path
         assert headers["X-Frame-Options"] == "SAMEORIGIN" and re.fullmatch("[0-9a-f]{12}", headers["X-Request-Id"])
         assert headers["Server"] == "granchain"
 
 
 def test_embedding_is_allowed_where_it_is_asked_for() -> None:
     headers = guard.Rules(embedding=("https://courses.example.org",)).headers()
-    assert "frame-ancestors 'self' https://courses.example.org" in headers["Content-Security-Policy"]
+    assert policy(headers["Content-Security-Policy"]) == {**POLICY, "frame-ancestors": {"'self'", "https://courses.example.org"}}
     assert "X-Frame-Options" not in headers
 
 
@@ -157,7 +174,7 @@ def test_an_error_has_an_id_that_is_in_the_log_and_no_traceback(dashboard: Liste
     def fails(*_: object) -> Any:
         raise ZeroDivisionError("the words of an error of ours")
 
-    monkeypatch.setattr("app.serve.meters.METERS.text", fails)
+    monkeypatch.setattr("app.serve.metrics.METRICS.text", fails)
     with caplog.at_level(logging.WARNING, logger="granchain.requests"):
         status, headers, text = dashboard.ask("/metrics")
     assert status == 500 and headers["X-Request-Id"] in text
@@ -217,10 +234,10 @@ def test_metrics_are_for_known_private_addresses(remote_ip: str | None, allowed:
     """Tornado says 0.0.0.0 where it does not know the address."""
     asked = SimpleNamespace(request=SimpleNamespace(remote_ip=remote_ip), set_header=lambda *_: None, write=lambda _: None)
     if allowed:
-        Metrics.get(asked)  # type: ignore[arg-type]
+        MetricsPage.get(asked)  # type: ignore[arg-type]
     else:
         with pytest.raises(HTTPError, match="403"):
-            Metrics.get(asked)  # type: ignore[arg-type]
+            MetricsPage.get(asked)  # type: ignore[arg-type]
 
 
 def test_too_large_a_body_is_refused(dashboard: Listening) -> None:
@@ -261,7 +278,7 @@ def test_a_flood_of_messages_closes_the_connection(monkeypatch: pytest.MonkeyPat
 
     run_async(flood())
     # what is left of every message after a millisecond's allowance empties the store
-    assert one.closed == 1008 and one.taken == pytest.approx(guard.FRAMES_AT_ONCE / (1.0 - 1e-3 * guard.FRAMES_A_SECOND), rel=1e-3)
+    assert one.closed == 1008 and one.taken == pytest.approx(guard.FRAME_BURST / (1.0 - 1e-3 * guard.FRAME_RATE), rel=1e-3)
 
 
 def test_with_basic_auth_a_page_asks_who_it_is(tmp_path: Any) -> None:

@@ -21,7 +21,7 @@ from app.serve.queues import PICTURES, VISITORS
 from app.server import Access
 from granchain_core import OverBudget, scene
 from granchain_core.run.budget import refuse_long_picture
-from tools.visitors.viewer import Viewer, query_of
+from tools.visitors.visitor import Visitor, query_of
 
 
 def alive(*kinds: type) -> weakref.WeakSet[Any]:
@@ -30,14 +30,14 @@ def alive(*kinds: type) -> weakref.WeakSet[Any]:
     return weakref.WeakSet(one for one in gc.get_objects() if issubclass(type(one), kinds))
 
 
-async def visit(address: str, query: str = "", moves: int = 2) -> Viewer:
+async def visit(address: str, query: str = "", moves: int = 2) -> Visitor:
     """Open, move and leave."""
-    viewer = Viewer(address, query)
-    await viewer.open()
+    visitor = Visitor(address, query)
+    await visitor.open()
     for number in range(moves):
-        assert await viewer.move("f", 400.51 + number) is not None
-    await viewer.leave()
-    return viewer
+        assert await visitor.move("f", 400.51 + number) is not None
+    await visitor.leave()
+    return visitor
 
 
 def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) -> None:
@@ -61,20 +61,20 @@ def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) ->
 
 
 def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit() -> None:
-    """The bomb of ten thousand beads at 0.1 Hz: refused, insisted on, and left."""
+    """A heavy client, ten thousand beads at 0.1 Hz: refused, insisted on, and left."""
 
     async def insist(address: str) -> str:
-        viewer = Viewer(address, query_of(N=10000, f=0.1, A0=1e-4))
-        opening = asyncio.create_task(viewer.open(600.0))
-        while not any("would take" in said for said in viewer.sentences):
+        visitor = Visitor(address, query_of(N=10000, f=0.1, A0=1e-4))
+        opening = asyncio.create_task(visitor.open(600.0))
+        while not any("would take" in said for said in visitor.sentences):
             await asyncio.sleep(0.05)
         assert PICTURES.busy == 0, "nothing is computed before"
-        await viewer.say(do="insist")
+        await visitor.say(do="insist")
         while PICTURES.busy == 0:
             await asyncio.sleep(0.05)
-        await viewer.leave()
+        await visitor.leave()
         opening.cancel()
-        return " ".join(viewer.sentences)
+        return " ".join(visitor.sentences)
 
     one = Listening(Access())
     try:

@@ -11,7 +11,7 @@ from app.session.host import Host
 
 def test_what_the_fake_host_has_is_called_as_a_host_is() -> None:
     shared = [name for name in vars(FakeHost) if name in vars(Host) and not name.startswith("_")]
-    assert {"next_tick", "call_later", "on_close", "failed", "fault", "busy"} <= set(shared)
+    assert {"next_tick", "call_later", "on_close", "failed", "report_fault", "busy"} <= set(shared)
     for name in shared:
         fake, real = getattr(FakeHost, name), getattr(Host, name)
         if callable(fake):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.dashboard.addresses import take_address
+from app.dashboard.addresses import apply_address
 from app.parts.pinned_trains import DASHES, SIGNS
 from app.session.pins import NAMES, Pin, compared_rows, read_pin, setting_words
 from app.session.session import Session
@@ -45,19 +45,19 @@ def test_an_address_brings_everything_back() -> None:
     left = Session(SHOWN, start="previous", scale="fit", speed=0.25, energy_account=True, story="coexisting.2",
                    started_from=START, pins=(Pin(scene("sec2")), Pin(scene("rig").evolve(D=12.0), START)))
     back = Session()
-    start, refused = take_address(back, left.link)
+    start, refused = apply_address(back, left.link)
     assert refused == [] and start is not None
     back.started_from = start
     assert back.link == left.link
     assert np.array_equal(back.pins[1].start.velocity, START.velocity)  # type: ignore[union-attr]
     # what is left out is the default again
-    take_address(back, "v=1")
+    apply_address(back, "v=1")
     assert back.link == Session().link
 
 
 def test_a_damaged_pin_is_left_out_and_told() -> None:
     session = Session()
-    _, refused = take_address(session, "v=1&pin=scene%3Dsec2%26f%3Dlots&pin2=scene%3Drig&from=AAAA&story=none.1")
+    _, refused = apply_address(session, "v=1&pin=scene%3Dsec2%26f%3Dlots&pin2=scene%3Drig&from=AAAA&story=none.1")
     assert [pin.scene.name for pin in session.pins] == ["rig"]
     assert len(refused) == 3 and any("A pin of the link was left out" in one for one in refused)
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.dashboard.addresses import take_address
+from app.dashboard.addresses import apply_address
 from app.dashboard.table import overlay_names
 from app.pages.stories.page import story_step
 from app.session.pins import NAMES, Pin
@@ -90,8 +90,8 @@ def test_an_unknown_scene_or_version_is_said_and_the_first_scene_shown() -> None
 def test_every_view_setting_comes_back_into_its_attribute(chosen: dict[str, str]) -> None:
     """Settings of the link replace those of the session; `look`, which the browser adds, is read but not written."""
     left, back = Session(), Session(mode="live", scale="fit", speed=5.0, energy_account=True, theme="dark", curves="none")
-    left.take_view(chosen)
-    _, refused = take_address(back, left.link + f"&look={chosen['look']}")
+    left.apply_view(chosen)
+    _, refused = apply_address(back, left.link + f"&look={chosen['look']}")
     assert refused == [] and "look=" not in left.link
     assert all(getattr(back, field.attribute) == getattr(left, field.attribute) for field in VIEW.values())
     assert (back.speed, back.energy_account) == (float(chosen["speed"]), chosen["account"] == "on")
@@ -122,7 +122,7 @@ def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, am
                    started_from=states[0], story="coexisting.2", pins=tuple(Pin(shown, one) for one in states[1:]),
                    question="strobes?knob=A0&from=1.23456789012345e-07&to=1.23456789012345e-06&values=199&keep=499")
     back = Session()
-    start, refused = take_address(back, left.link + "&tab=stability&page=stability&look=projector&embed=1")
+    start, refused = apply_address(back, left.link + "&tab=stability&page=stability&look=projector&embed=1")
     assert refused == [] and back.scene == shown and back.question == left.question
     assert (start is None) == (states[0] is None)
     assert len(back.pins) == pins_in(left.link) and (len(back.pins) == pins) == (left.pins_left_out == "")
@@ -130,18 +130,18 @@ def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, am
 
 def test_a_page_that_is_only_a_tab_is_opened_by_either_name() -> None:
     session = Session()
-    assert take_address(session, "v=1&page=map")[1] == [] and session.place == {"tab": "map"}
-    assert take_address(session, "v=1&page=stability")[1] == [] and session.place == {"page": "stability"}
+    assert apply_address(session, "v=1&page=map")[1] == [] and session.place == {"tab": "map"}
+    assert apply_address(session, "v=1&page=stability")[1] == [] and session.place == {"page": "stability"}
 
 
 def test_a_link_with_a_story_alone_shows_the_motion_of_its_step() -> None:
     session = Session()
     step = story_step("coexisting.2", overlay_names())
-    assert take_address(session, "story=coexisting.2&look=dark")[1] == []
+    assert apply_address(session, "story=coexisting.2&look=dark")[1] == []
     assert session.scene == step.scene and session.story_to_settle  # it comes from 860 Hz
-    take_address(session, "story=sonic-vacuum.3")
+    apply_address(session, "story=sonic-vacuum.3")
     assert session.scene == story_step("sonic-vacuum.3", overlay_names()).scene and not session.story_to_settle
-    take_address(session, "story=coexisting.2&f=500")  # the page's own links have the motion
+    apply_address(session, "story=coexisting.2&f=500")  # the page's own links have the motion
     assert session.scene.f == 500.0 and not session.story_to_settle
 
 

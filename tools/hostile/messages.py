@@ -14,8 +14,9 @@ import re
 from collections import Counter
 
 from app.dashboard.controller import Controller
+from tools.visitors.soak import figures
 from tools.visitors.started import Started
-from tools.visitors.viewer import Viewer
+from tools.visitors.visitor import Visitor
 
 from .values import text, value
 
@@ -26,7 +27,7 @@ _EVENTS = ("ModelChanged", "MessageSent", "ColumnDataChanged", "ColumnsStreamed"
            "RootRemoved", "Nothing")
 
 
-class Attacker(Viewer):
+class Attacker(Visitor):
     """A visitor who means harm: `attack` sends one hostile message."""
 
     def __init__(self, address: str, rng: random.Random, actions: tuple[str, ...]) -> None:
@@ -46,7 +47,8 @@ class Attacker(Viewer):
     async def attack(self) -> str:
         """Send something; returns what kind of thing."""
         name, send = self._rng.choice((("message of a part", self._part), ("message of a part", self._part),
-                                       ("property", self._property), ("document event", self._document_event),
+                                       ("property", self._property), ("large property", self._large_property),
+                                       ("document event", self._document_event),
                                        ("kind of message", self._kind), ("frame", self._frame)))
         await send()
         return name
@@ -62,6 +64,10 @@ class Attacker(Viewer):
         await self._send("PATCH-DOC", {"events": [{
             "kind": "ModelChanged", "model": {"id": self._rng.choice((*self._ids, "p0", ""))},
             "attr": self._rng.choice(_ATTRIBUTES), "new": value(self._rng)}]})
+
+    async def _large_property(self) -> None:
+        await self._send("PATCH-DOC", {"events": [{
+            "kind": "ModelChanged", "model": {"id": self._rng.choice(self._ids)}, "attr": "tags", "new": ["x" * 1_600_000]}]})
 
     async def _document_event(self) -> None:
         event = {"kind": self._rng.choice(_EVENTS), "model": value(self._rng), "attr": text(self._rng)[:50], "new": value(self._rng),
@@ -87,8 +93,9 @@ async def run(server: Started, count: int, seed: int) -> int:
     """Send `count` hostile messages beside a visitor who goes on moving; the number of moves without an answer."""
     rng, sent = random.Random(seed), Counter[str]()
     actions = actions_of_the_page()
-    neighbour = Viewer(server.address)
+    neighbour = Visitor(server.address)
     await neighbour.open()
+    before = figures(server.number)[0] if server.process else float("nan")
     moves = asyncio.create_task(_move(neighbour, random.Random(seed)))
     attacker, connections, unanswered = Attacker(server.address, rng, actions), 0, 0
     while sum(sent.values()) < count:
@@ -106,13 +113,15 @@ async def run(server: Started, count: int, seed: int) -> int:
             sent[f"closed: {type(closed).__name__}"] += 1
         await asyncio.sleep(0.01)  # below the limit of messages a second, whose own test is tests/serve/test_security.py
     await attacker.leave()
-    last = Viewer(server.address)
+    last = Visitor(server.address)
     await last.open()
     answered = await last.move("f", 341.7)
     await last.leave()
     moves.cancel()
     times = _TIMES[:]
     print(f"{count} messages, seed {seed}: {dict(sent)}; {connections} connections")
+    if server.process:
+        print(f"memory of the server: {before:.0f} MB with the first visitor, {figures(server.number)[0]:.0f} MB at the end")
     late = sum(one is None for one in times) + (answered is None) + unanswered
     print(f"moves of the visitor beside it and first pictures: {len(times) + connections}, without an answer {late}, "
           f"slowest {1e3 * max((one for one in times if one is not None), default=0.0):.0f} ms")
@@ -122,9 +131,9 @@ async def run(server: Started, count: int, seed: int) -> int:
 _TIMES: list[float | None] = []
 
 
-async def _move(viewer: Viewer, rng: random.Random) -> None:
+async def _move(visitor: Visitor, rng: random.Random) -> None:
     while True:
-        _TIMES.append(await viewer.move("f", round(rng.uniform(300.0, 900.0), 1)))
+        _TIMES.append(await visitor.move("f", round(rng.uniform(300.0, 900.0), 1)))
         await asyncio.sleep(1.0)
 
 

@@ -1,7 +1,7 @@
 """How fast the dashboard answers many visitors: each moves a knob once a second (docs/reliability.md).
 
     python -m tools.visitors --count 24 --minutes 1
-    python -m tools.visitors --count 24 --minutes 1 --bomb       with nine pages of 10,000 beads at 0.1 Hz beside them
+    python -m tools.visitors --count 24 --minutes 1 --heavy      with nine pages of 10,000 beads at 0.1 Hz beside them
     python -m tools.visitors soak --minutes 120                  visits that open, move and leave: memory, threads, …
 
 It starts a server of its own; `--address` names one that runs already.
@@ -22,10 +22,11 @@ def main() -> None:
     """Read the options, run the load or the soak, print its table."""
     parser = argparse.ArgumentParser(prog="python -m tools.visitors", description=(__doc__ or "").splitlines()[0])
     parser.add_argument("what", nargs="?", choices=("load", "soak"), default="load")
-    parser.add_argument("--count", type=int, default=24, help="viewers")
+    parser.add_argument("--count", type=int, default=24, help="visitors")
     parser.add_argument("--minutes", type=float, default=1.0)
-    parser.add_argument("--bomb", action="store_true", help="nine pages of 10,000 beads at 0.1 Hz that insist")
-    parser.add_argument("--same", action="store_true", help="all viewers make the same moves")
+    parser.add_argument("--heavy", "--bomb", action="store_true",
+                        help="nine pages of 10,000 beads at 0.1 Hz that insist")
+    parser.add_argument("--same", action="store_true", help="all visitors make the same moves")
     parser.add_argument("--address", help="a running dashboard, such as http://127.0.0.1:5006")
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
@@ -33,7 +34,7 @@ def main() -> None:
         if options.what == "soak":
             asyncio.run(soak.run(server, options.minutes, options.seed))
         else:
-            asyncio.run(load.run(server, options.count, options.minutes, options.bomb, options.same, options.seed))
+            asyncio.run(load.run(server, options.count, options.minutes, options.heavy, options.same, options.seed))
 
 
 if __name__ == "__main__":

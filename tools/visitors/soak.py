@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .started import Started
-from .viewer import Viewer
+from .visitor import Visitor
 
 #: Visitors at once.
 _AT_ONCE = 4
@@ -37,13 +37,13 @@ async def run(server: Started, minutes: float, seed: int) -> None:
 
 
 async def _visit(address: str, chance: random.Random) -> None:
-    viewer = Viewer(address)
-    await viewer.open()
+    visitor = Visitor(address)
+    await visitor.open()
     for _ in range(3):
-        await viewer.move("f", 300.51 + 10 * chance.randrange(40))
+        await visitor.move("f", 300.51 + 10 * chance.randrange(40))
     if chance.random() < 0.5:  # half of them leave while something is computed
-        await viewer.say(do="set", name="N", value=chance.randrange(8, 12), seq=2)
-    await viewer.leave()
+        await visitor.say(do="set", name="N", value=chance.randrange(8, 12), seq=2)
+    await visitor.leave()
 
 
 def figures(process: int) -> tuple[float, int, int]:

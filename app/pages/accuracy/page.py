@@ -73,7 +73,7 @@ class AccuracyPage(Page):
     def describe(self) -> None:
         """Show what was asked, what is cheapest, what the page uses now, and whether the rows still hold."""
         scene, session = self._host.session.scene, self._host.session
-        now = locate(page_setting(scene, session.picture, session.mode == "live"), self.rows)
+        now = locate(page_setting(scene, session.settled, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)
         stale = bool(self._measured) and self._measured != measured_for(scene)
         self._view.mark(self.rows, Annotations(
@@ -136,7 +136,7 @@ class AccuracyPage(Page):
 
     def _used(self, now: PlacedSetting | None) -> str:
         """What the page uses, and why the error in the status line is another number."""
-        picture = self._host.session.picture
+        picture = self._host.session.settled
         if now is None:
             return ""
         words = f"This page uses {now.method}, {now.label}: error {short_error(now.error)} against the reference"

@@ -47,7 +47,7 @@ class AnalysisPage(Page):
         self._visible = self._unasked = False
         self.actions: Actions = {
             "analysis-ask": self._ask, "analysis-compute": self._begin, "analysis-stop": lambda _: self._stop()}
-        self.address_taken()
+        self.address_applied()
 
     def scene_changed(self) -> None:
         """The knobs have moved: the work under way and the values in the fields belong to another scene."""
@@ -68,7 +68,7 @@ class AnalysisPage(Page):
             self._begin_unasked()
 
     def _begin_unasked(self) -> None:
-        if self._visible and self._unasked and self._host.session.picture is not None:
+        if self._visible and self._unasked and self._host.session.settled is not None:
             question = next(iter(QUESTIONS.values()))
             self._offer(question, question.fields(self._host.session.scene), "")
             try:
@@ -76,7 +76,7 @@ class AnalysisPage(Page):
             except BadInput as problem:  # too long a chain, or one without a drive
                 self._say("none", str(problem))
 
-    def address_taken(self) -> None:
+    def address_applied(self) -> None:
         """Take question and values from the address; an answer that is on the page stays."""
         text = self._host.session.question
         if text and text != self._text:

@@ -16,7 +16,7 @@ class Analysis(ResultFigure):
     """The page over the pictures; fields and words come in `state`, the figure as a message."""
 
     _esm = module("analysis.js")
-    _stylesheets = [text("controls.css"), text("paper.css"), text("analysis.css")]  # noqa: RUF012
+    _stylesheets = [text("controls.css"), text("result_page.css"), text("analysis.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"questions": [

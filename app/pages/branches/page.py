@@ -93,7 +93,7 @@ class BranchesPage(Page):
         self._draw_curve()
         if self._begun:
             return
-        if self._host.awaiting_picture or self._host.session.picture is None:
+        if self._host.awaiting_picture or self._host.session.settled is None:
             self._waits = True
         else:
             self._begin()
@@ -101,7 +101,7 @@ class BranchesPage(Page):
     def _begin(self) -> None:
         """Follow the orbit on the screen, if there is one and its branch may be computed without being asked for."""
         self._begun, self._waits = True, False
-        scene, picture = self._host.session.scene, self._host.session.picture
+        scene, picture = self._host.session.scene, self._host.session.settled
         if picture is None or not scene.is_driven or not curve_affordable(scene):
             return
         if picture.regime.period:
@@ -113,7 +113,7 @@ class BranchesPage(Page):
         period = message.get("period")
         if period is not None:
             period = whole("period of a branch", period, 1, LONGEST_BRANCH_PERIOD)
-        scene, picture = self._host.session.scene, self._host.session.picture
+        scene, picture = self._host.session.scene, self._host.session.settled
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)
         self._begun, self._waits, seed = True, False, None

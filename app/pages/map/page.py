@@ -45,20 +45,20 @@ SEARCH_WORDS = StatusWords(
 
 
 def page_grid(scene: Scene) -> Grid:
-    """The diagram of a scene over the ranges of its sliders; it is the same wherever f and A0 stand."""
+    """The map of a scene over the ranges of its sliders; it is the same wherever f and A0 stand."""
     (f0, f1), (a0, a1) = slider_range(scene, "f"), slider_range(scene, "A0")
     low = scene.evolve(f=f0, A0=a0)
     return Grid(low, Axis.of("f", np.linspace(f0, f1, COLUMNS)), Axis.of("A0", np.geomspace(a0, a1, ROWS).tolist()))
 
 
 class MapPage(Page):
-    """Computes its diagram while the tab is on the screen."""
+    """Computes its map while the tab is on the screen."""
 
     def __init__(self, host: Host, view: Component) -> None:
         self._host = host
         self._view = view
         self._visible = False
-        self._diagram = Task(host, LONG, self._say, "The diagram")
+        self._task = Task(host, LONG, self._say, "The map")
         self._search = Task(host, LONG, self._say_search, "The search")
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
@@ -76,7 +76,7 @@ class MapPage(Page):
         }
 
     def scene_changed(self) -> None:
-        """A knob has moved: any but f and A0 changes the diagram, and any at all changes the attractors."""
+        """A knob has moved: any but f and A0 changes the map, and any at all changes the attractors."""
         if not self._visible:
             return
         self._send_now()
@@ -91,7 +91,7 @@ class MapPage(Page):
         return self._grid is None or self._grid.digest != page_grid(self._host.session.scene).digest
 
     def visibility_changed(self, visible: bool) -> None:
-        """Show the diagram, and compute what is missing of it, as long as somebody looks."""
+        """Show the map, and compute what is missing of it, as long as somebody looks."""
         self._visible = visible
         if not visible:
             self._stop()
@@ -116,21 +116,21 @@ class MapPage(Page):
             self._begin()
 
     def _begin(self) -> None:
-        """Compute what is missing of the present diagram, or a new one."""
-        self._diagram.cancel()
+        """Compute what is missing of the present map, or a new one."""
+        self._task.cancel()
         if self._grid is None or self._stale():
             self._grid = page_grid(self._host.session.scene)
             self._cells = empty_cells(self._grid)
         self._send_all()
         self._say("waiting")
-        self._diagram.start(partial(self._work, self._grid, self._missing()))
+        self._task.start(partial(self._work, self._grid, self._missing()))
 
     def _missing(self) -> list[int]:
         return [int(number) for number in np.flatnonzero(self._cells["regime"] < 0)]
 
     def _give_up(self) -> bool:
-        """Stop computing this diagram; return whether it was being computed."""
-        if not self._diagram.cancel():
+        """Stop computing this map; return whether it was being computed."""
+        if not self._task.cancel():
             return False
         self.status = "stopped"
         return True
@@ -183,7 +183,7 @@ class MapPage(Page):
             self._send(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
-        """A place of the diagram was clicked: set f and A0 to its values."""
+        """A place of the map was clicked: set f and A0 to its values."""
         session = self._host.session
         self._host.show(session.scene.evolve(f=message.get("x"), A0=message.get("y")), mode=session.mode)
 

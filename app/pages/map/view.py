@@ -18,7 +18,7 @@ from ...pictures.theme import Theme
 
 
 def head_message(grid: Grid, theme: Theme) -> dict[str, Any]:
-    """The figure of a diagram whose cells are still to come, and the values of its knobs in SI."""
+    """The figure of a map whose cells are still to come, and the values of its knobs in SI."""
     return {"type": "map-head", "figure": figure_item(diagram(nothing(grid), theme)), "x": list(grid.x.values),
             "y": list(grid.y.values), "shown": {name: shown_models(name) for name in ("force", "regime")}}
 

@@ -29,6 +29,6 @@ class NumbersPage(Page):
     def visibility_changed(self, visible: bool) -> None:
         """Compute the tables only while somebody looks."""
         self._visible = visible
-        picture = self._host.session.picture
+        picture = self._host.session.settled
         if visible and picture is not None:
             self.picture_ready(picture)

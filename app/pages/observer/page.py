@@ -62,7 +62,7 @@ class ObserverPage(Page):
         self._asked = False
         session = self._host.session
         wishes, self._wishes = self._wishes, []
-        self._task.start(partial(self._next_in_thread, session.scene, session.picture, self._run, wishes))
+        self._task.start(partial(self._next_in_thread, session.scene, session.settled, self._run, wishes))
 
     def _said(self, status: Status, sentence: str) -> None:
         if status == "compiling":

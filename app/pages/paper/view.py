@@ -18,7 +18,7 @@ class Paper(ResultFigure):
     """The page over the pictures; captions and rows come in `state`, the figure as a message."""
 
     _esm = module("paper.js")
-    _stylesheets = [text("controls.css"), text("paper.css")]  # noqa: RUF012
+    _stylesheets = [text("controls.css"), text("result_page.css"), text("paper.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"figures": [

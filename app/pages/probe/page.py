@@ -31,11 +31,11 @@ class ProbePage(Page):
     def visibility_changed(self, visible: bool) -> None:
         """Draw the present motion when somebody begins to look."""
         self._visible = visible
-        self._draw(self._host.session.picture)
+        self._draw(self._host.session.settled)
 
     def _choose(self, message: dict[str, Any]) -> None:
         self._bead = whole("bead", message.get("bead"), 1, self._host.session.scene.N)
-        self._draw(self._host.session.picture)
+        self._draw(self._host.session.settled)
 
     def _draw(self, picture: Settled | None) -> None:
         if self._visible and picture is not None:

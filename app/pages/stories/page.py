@@ -48,7 +48,7 @@ class StoriesPage(Page):
         self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}
         view.update_state(stories=[{"name": one.name, "title": one.title, "about": one.about} for one in known],
                           refused=list(refused))
-        self.address_taken()
+        self.address_applied()
 
     def scene_changed(self) -> None:
         """The knobs have moved: a step that is still being settled will not be shown."""
@@ -60,7 +60,7 @@ class StoriesPage(Page):
             self._host.session.story_to_settle = False
             self._task.start(partial(self._through, story_step(self._host.session.story, self._host.overlays)))
 
-    def address_taken(self) -> None:
+    def address_applied(self) -> None:
         """The address says which step is told; its motion is in the address, too."""
         self._task.cancel()
         name, _, number = self._host.session.story.partition(".")
@@ -68,7 +68,7 @@ class StoriesPage(Page):
 
     def _close(self) -> None:
         self._host.session.story = ""
-        self.address_taken()
+        self.address_applied()
         self._host.address_changed()
 
     @staticmethod
@@ -84,7 +84,7 @@ class StoriesPage(Page):
         number = whole("step", message.get("step"), 1, len(story.steps))
         step = story.steps[number - 1]
         self._host.session.story = f"{story.name}.{number}"
-        self.address_taken()
+        self.address_applied()
         if step.via:
             self._task.start(partial(self._through, step))
         else:

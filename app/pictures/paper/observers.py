@@ -9,7 +9,8 @@ from bokeh.plotting import figure
 from granchain_core.paper import CoupledRow, Observers
 
 from ..multipliers import multipliers
-from ..theme import Theme, apply_theme, frame, themed
+from ..theme import Theme
+from ..themed import apply_theme, frame, themed
 from .panels import grid
 
 

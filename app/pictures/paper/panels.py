@@ -13,7 +13,8 @@ from bokeh.plotting import figure
 from granchain_core.experiment import Measured
 
 from ..measured import measured_over
-from ..theme import Theme, themed
+from ..theme import Theme
+from ..themed import themed
 
 
 def grid(rows: Sequence[Sequence[figure]]) -> LayoutDOM:

@@ -11,9 +11,11 @@ from bokeh.plotting import figure
 from granchain_core import Curve
 from granchain_core.paper import RigCurves, RigResponse, Trains
 
+from ..axes import knob_scale
 from ..curve import FORCES, forces_in_words
 from ..regimes import REGIME_MARKS, regime_key
-from ..theme import Theme, apply_theme, frame, themed
+from ..theme import Theme
+from ..themed import apply_theme, frame, themed
 from .panels import inside_legend, measured_curve
 from .trains import trains
 
@@ -47,7 +49,7 @@ def _curves(shown: RigCurves, theme: Theme) -> figure:
         _states(plot, shown)
     measured_curve(plot, shown.measured, 1.0)
     plot.y_range.update(start=0, end=1.38 * high)
-    plot.xaxis.axis_label, plot.yaxis.axis_label = "drive frequency f (Hz)", "largest elastic output force (N)"
+    plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, "largest elastic output force (N)"
     plot.title.text = "(a) lines: model (5) from rest; upright: what the text states"
     apply_theme(plot, theme)
     inside_legend(plot, theme, "top_left")

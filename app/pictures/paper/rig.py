@@ -8,7 +8,8 @@ from bokeh.plotting import figure
 
 from granchain_core.paper import Rig
 
-from ..theme import Theme, apply_theme, frame, themed
+from ..theme import Theme
+from ..themed import apply_theme, frame, themed
 
 _MM = 1e3
 

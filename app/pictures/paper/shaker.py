@@ -6,7 +6,9 @@ from bokeh.models import HoverTool, LayoutDOM
 
 from granchain_core.paper import ShakerAmplitude
 
-from ..theme import Theme, apply_theme, frame, themed
+from ..axes import knob_scale
+from ..theme import Theme
+from ..themed import apply_theme, frame, themed
 from .panels import grid, hollow_points, inside_legend
 
 _DASHES = ("dashed", "solid", "dotted")
@@ -30,7 +32,7 @@ def shaker(shown: ShakerAmplitude, theme: Theme) -> LayoutDOM:
         if shown.measured is not None:
             hollow_points(plot, shown.measured.frequency, unit * getattr(shown.measured, name), None,
                           shown.measured.word, [("frequency", "@x{0.0} Hz"), (label, "@y{0.000}")])
-        plot.xaxis.axis_label, plot.yaxis.axis_label = "drive frequency f (Hz)", label
+        plot.xaxis.axis_label, plot.yaxis.axis_label = knob_scale("f").label, label
         plot.y_range.start = 0
         plot.title.text = "(a) V0 = 2πf A0" if name == "velocity" else "(b) A0 = V0/(2πf)"
         inside_legend(plot, theme, "top_left" if name == "velocity" else "bottom_left")

@@ -12,7 +12,8 @@ from bokeh.plotting import figure
 from granchain_core.paper import Column, Trains
 from granchain_core.paper.results import SHOWN
 
-from ..theme import Theme, apply_theme, frame, themed
+from ..theme import Theme
+from ..themed import apply_theme, frame, themed
 from .panels import fewer, grid, inside_legend
 
 _MS = 1e3

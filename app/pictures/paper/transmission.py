@@ -10,7 +10,8 @@ from granchain_core.paper.peaks_and_dips import dips, peaks
 
 from ..axes import force_scale
 from ..curve import curve
-from ..theme import Theme, apply_theme, themed
+from ..theme import Theme
+from ..themed import apply_theme, themed
 from .panels import measured_curve
 
 

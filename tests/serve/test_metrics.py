@@ -1,10 +1,23 @@
-"""How long computations wait before they begin."""
+"""Counts from many threads, and how long computations wait before they begin."""
 
 from __future__ import annotations
 
+import threading
+
 from app.serve.cpu_time import CpuTime
+from app.serve.metrics import Metrics
 from app.serve.turns import FairScheduler
 from granchain_core import Stop
+
+
+def test_every_count_of_every_thread_is_kept() -> None:
+    metrics = Metrics()
+    threads = [threading.Thread(target=lambda: [metrics.count("cancelled") for _ in range(1000)]) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert metrics.cancelled == 8000 and "granchain_cancelled_total 8000\n" in metrics.text()
 
 
 def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> None:

@@ -1,4 +1,4 @@
-"""Counters of the server, and the addresses `/liveness` and `/metrics` that show them."""
+"""Metrics of the server, and the addresses `/liveness` and `/metrics` that show them."""
 
 from __future__ import annotations
 
@@ -12,21 +12,25 @@ import time
 from collections import deque
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
 from tornado.web import HTTPError, RequestHandler
 
 #: Upper bounds of the histogram of answers [s].
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
-#: Time between two measurements of how late the event loop is [s].
-_LATENESS_INTERVAL = 0.25
+#: Time between two measurements of the event loop's lag [s].
+_LAG_INTERVAL = 0.25
 #: Number of these measurements that are kept: those of ten seconds.
-_LATENESSES_KEPT = 40
+_LAGS_KEPT = 40
 #: The server is called busy when a knob's message, or the computation for it, waits longer than this [s].
 _BUSY_WAIT = 0.3
 
+#: What `Metrics.count` counts.
+Counter = Literal["pictures", "cancelled", "refused_visitors", "refused_pictures", "refused_messages", "errors"]
 
-class Meters:
-    """Counts since the start; answers are times from a moved knob to its first picture."""
+
+class Metrics:
+    """Counts since the start; answers are times from a moved knob to its first picture. Any thread may count."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -40,14 +44,26 @@ class Meters:
         self.errors = 0
         self.answers = [0] * (len(BUCKETS) + 1)
         self.answers_total = 0.0
-        self._late: deque[float] = deque(maxlen=_LATENESSES_KEPT)
+        self._lags: deque[float] = deque(maxlen=_LAGS_KEPT)
         self.gauges: dict[str, Callable[[], float]] = {}
         #: How long computations wait before they can begin [s]; the server puts it there.
         self.turn_wait: Callable[[], float] = lambda: 0.0
 
+    def count(self, name: Counter) -> None:
+        """Add one to a counter."""
+        with self._lock:
+            setattr(self, name, getattr(self, name) + 1)
+
+    def visitor_came(self) -> None:
+        """A page was opened."""
+        with self._lock:
+            self.visitors += 1
+            self.opened += 1
+
     def visitor_left(self) -> None:
         """A page was closed."""
-        self.visitors -= 1
+        with self._lock:
+            self.visitors -= 1
 
     def answered(self, seconds: float) -> None:
         """Count a first picture that came `seconds` after the knob moved."""
@@ -56,26 +72,26 @@ class Meters:
             self.answers[place] += 1
             self.answers_total += seconds
 
-    def loop_late(self, seconds: float) -> None:
+    def lagged(self, seconds: float) -> None:
         """Record that a turn of the event loop came `seconds` late."""
-        self._late.append(seconds)
+        self._lags.append(seconds)
 
     @property
-    def lateness(self) -> float:
+    def event_loop_lag(self) -> float:
         """How late the event loop was on average in the last ten seconds [s]."""
-        return sum(self._late) / len(self._late) if self._late else 0.0
+        return sum(self._lags) / len(self._lags) if self._lags else 0.0
 
     @property
     def busy(self) -> bool:
         """Whether visitors notice that there are many: by the event loop, or by the wait for a turn to compute."""
-        return max(self.lateness, self.turn_wait()) > _BUSY_WAIT
+        return max(self.event_loop_lag, self.turn_wait()) > _BUSY_WAIT
 
     async def watch(self) -> None:
-        """Measure how late the event loop is, for as long as it runs."""
+        """Measure the event loop's lag, for as long as it runs."""
         while True:
-            due = time.monotonic() + _LATENESS_INTERVAL
-            await asyncio.sleep(_LATENESS_INTERVAL)
-            self.loop_late(max(0.0, time.monotonic() - due))
+            due = time.monotonic() + _LAG_INTERVAL
+            await asyncio.sleep(_LAG_INTERVAL)
+            self.lagged(max(0.0, time.monotonic() - due))
 
     def text(self) -> str:
         """The counts in the text format of Prometheus, version 0.0.4."""
@@ -95,8 +111,8 @@ class Meters:
         add("refused_messages_total", "counter", "Messages that no page sends; each closed its connection.",
             self.refused_messages)
         add("errors_total", "counter", "Unexpected failures; each is in the log.", self.errors)
-        add("event_loop_lateness_seconds", "gauge", "Mean delay of the event loop in the last ten seconds.",
-            self.lateness)
+        add("event_loop_lag_seconds", "gauge", "Mean lag of the event loop in the last ten seconds.",
+            self.event_loop_lag)
         add("turn_wait_seconds", "gauge", "Mean wait of a computation before it could begin in the last ten seconds.",
             self.turn_wait())
         add("resident_memory_bytes", "gauge", "Resident memory.", resident_memory())
@@ -115,7 +131,7 @@ class Meters:
         return "\n".join(lines) + "\n"
 
 
-METERS = Meters()
+METRICS = Metrics()
 
 
 def resident_memory() -> float:
@@ -135,11 +151,11 @@ class Liveness(RequestHandler):
         self.write({"/liveness": True})
 
 
-#: Tornado's address of somebody whose address it does not know; it counts as private.
+#: Tornado's address of somebody it does not know. `ipaddress` calls it private, so it is refused by name.
 _UNKNOWN = "0.0.0.0"
 
 
-class Metrics(RequestHandler):
+class MetricsPage(RequestHandler):
     """`/metrics`."""
 
     def get(self) -> None:
@@ -148,4 +164,4 @@ class Metrics(RequestHandler):
         if asking.is_unspecified or not asking.is_private:
             raise HTTPError(403, "metrics are for private addresses")
         self.set_header("Content-Type", "text/plain; version=0.0.4; charset=utf-8")
-        self.write(METERS.text())
+        self.write(METRICS.text())

@@ -1,4 +1,4 @@
-"""A viewer without a browser: it opens the page, draws nothing, and speaks Bokeh's protocol over a raw websocket."""
+"""A visitor without a browser, who opens the page, draws nothing, and speaks Bokeh's protocol over a raw websocket."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _NUMBER = re.compile(r'"number",(\d+)')
 _LARGEST = 200_000_000
 
 
-class Viewer:
+class Visitor:
     """One visitor: `open`, then `move` and `answered`, then `leave`.
 
     `arrived` is the time at which the last picture came, by `time.perf_counter`; `pictures` counts them.
