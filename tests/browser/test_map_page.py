@@ -27,6 +27,11 @@ def visible(page: Page, name: str) -> bool:
       .get_model_by_name(name).visible""", name))
 
 
+def left_edge(page: Page) -> float:
+    """Where the figure's x axis begins."""
+    return float(page.evaluate("""() => Bokeh.documents.find((one) => one.roots()[0].name === "map").roots()[0].x_range.start"""))
+
+
 def overflow(page: Page) -> int:
     """Pixels by which the tab is wider than its place."""
     return int(page.locator("#tabs .body").evaluate("body => body.scrollWidth - body.clientWidth"))
@@ -43,6 +48,17 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     page.get_by_role("button", name="regime", exact=True).click()
     assert visible(page, "regimes") and not visible(page, "bar")
     assert "period 1" in cells["regime"] and len(set(cells["regime"])) > 2
+    # a picture is moved and enlarged in the browser alone: the server would refuse a message about it (`address`)
+    edges, middle = [left_edge(page)], place(page, "map", 1800.0, 3.0)
+    page.mouse.move(*middle)
+    page.mouse.down()
+    page.mouse.move(middle[0] - 60, middle[1], steps=3)
+    page.mouse.up()
+    until(page, lambda: left_edge(page) > edges[0])
+    page.mouse.down()
+    page.mouse.move(*middle, steps=3)
+    page.mouse.up()
+    until(page, lambda: abs(left_edge(page) - edges[0]) < 1e-6 * edges[0])
 
     row = max(range(len(cells["x"])), key=lambda i: (1900 < cells["x"][i] < 2300) * (cells["spacing"][i] == 1) * cells["y"][i] * (cells["y"][i] < 5))
     at = place(page, "map", cells["x"][row], cells["y"][row])
