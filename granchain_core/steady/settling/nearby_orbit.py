@@ -34,6 +34,9 @@ NEAR_AN_ORBIT = 0.1
 #: orbit near it is examined. On closed curves of section 2 and of the rig the least change was 1.8e-3 or more, on slow
 #: approaches 2.2e-4 or less.
 _ALMOST_PERIODIC = 1e-3
+#: [quasi-periodic] Last changes, at least, that must be below this: on a closed curve a motion may hardly move for some
+#: periods, and then goes on.
+_ALMOST_PERIODIC_CHANGES = 32
 #: [followed] The period tried is the shortest over which the motion changes by at most this many times the least
 #: change.
 _CHANGE_FACTOR = 3.0
@@ -171,12 +174,13 @@ def is_almost_periodic(strobes: np.ndarray) -> bool:
 
     It may approach the orbit so slowly that its Lyapunov exponent is zero within the error.
     """
-    return min(_changes_over_periods(strobes), default=math.inf) < _ALMOST_PERIODIC
+    return min(_changes_over_periods(strobes, _ALMOST_PERIODIC_CHANGES), default=math.inf) < _ALMOST_PERIODIC
 
 
-def _changes_over_periods(strobes: np.ndarray) -> list[float]:
-    """Largest of the last n changes over n periods, for every n that a batch looks for."""
-    return [float(changes(strobes, n, n).max()) for n in range(1, min(LONGEST_PERIOD, (len(strobes) - 1) // 2) + 1)]
+def _changes_over_periods(strobes: np.ndarray, least: int = 1) -> list[float]:
+    """Largest of the last n changes over n periods, or of the last `least`, for every n that a batch looks for."""
+    most = min(LONGEST_PERIOD, (len(strobes) - 1) // 2)
+    return [float(changes(strobes, n, min(max(n, least), len(strobes) - n)).max()) for n in range(1, most + 1)]
 
 
 def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) -> Iterator[NearbyOrbit]:
