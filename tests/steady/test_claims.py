@@ -13,6 +13,7 @@ from granchain_core.kernels.strobes import periodicity
 from granchain_core.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.batch import engine
+from granchain_core.steady.regime_criteria import changes
 from granchain_core.steady.settling import recording, refine_orbit, single_chain
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.settling.nearby_orbit import is_almost_periodic
@@ -97,6 +98,14 @@ def nearly_repeating(change: float) -> np.ndarray:
 @pytest.mark.parametrize(("change", "almost"), [(0.0, True), (5e-4, True), (9e-4, True), (1.2e-3, False), (0.1, False)])
 def test_almost_periodic_is_what_changes_by_less_than_a_thousandth(change: float, almost: bool) -> None:
     assert is_almost_periodic(nearly_repeating(change)) is almost
+
+
+def test_a_slow_passage_on_a_closed_curve_is_not_almost_periodic() -> None:
+    """780 Hz of section 2: for some twenty periods the motion hardly moves, and then goes on around the curve."""
+    steps = np.where(np.arange(421) < 400, 0.05, 1e-5)
+    angle = np.cumsum(steps)
+    slow = np.stack([np.stack([np.cos(angle), np.sin(angle)], 1), np.stack([np.sin(angle), -np.cos(angle)], 1)], 1)
+    assert changes(slow, 1, 16).max() < 1e-3 and not is_almost_periodic(slow)
 
 
 def test_a_rotation_or_a_record_of_one_state_is_not_almost_periodic() -> None:
