@@ -8,14 +8,15 @@ from dataclasses import asdict
 from typing import Any
 
 from .common import chosen_scene, finite_or_null, in_background, show_json, show_percent
-from .options import add_json, add_scene
+from .options import add_json, add_out, add_scene
 from .picture import add_option as add_picture
-from .picture import check_picture, write_picture
+from .picture import check_files, write_files
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `accuracy`."""
     add_scene(parser)
+    add_out(parser)
     add_json(parser)
     add_picture(parser)
 
@@ -24,11 +25,11 @@ def do(arguments: argparse.Namespace) -> None:
     """Measure error against time for every method."""
     from granchain_core.accuracy import work_precision
 
-    check_picture(arguments.picture)
+    check_files(arguments)
     chosen = chosen_scene(arguments)
     progress = show_percent if sys.stderr.isatty() else None
     found = in_background(lambda stop: work_precision(chosen, stop, progress), reports=True)
-    write_picture(arguments.picture, f"What accuracy costs for {chosen.name}", found)
+    write_files(arguments, f"What accuracy costs for {chosen.name}", found)
     if arguments.json:
         show_json(_accuracy_json(found))
     else:

@@ -75,6 +75,9 @@ def _pulse(found: Pulse, theme: Theme) -> LayoutDOM:
 
 
 def _curve(found: Curve, theme: Theme, elastic: bool = False, measured: Measured | None = None) -> LayoutDOM:
+    if measured is not None and not isinstance(measured, Measured):
+        raise BadInput("A measured curve is what granchain_core.experiment.read_experiment returns for a table of "
+                       f"frequency and force, not a value of type {type(measured).__name__}.")
     return curve([found], theme, elastic, measured)
 
 

@@ -28,7 +28,7 @@ from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 
-#: Directions that shrink in one period by more than this part of the one that grows most are rounding.
+#: Directions that shrink in one period by more than this fraction of the one that grows most are rounding.
 _ROUNDING = 1e-12
 #: Periods in which the directions turn into their places, not counted.
 _TURNING = 50

@@ -33,9 +33,9 @@ from ..tables import Column, Labelled, Table, axis, bead_axis, provenance, regim
 from ..tables.provenance import Attribute, or_nan
 from ..tables.words import evidence_columns, state_columns
 
-#: Strobes closer than this part of the largest are one.
+#: Strobes closer than this fraction of the largest are one.
 _APART = 1e-3
-#: An orbit is refined to this part of the accuracy asked for, because the error of its strobes is stated with a factor.
+#: An orbit is refined to this fraction of the accuracy asked for: the error of its strobes is stated with a factor.
 _REFINED_PART = 0.1
 #: What the error of a value's strobes is.
 _ERROR = "largest error of a strobe over the largest displacement or velocity, NaN where none is stated"

@@ -48,7 +48,7 @@ _LONGEST_SECANT = 6.0
 _MOST_SECANTS = 14
 #: Halvings of a step at most, where the branch is lost.
 _MOST_HALVINGS = 3
-#: Smallest part of the way to the next y that is tried as one step.
+#: Smallest fraction of the way to the next y that is tried as one step.
 _LEAST_PART = 1.0 / 32.0
 #: Angle from +1 or −1 below which a critical pair is not distinguished from a real multiplier [rad].
 _REAL_ANGLE = 1e-7

@@ -78,7 +78,7 @@ class Compared:
 class CurveTarget(Compared):
     """A measured curve: largest output force over the frequency, `elastic` for its elastic part.
 
-    `error` is a standard deviation as a part of each force, used where the measurement has none of its own.
+    `error` is a standard deviation as a fraction of each force, used where the measurement has none of its own.
     """
 
     measured: Measured

@@ -22,7 +22,7 @@ from ..text import number_in
 
 #: Fewest samples over the shortest pulse of this strength.
 PULSE_SAMPLES = 4
-#: A force whose smallest modulus is above this part of its largest may have a sensor's offset, and a note says so.
+#: A force whose smallest modulus is above this fraction of its largest may have a sensor's offset, and a note says so.
 _NEAR_ZERO = 0.02
 #: Fewest samples in all.
 FEWEST = 8

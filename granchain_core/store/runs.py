@@ -68,8 +68,10 @@ def load(path: str | Path) -> Run:
 
 def _other_result(file: File) -> str:
     """The tables of a file of another result than a run, and what reads them; empty for a run."""
+    if file.has("run/time"):
+        return ""
     found = sorted({name.partition("/")[0] for name in file.names() if "/" in name})
-    if file.has("run/time") or not found or "run" in found:
+    if not found or "run" in found:
         return ""
     own = next((_LOADED[name] for name in found if name in _LOADED), None)
     how = f"granchain_core.store.{own} reads it" if own else f'xarray.open_dataset(path, group="{found[0]}") reads one'

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import signal
 import subprocess
 import sys
@@ -188,3 +189,19 @@ def test_a_curve_is_compared_with_a_measured_one(tmp_path: Path, capsys: pytest.
     assert misfit["compared"] == 2 and misfit["rms"] == pytest.approx(0.5) and misfit["mean"] == pytest.approx(0.5)
     assert main([*words, "--data", str(data), "--elastic"]) == 0
     assert "Elastic part of the output force. Model − measured at 2 of 2 frequencies: rms 0.5 N" in capsys.readouterr().out
+
+
+def test_an_undriven_chain_is_told_from_one_that_has_not_settled(capsys: pytest.CaptureFixture[str]) -> None:
+    for words, driven in (["impact", "--set", "N=3"], False), (["sec2", "--set", "N=2", "--set", "f=2000"], True):
+        assert main(["run", *words, *SHORT, "--json"]) == 0
+        said = json.loads(capsys.readouterr().out)
+        assert (said["regime"], said["driven"]) == ("unsettled", driven)
+
+
+def test_words_say_whether_the_accuracy_was_reached_and_count_one_iteration(capsys: pytest.CaptureFixture[str]) -> None:
+    chain = ["sec2", "--set", "N=2", "--set", "f=2000"]
+    assert main(["run", *chain, "--periods", "60", "--record", "1", "--samples", "8"]) == 0
+    assert capsys.readouterr().out.splitlines()[0].endswith("; accuracy reached")
+    assert main(["orbit", *chain]) == 0
+    count = re.search(r"after (\d+) Newton (iterations?)$", capsys.readouterr().out.splitlines()[0])
+    assert count is not None and count[2] == ("iteration" if count[1] == "1" else "iterations")

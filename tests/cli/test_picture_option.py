@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import pytest
 
 import granchain_core.accuracy
@@ -106,7 +107,10 @@ def test_accuracy_is_drawn_for_the_accuracy_asked(tmp_path: Path, monkeypatch: p
         return WorkPrecision(chosen, "dop853", "SciPy's DOP853", 1e-11, [Row("rk4", "2 × the default steps", 1e-5, 0.001, 7, 2.0)])
 
     monkeypatch.setattr(granchain_core.accuracy, "work_precision", measured)
-    assert main(["accuracy", *SHORT, "--set", "accuracy=1e-4", "--picture", str(tmp_path / "a.html")]) == 0
+    assert main(["accuracy", *SHORT, "--set", "accuracy=1e-4", "--picture", str(tmp_path / "a.html"),
+                 "--out", str(tmp_path / "a.h5")]) == 0
+    with h5py.File(tmp_path / "a.h5") as file:
+        assert file["accuracy/wall_s"][:].tolist() == [0.001]
     drawn = json.dumps(document((tmp_path / "a.html").read_text(encoding="utf-8")))
     assert '"asked 1e-4"' in drawn and '"error 1e-05, 1 ms, 7 evaluations"' in drawn
     assert scene("sec2").accuracy != 1e-4

@@ -16,6 +16,7 @@ from documents import ROOT
 from granchain_core import orbit, scene
 from granchain_core.kernels.batch import record
 from granchain_core.observe.drift import TRANSLATION
+from granchain_core.orbits.branch import ends, newton, normal_forms, special, steps
 from granchain_core.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.settling import regime_decisions
@@ -44,6 +45,29 @@ def test_every_number_with_a_name_beside_a_threshold_has_a_mark() -> None:
 @pytest.mark.parametrize(("value", "as_printed"), [(3.0, "3"), (0.97, "0.97"), (1e-5, "1e-5"), (10**8, "1e8"), (1 / 3, "1/3")])
 def test_how_a_threshold_is_printed(value: float, as_printed: str) -> None:
     assert printed(value) == as_printed
+
+
+def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
+    """Beside the generated table the numbers stand where they are explained."""
+    text = " ".join((ROOT / "docs" / "branches.md").read_text(encoding="utf-8").split())
+    said = {
+        r"t turns by about ([\d.]+)°": steps._TURN_OF_STEP, r"about ([\d.]+) % of the step away": 100.0 * steps._MISS_OF_STEP,
+        r"goes farther than ([\d.]+) % of the step": 100.0 * steps.LARGEST_CORRECTION,
+        r"if t turns by more than ([\d.]+)°": steps._LARGEST_TURN, r"The longest step is ([\d.]+),": steps.LONGEST_STEP,
+        r"the shortest ([\de-]+)\.": steps.SHORTEST_STEP, r"method aims at ([\de-]+);": newton.RESIDUAL_GOAL,
+        r"below ([\de-]+) the orbit is accepted": newton.ACCEPTED_RESIDUAL,
+        r"whose knobs differ by at most ([\de-]+) of the knob \(": special.RELATIVE_WIDTH,
+        r"for at most (\d+) levels of bisection": special._MOST_LEVELS,
+        r"back to the seed within ([\de-]+):": ends._CLOSING_DISTANCE,
+        r"first differences only: ξ = ([\de-]+)\.": normal_forms._SMALL_AMPLITUDE,
+        r"The others have ξ = ([\de-]+),": normal_forms._AMPLITUDE,
+        r"differ by more than (\d+) % of their mean": 100.0 * normal_forms._LARGEST_ERROR,
+        r"another multiplier is within ([\de-]+) of the unit circle": normal_forms._AT_CIRCLE,
+        r"\|μᵏ − 1\| < ([\d.]+) for a k": normal_forms._STRONG_RESONANCE,
+    }
+    for pattern, value in said.items():
+        found = re.findall(pattern, text)
+        assert len(found) == 1 and float(found[0]) == pytest.approx(value, rel=1e-12), pattern
 
 
 def test_the_definitions_have_the_values_of_the_constants_they_name() -> None:

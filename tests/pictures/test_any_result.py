@@ -86,10 +86,20 @@ def test_lists_are_drawn_together_and_options_reach_the_picture() -> None:
     assert isinstance(granchain.figure(found, shown="regime"), figure)
 
 
+def test_a_measured_curve_is_drawn_over_a_computed_one_and_within_its_scale() -> None:
+    found = granchain.resonance_curve(CHAIN, [1800.0, 2000.0])
+    measured = read_data(b"f [Hz],F [N],error [N]\n1900,5000,0.5\n")
+    drawn = granchain.figure(found, measured=measured)
+    source = drawn.select_one({"name": "measured", "type": ColumnDataSource})
+    assert source.data["frequency"] == [1900.0] and source.data["force"] == [5.0]  # kN, by the larger of the two
+    assert labels(drawn)[1] == "largest output force (kN)"
+
+
 @pytest.mark.parametrize(("make", "words"), [
     (lambda: granchain.figure(3.0), "There is no picture of a float; there are those of Run, Settled, Driven, Pulse, Curve"),
     (lambda: granchain.figure([]), "no picture of a list"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), "drak"), "Unknown theme 'drak'; the nearest is 'dark'"),
+    (lambda: granchain.figure(granchain.resonance_curve(CHAIN, [2000.0]), measured="mine.csv"), "not a value of type str"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), bead=1), "The picture of a Orbit has no option 'bead'"),
 ])
 def test_what_cannot_be_drawn_is_one_sentence(make, words: str) -> None:  # type: ignore[no-untyped-def]

@@ -37,16 +37,16 @@ ACCEPTED_RESIDUAL = 1e-10
 QUICK_RESIDUAL = 1e-8
 #: [branch] Largest residual at which a derivative from nearby is used.
 _LARGEST_WITH_REUSED = 3e-3
-#: [branch] A step that does not lower the residual to this part of it is followed by a derivative.
+#: [branch] A step that does not lower the residual to this fraction of it is followed by a derivative.
 _SLOW_DECREASE = 0.4
-#: [branch] A step with its own derivative that does not lower the residual to this part of it fails. A shorter step
+#: [branch] A step with its own derivative that does not lower the residual to this fraction of it fails. A shorter step
 #: along the branch is safer than a way that may lead to another branch (Deuflhard 2004, Newton Methods for Nonlinear
 #: Problems).
 _FAILED_DECREASE = 0.5
-#: [branch] A step with the derivative of the exact map that does not lower the residual to this part of it has met
+#: [branch] A step with the derivative of the exact map that does not lower the residual to this fraction of it has met
 #: rounding.
 _STALLED_DECREASE = 0.3
-#: [branch] The exact map with its derivative is computed where its residual should be below this part of
+#: [branch] The exact map with its derivative is computed where its residual should be below this fraction of
 #: `RESIDUAL_GOAL`.
 _SAFETY = 0.3
 #: [branch] Most derivatives of the rough and of the exact map each.
