@@ -224,7 +224,8 @@ def _window_ratios(seen: np.ndarray) -> tuple[float, float] | None:
 def return_distance(strobes: np.ndarray) -> float:
     """Median distance from a state of the record's second half to the nearest of its first half, relative."""
     nearest = np.zeros(len(strobes) - len(strobes) // 2)
-    periodicity.nearest_neighbours(np.ascontiguousarray(strobes), np.zeros(2), nearest)
+    order = np.argsort(strobes[: len(strobes) // 2, 0, 0], kind="stable")
+    periodicity.nearest_neighbours(np.ascontiguousarray(strobes), order, np.zeros(2), nearest)
     return float(np.median(nearest))
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import brief_kernel, internal, kernel
+from ..compiling.jit import brief_kernel, inline_llvm, internal, kernel
 
 #: [period n, followed, quasi-periodic] Longest period that a batch tests, in drive periods, and longest period of an
 #: orbit that is looked for beside a motion, in a batch or alone. A longer one is settled alone.
@@ -74,15 +74,31 @@ def largest_of(strobes, scale):
             scale[q] = 1.0
 
 
+@inline_llvm
+def raised(largest, strobes, now, then, q):
+    """Four maxima, raised to the changes of displacements or velocities (q) from state `then` to state `now`.
+
+    Four, so that none of them waits for the one before.
+    """
+    a, b, c, d = largest
+    beads = strobes.shape[2]
+    for i in range(0, beads - 3, 4):
+        a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
+        b = max(b, abs(strobes[now, q, i + 1] - strobes[then, q, i + 1]))
+        c = max(c, abs(strobes[now, q, i + 2] - strobes[then, q, i + 2]))
+        d = max(d, abs(strobes[now, q, i + 3] - strobes[then, q, i + 3]))
+    for i in range(beads - beads % 4, beads):
+        a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
+    return a, b, c, d
+
+
 @internal
 def change_between(strobes, scale, now, then):
     """Largest relative change from state `then` to state `now`."""
     change = 0.0
     for q in range(2):
-        largest = 0.0
-        for i in range(strobes.shape[2]):
-            largest = max(largest, abs(strobes[now, q, i] - strobes[then, q, i]))
-        change = max(change, largest / scale[q])
+        a, b, c, d = raised((0.0, 0.0, 0.0, 0.0), strobes, now, then, q)
+        change = max(change, max(max(a, b), max(c, d)) / scale[q])
     return change
 
 
@@ -202,26 +218,35 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
 
 
 @internal
-def is_nearer(strobes, scale, now, then, distance):
-    """Whether two states are nearer to each other than `distance`; most are not in their first beads."""
-    for q in range(2):
-        limit = distance * scale[q]
-        for i in range(strobes.shape[2]):
-            if not abs(strobes[now, q, i] - strobes[then, q, i]) < limit:
-                return False
-    return True
+def first_above(strobes, order, value):
+    """Place in `order` of the first state whose first bead is displaced by more than `value`."""
+    low, high = 0, order.size
+    while low < high:
+        middle = (low + high) // 2
+        if strobes[order[middle], 0, 0] > value:
+            high = middle
+        else:
+            low = middle + 1
+    return low
 
 
 @kernel
-def nearest_neighbours(strobes, scale, nearest):
-    """Distance of every state in the later half of a record from the nearest one in the earlier half."""
+def nearest_neighbours(strobes, order, scale, nearest):
+    """Distance of every state in the later half of a record from the nearest one in the earlier half.
+
+    `order` are the states of the earlier half by the displacement of their first bead: the search goes from the state's
+    own place in both directions, as long as this displacement alone does not differ by more than the distance found.
+    """
     largest_of(strobes, scale)
-    half = strobes.shape[0] // 2
+    half = order.size
     for p in range(nearest.size):
-        nearest[p] = np.inf
-        for q in range(half):
-            if is_nearer(strobes, scale, half + p, q, nearest[p]):
-                nearest[p] = change_between(strobes, scale, half + p, q)
+        nearest[p], own = np.inf, strobes[half + p, 0, 0]
+        place = first_above(strobes, order, own)
+        for step in (-1, 1):
+            k = place - 1 if step < 0 else place
+            while 0 <= k < half and abs(strobes[order[k], 0, 0] - own) < nearest[p] * scale[0]:
+                nearest[p] = min(nearest[p], change_between(strobes, scale, half + p, order[k]))
+                k += step
 
 
 @brief_kernel
@@ -241,8 +266,11 @@ def window_changes(strobes, window, scale, out):
     last, windows = strobes.shape[0] - 1, out.shape[1]
     for n in range(1, out.shape[0] + 1):
         for k in range(windows):
-            now, largest = last - (windows - k) * window, 0.0
-            for _ in range(window):
-                now += 1
-                largest = max(largest, change_between(strobes, scale, now, now - n))
-            out[n - 1, k] = largest
+            first, change = last - (windows - k) * window + 1, 0.0
+            for q in range(2):
+                largest = (0.0, 0.0, 0.0, 0.0)
+                for now in range(first, first + window):
+                    largest = raised(largest, strobes, now, now - n, q)
+                a, b, c, d = largest
+                change = max(change, max(max(a, b), max(c, d)) / scale[q])
+            out[n - 1, k] = change
