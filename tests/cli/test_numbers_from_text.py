@@ -111,7 +111,7 @@ def test_no_other_value_of_a_scene_is_taken_unchecked(field: str, value: object)
 def test_the_page_opens_whatever_the_address_says(query: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """As a browser asks for it; Panel's own reading of addresses answered some of these with an error of the server."""
     seen: list[list[str]] = []
-    monkeypatch.setattr(entry.Controller, "say", lambda self, sentence: seen.append([sentence]))
+    monkeypatch.setattr(entry.Controller, "show_message", lambda self, sentence: seen.append([sentence]))
 
     async def asked() -> int:
         server = server_at(0, "127.0.0.1")
