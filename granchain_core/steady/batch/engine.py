@@ -32,7 +32,7 @@ from ...state import rest
 from ...stop import Stop
 from ..exponent_measurements import MEASURED_PERIODS
 from ..lyapunov import growth_of, put_with_shadow
-from ..regime_criteria import find_period
+from ..regime_criteria import converging, find_period
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, is_almost_periodic, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
@@ -198,9 +198,10 @@ class _JobsInBatch:
             self._measure(job)
             return None
         approach_rate = job.measurements.approach_rate
-        if goes_on and approach_rate * (MOST_PERIODS - job.periods_run) > -math.log(SETTLED_DISTANCE):
+        comes_in_time = approach_rate * (MOST_PERIODS - job.periods_run) > -math.log(SETTLED_DISTANCE)
+        if goes_on and (comes_in_time or converging(job.record)):
             job.measurements.interrupted()
-            self.waiting.append(job)  # the motion comes to its orbit within the budget, if there is an orbit
+            self.waiting.append(job)  # the motion comes to its orbit, or to its closed curve, within the budget
             return None
         if approach_rate == 0.0 and job.measurements.complete < MOST_MEASUREMENTS:
             self._measure(job)
