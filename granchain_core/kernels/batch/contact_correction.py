@@ -24,7 +24,7 @@ from .unequal import over_mass, times_stiffness
 def beside_closed(r):
     """(4 (r + 1/2)^{3/2} + (r + 1)^{3/2})/6 − (2/5)(r + 1)^{5/2} for 0 ≤ r ≤ 1, to 3e-8.
 
-    The polynomial through nine Chebyshev points saves two roots. A correction itself is good to a few per cent.
+    The polynomial through nine Chebyshev points saves two roots.
     """
     high = ((0.00291261 * r - 0.01588264) * r + 0.04025222) * r - 0.06753252
     middle = ((high * r + 0.10018871) * r - 0.25194466) * r - 0.33406599

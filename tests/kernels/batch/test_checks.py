@@ -115,7 +115,7 @@ def excess(power: float, r: float) -> float:
     return (r**power + 4.0 * max(r - 0.5, 0.0) ** power) / 6.0 - r ** (power + 1.0) / (power + 1.0)
 
 
-@pytest.mark.parametrize("r", [0.2, 0.5, 0.8, 1.0])
+@pytest.mark.parametrize("r", [1e-6, 0.05, 0.2, 0.35, 0.5, 0.65, 0.8, 0.95, 1.0])
 def test_what_a_batch_step_across_an_event_gives_too_much(r: float) -> None:
     """Impulse and path of contact_correction.py by their definition, law by law; `beside_closed` is good to 3e-8."""
     half, speed, h, c = max(r - 0.5, 0.0), 0.7, 0.2, 0.3
