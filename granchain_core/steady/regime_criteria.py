@@ -46,6 +46,8 @@ _EXPONENT_DIFFERENCE = 1e-3
 #: [quasi-periodic] The section returns near itself if the median distance between neighbours is at most this many times
 #: that on a curve which is filled evenly.
 _RETURN_FACTOR = 5.0
+#: [no threshold] States that are compared at once in a window, for the length of a loop.
+_STATES_AT_ONCE = 8
 #: [quasi-periodic] Strobes needed for the three windows.
 SLOW_RECORD = 3 * _SLOW_WINDOW + LONGEST_PERIOD
 
@@ -165,8 +167,8 @@ def _windows(strobes: np.ndarray, longest: int = LONGEST_PERIOD) -> np.ndarray:
     """Largest changes over 1, 2, … periods in three windows in a row, (longest, 3); none for a short record."""
     if len(strobes) < SLOW_RECORD:
         return np.zeros((0, 3))
-    seen = np.zeros((longest, 3))
-    periodicity.window_changes(np.ascontiguousarray(strobes), _SLOW_WINDOW, np.zeros(2), seen)
+    seen, workspace = np.zeros((longest, 3)), np.zeros((_STATES_AT_ONCE, *strobes.shape[1:]))
+    periodicity.window_changes(np.ascontiguousarray(strobes), _SLOW_WINDOW, np.zeros(2), workspace, seen)
     return seen
 
 

@@ -44,6 +44,10 @@ class Case:
     unit: str = "tolerance"
 
 
+#: Steps of the programs with fixed steps that a curve tries, as parts of 0.2 in scaled time: the same for all.
+CURVE_REFINES = tuple(0.5 * 1.05**k for k in range(55))
+
+
 def rungs(loose: float, tight: float, per_decade: int = 2) -> list[float]:
     """Settings in equal ratios from loose to tight."""
     steps = round(per_decade * math.log10(loose / tight))

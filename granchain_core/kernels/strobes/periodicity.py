@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import brief_kernel, inline_llvm, internal, kernel
+from ..compiling.jit import brief_kernel, internal, kernel
 
 #: [period n, followed, quasi-periodic] Longest period that a batch tests, in drive periods, and longest period of an
 #: orbit that is looked for beside a motion, in a batch or alone. A longer one is settled alone.
@@ -63,41 +63,38 @@ class Detected(NamedTuple):
 
 
 @internal
+def largest_in(strobes, q):
+    """Largest displacement or velocity (q) of a record."""
+    a, b = 0.0, 0.0  # two, so that neither waits for the one before
+    for p in range(strobes.shape[0]):
+        row = strobes[p, q]
+        for i in range(0, row.size - 1, 2):
+            a, b = max(a, abs(row[i])), max(b, abs(row[i + 1]))
+        a = max(a, abs(row[row.size - 1]))
+    return max(a, b)
+
+
+@internal
 def largest_of(strobes, scale):
     """Largest displacement and velocity of a record into `scale` (2,); 1 where there is none."""
     for q in range(2):
-        scale[q] = 0.0
-        for p in range(strobes.shape[0]):
-            for i in range(strobes.shape[2]):
-                scale[q] = max(scale[q], abs(strobes[p, q, i]))
-        if scale[q] == 0.0:
-            scale[q] = 1.0
-
-
-@inline_llvm
-def raised(largest, strobes, now, then, q):
-    """Four maxima, raised to the changes of displacements or velocities (q) from state `then` to state `now`.
-
-    Four, so that none of them waits for the one before.
-    """
-    a, b, c, d = largest
-    beads = strobes.shape[2]
-    for i in range(0, beads - 3, 4):
-        a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
-        b = max(b, abs(strobes[now, q, i + 1] - strobes[then, q, i + 1]))
-        c = max(c, abs(strobes[now, q, i + 2] - strobes[then, q, i + 2]))
-        d = max(d, abs(strobes[now, q, i + 3] - strobes[then, q, i + 3]))
-    for i in range(beads - beads % 4, beads):
-        a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
-    return a, b, c, d
+        largest = largest_in(strobes, q)
+        scale[q] = largest if largest > 0.0 else 1.0
 
 
 @internal
 def change_between(strobes, scale, now, then):
     """Largest relative change from state `then` to state `now`."""
-    change = 0.0
+    change, beads = 0.0, strobes.shape[2]
     for q in range(2):
-        a, b, c, d = raised((0.0, 0.0, 0.0, 0.0), strobes, now, then, q)
+        a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four, so that none of them waits for the one before
+        for i in range(0, beads - 3, 4):
+            a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
+            b = max(b, abs(strobes[now, q, i + 1] - strobes[then, q, i + 1]))
+            c = max(c, abs(strobes[now, q, i + 2] - strobes[then, q, i + 2]))
+            d = max(d, abs(strobes[now, q, i + 3] - strobes[then, q, i + 3]))
+        for i in range(beads - beads % 4, beads):
+            a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
         change = max(change, max(max(a, b), max(c, d)) / scale[q])
     return change
 
@@ -256,21 +253,32 @@ def record_changes(strobes, n, scale, out):
     changes_before(strobes, scale, n, strobes.shape[0] - 1, out)
 
 
-@kernel
-def window_changes(strobes, window, scale, out):
-    """Largest changes of a record over 1, 2, … periods in the last windows of `window` states, into `out` (periods, W).
+@internal
+def raise_changes(largest, now, then):
+    """Raise the first elements of `largest` to the changes from `then` to `now`, of the same length."""
+    for j in range(now.size):
+        change = abs(now[j] - then[j])
+        largest[j] = change if change > largest[j] else largest[j]
 
-    The oldest window comes first. `scale` (2,) is a workspace.
+
+@kernel
+def window_changes(strobes, window, scale, largest, out):
+    """Largest changes over 1, 2, … periods in the last W windows of `window` states, into `out` (periods, W).
+
+    The oldest window comes first. `scale` (2,) and `largest` (S, 2, N) are workspaces: S states at a time are compared,
+    so that the loop over them is long enough for vectors.
     """
     largest_of(strobes, scale)
-    last, windows = strobes.shape[0] - 1, out.shape[1]
+    flat, most, numbers = strobes.reshape(-1), largest.reshape(-1), strobes.shape[1] * strobes.shape[2]
+    states, last, windows = largest.shape[0], strobes.shape[0] - 1, out.shape[1]
     for n in range(1, out.shape[0] + 1):
         for k in range(windows):
-            first, change = last - (windows - k) * window + 1, 0.0
+            first = last - (windows - k) * window + 1
+            most[:] = 0.0
+            for now in range(first, first + window, states):
+                begin, end = now * numbers, min(now + states, first + window) * numbers
+                raise_changes(most, flat[begin:end], flat[begin - n * numbers : end - n * numbers])
+            change = 0.0
             for q in range(2):
-                largest = (0.0, 0.0, 0.0, 0.0)
-                for now in range(first, first + window):
-                    largest = raised(largest, strobes, now, now - n, q)
-                a, b, c, d = largest
-                change = max(change, max(max(a, b), max(c, d)) / scale[q])
+                change = max(change, largest_in(largest, q) / scale[q])
             out[n - 1, k] = change

@@ -20,7 +20,7 @@ import numpy as np
 from granchain_core.kernels.batch_size import has_avx512
 
 from .. import machine, problem
-from ..case import Case, Peaks
+from ..case import CURVE_REFINES, Case, Peaks
 from ..problem import Solved
 
 _SOURCES = Path(__file__).resolve().parents[1] / "c"
@@ -109,8 +109,8 @@ def best_shape() -> tuple[int, int]:
 def cases() -> list[Case]:
     """The trajectory along the chain and the sweep across scenes."""
     ladder = [problem.SAMPLES * round(8.0 * 1.1**k) for k in range(88)]
-    steps = (0.2, 0.15, 0.1, 0.085, 0.07, 0.06, 0.05, 0.04, 0.03)
-    sweep = Case(f"C, {'AVX-512' if WIDE else 'AVX2'}, batch", "w", unit="step", curve_ladder=steps,
+    sweep = Case(f"C, {'AVX-512' if WIDE else 'AVX2'}, batch", "w", unit="step",
+                 curve_ladder=[STEP / refine for refine in CURVE_REFINES],
                  peaks=lambda f, h: sweep_peaks(f, h, best_shape()))
     along = [Case("C, AVX-512, rsqrt14", "w", ladder, lambda n: _trajectory(n, False), unit="steps a period"),
              Case("C, AVX-512, sqrt", "w", ladder, lambda n: _trajectory(n, True), unit="steps a period")]

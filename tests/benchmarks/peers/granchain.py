@@ -17,7 +17,7 @@ from granchain_core.scaling import scale_chain
 from granchain_core.stop import Stop
 
 from .. import problem
-from ..case import Case, Peaks, rungs
+from ..case import CURVE_REFINES, Case, Peaks, rungs
 from ..problem import Solved
 
 #: Its fixed-step methods and the multiples of the fixed-step method's steps that are tried, from 0.5 to 246 in the
@@ -121,5 +121,6 @@ def cases() -> list[Case]:
              for m in FIXED]
     found += [Case(f"granchain {m}", "w", rungs(1e-4, 1e-13, 4), lambda t, m=m: _recording(Setting(m, tolerance=t)))
               for m in ADAPTIVE]
-    found.append(Case("granchain batches", "w", peaks=batch_peaks, curve_ladder=(0.5, 0.6, 0.7, 0.85, 1, 1.25, 1.5, 2, 3, 4, 5, 6), unit="refine"))
+    found.append(Case("granchain batches", "w", peaks=batch_peaks, curve_ladder=CURVE_REFINES,
+                      unit="refine"))
     return found
