@@ -29,13 +29,14 @@ if TYPE_CHECKING:
     from .analysis.rotation_number import RotationNumber, rotation_number
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
-    from .diagram import Attractor, Attractors, Diagram, attractors, diagram
-    from .driven import Driven, Signal, drive
+    from .attractors import Attractor, Attractors, attractors
     from .fit import Fit, fit
     from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
     from .orbits import continue_branch as branch
     from .orbits import periodic_orbit as orbit
+    from .parameter_map import Diagram, diagram
+    from .prescribed_drive import Driven, Signal, drive
     from .regime import Regime
     from .result import Cost, Run
     from .run.live import LiveChain
@@ -58,8 +59,9 @@ _MODULES = {
     "steady.curve.curve": ("Curve", "CurvePoint"),
     "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
-    "diagram": ("Attractor", "Attractors", "Diagram", "attractors", "diagram"),
-    "driven": ("Driven", "Signal", "drive"), "observe": ("Observation", "observe"),
+    "parameter_map": ("Diagram", "diagram"), "attractors": ("Attractor", "Attractors", "attractors"),
+    "bifurcation_curves": ("BifurcationCurve", "bifurcation_curves"),
+    "prescribed_drive": ("Driven", "Signal", "drive"), "observe": ("Observation", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
     "analysis.basins": ("Basins", "basins"), "analysis.spectrum": ("Spectrum", "Transfer", "spectrum", "transfer"),
     "analysis.lyapunov_spectrum": ("LyapunovSpectrum", "lyapunov_spectrum"),

@@ -14,7 +14,7 @@ from .picture import add_option as add_picture
 from .picture import check_picture, write_figure
 
 if TYPE_CHECKING:
-    from granchain_core.hard import Check
+    from granchain_core.hard_cases import Check
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -26,8 +26,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> int:
     """Run all hard cases; the exit status is 3 if a value is above its limit, and stderr names it."""
-    from granchain_core.hard.runner import in_order, run_cases
-    from granchain_core.hard.table import CASES
+    from granchain_core.hard_cases.runner import in_order, run_cases
+    from granchain_core.hard_cases.table import CASES
 
     check_picture(arguments.picture)
     began, found = time.perf_counter(), {}
@@ -60,7 +60,7 @@ def _say_case(number: str, name: str, rows: list[Check]) -> None:
 
 def _show_cases(found: dict[str, list[Check]]) -> None:
     """Print every case with its rows."""
-    from granchain_core.hard.table import CASES
+    from granchain_core.hard_cases.table import CASES
 
     for case in CASES:
         print(f"\n{case.name}\n  {case.hard}\n  Naive: {case.naive}\n  Oracle: {case.oracle}.")
@@ -75,7 +75,7 @@ def _drawn() -> Any:
     from bokeh.layouts import column
     from bokeh.models import Div
 
-    from granchain_core.hard.table import CASES
+    from granchain_core.hard_cases.table import CASES
 
     from ..pictures.check import check as drawn
     from ..pictures.theme import THEMES

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from granchain_core import BadInput, Cancelled
-from granchain_core.diagram import Axis, Diagram, Grid, iter_diagram
-from granchain_core.diagram.blocks import Blocks
-from granchain_core.diagram.cells import CELL_REGIMES, ERRORS, cell_of
-from granchain_core.diagram.grid import MOST_CELLS
+from granchain_core.parameter_map import Axis, Diagram, Grid, iter_diagram
+from granchain_core.parameter_map.blocks import Blocks
+from granchain_core.parameter_map.cells import CELL_REGIMES, ERRORS, cell_of
+from granchain_core.parameter_map.grid import MOST_CELLS
 from granchain_core.pieces import FIXED_STEP_KERNELS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
@@ -121,7 +121,7 @@ def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[D
 def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[np.ndarray]:
     """Finished cells, a few at a time."""
     if client is not None:
-        from granchain_core.diagram.scheduled import iter_blocks
+        from granchain_core.parameter_map.scheduled import iter_blocks
 
         yield from iter_blocks(client, grid, missing, stop)
         return

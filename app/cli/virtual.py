@@ -39,7 +39,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Compute the motion and write what the sensors make of it."""
-    from granchain_core.virtual import Sensors, virtual_curve_csv, virtual_series_csv
+    from granchain_core.virtual_experiment import Sensors, virtual_curve_csv, virtual_series_csv
 
     chosen = chosen_scene(arguments)
     if arguments.kind not in ("series", "curve"):

@@ -178,7 +178,7 @@ class MeasurementActions:
         self._recording.start(partial(self._record_in_thread, self._host.session.scene))
 
     def _record_in_thread(self, scene: Scene, job: Job) -> None:
-        from granchain_core.virtual import Sensors, virtual_series_csv  # imported late: only a fit needs it
+        from granchain_core.virtual_experiment import Sensors, virtual_series_csv  # imported late: only a fit needs it
 
         check_first_picture(scene)
         job.give_way()

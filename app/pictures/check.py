@@ -9,7 +9,7 @@ import numpy as np
 from bokeh.models import ColumnDataSource, HoverTool, Legend, LegendItem
 from bokeh.plotting import figure
 
-from granchain_core.hard import Picture
+from granchain_core.hard_cases import Picture
 
 from .theme import Theme
 from .themed import apply_theme, frame, themed

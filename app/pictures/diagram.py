@@ -24,8 +24,8 @@ from bokeh.palettes import Inferno256
 from bokeh.plotting import figure
 from bokeh.transform import factor_cmap, transform
 
-from granchain_core.diagram import Axis, Diagram, Grid
-from granchain_core.diagram.cells import CELL_REGIMES, empty_cells
+from granchain_core.parameter_map import Axis, Diagram, Grid
+from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
 from granchain_core.regime import exponent_words
 
 from ..format import figures_of, in_words, short_error

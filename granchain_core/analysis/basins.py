@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..diagram.attractor import Attractor, Origin, attractor_methods, attractors_table
-from ..diagram.attractors import attractors_from
+from ..attractors.attractor import Attractor, Origin, attractor_methods, attractors_table
+from ..attractors.attractors import attractors_from
 from ..errors import BadInput
 from ..input_checks import axis_in, numbers_in
 from ..scene import Scene

@@ -14,7 +14,7 @@ from ..hdf5 import SIGNATURE
 from .columns import NO_CONVENTION, Asked, Convention, answered, in_si
 from .digitizer import datasets_in, is_project, is_two_headed
 from .grid import Row, check_size, grid_of
-from .labelled import read_labelled
+from .labelled_files import read_labelled
 from .measured import MOST_BYTES, MOST_ROWS, Measured
 from .question import Answers, Guess, Question, Unclear, first_rows
 from .series import Series, Shaker

@@ -4,7 +4,7 @@ from .fit import Fit, fit
 from .parameters import Free, per_frequency
 from .records import RecordsTarget
 from .targets import CurveTarget, FeatureTarget, SeriesTarget
-from .virtual import virtual_curve, virtual_series
+from .virtual_data import virtual_curve, virtual_series
 
 __all__ = ["CurveTarget", "FeatureTarget", "Fit", "Free", "RecordsTarget", "SeriesTarget", "fit", "per_frequency",
            "virtual_curve", "virtual_series"]

@@ -1,6 +1,7 @@
 """A scaled chain with a given force or a given motion of its driver in pieces, one polynomial between two samples.
 
-A measured force pushes it (observe/pushed_chain.py), or its driver moves as a signal says (driven/moved_chain.py).
+A measured force pushes it (observe/pushed_chain.py), or its driver moves as a signal says
+(prescribed_drive/moved_chain.py).
 """
 
 from __future__ import annotations

@@ -14,8 +14,8 @@ from ..kernels.effects.contact import FrozenContacts
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.flow.attempt import ContactStatus, FlowProblem
 from ..kernels.flow.run import run_flow
-from ..kernels.flow.saltation import VelocityTangent, new_velocity_tangent
 from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
+from ..kernels.flow.velocity_tangent import VelocityTangent, new_velocity_tangent
 from ..kernels.status import EVENTS_PER_CONTACT
 from ..scaling import ScaledChain, scale_like
 from ..scene import Scene

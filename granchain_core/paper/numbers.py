@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..diagram import attractors
+from ..attractors import attractors
 from ..input_checks import unknown_name
 from ..orbits import periodic_orbit
 from ..regime import Regime
@@ -21,7 +21,7 @@ from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
 from .computations import KAPPA, MODEL_AMPLITUDES, RIG_AMPLITUDE, SECTION_2_FREQUENCIES, STATES, observers
-from .peaks_and_dips import dips, peaks
+from .peaks_and_valleys import dips, peaks
 
 Numbers = list[float | str]
 #: Density of the rig's beads [kg/m³], from the text.

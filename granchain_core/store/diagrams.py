@@ -12,12 +12,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..diagram import Axis, Diagram, Grid
-from ..diagram.cells import CELL, CELL_REGIMES, empty_cells
-from ..diagram.grid import KNOBS, MOST_CELLS
 from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
+from ..parameter_map import Axis, Diagram, Grid
+from ..parameter_map.cells import CELL, CELL_REGIMES, empty_cells
+from ..parameter_map.grid import KNOBS, MOST_CELLS
 from ..quantities import QUANTITIES
 from ..scene import Amplitude
 from .writing import write_file, write_result

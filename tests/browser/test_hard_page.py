@@ -8,7 +8,7 @@ from knobs import COMPILED, Visit
 from playwright.sync_api import Locator, Page, expect
 from server import resize
 
-from granchain_core.hard import CASES
+from granchain_core.hard_cases import CASES
 
 #: A case that has a picture and, once its kernels are compiled, takes a second.
 QUICK = "solitary wave, Hertz collision, cradle, a bead on a chain"

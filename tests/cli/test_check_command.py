@@ -9,7 +9,7 @@ import signal
 import pytest
 
 from app.cli import main
-from granchain_core.hard import CASES, Check, runner
+from granchain_core.hard_cases import CASES, Check, runner
 
 
 def pretend(figure: float, monkeypatch: pytest.MonkeyPatch) -> None:

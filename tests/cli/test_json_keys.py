@@ -13,7 +13,7 @@ import pytest
 from app.cli import main
 from app.cli.commands import COMMANDS, parser_for
 from granchain_core import BadInput
-from granchain_core.hard import CASES, Check, runner
+from granchain_core.hard_cases import CASES, Check, runner
 
 PAGE = (Path(__file__).parents[2] / "docs" / "command-line.md").read_text(encoding="utf-8")
 #: By heading, the keys and what the page says of each.

@@ -18,7 +18,7 @@ from app.cli import main
 from app.cli.check import heading
 from granchain_core import Scene, WorkPrecision, scene
 from granchain_core.accuracy import Row
-from granchain_core.hard import CASES, Case, Check, runner, table
+from granchain_core.hard_cases import CASES, Case, Check, runner, table
 
 ROOT = Path(__file__).parents[2]
 SHORT = ["sec2", "--set", "N=2"]

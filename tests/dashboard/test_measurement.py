@@ -29,7 +29,7 @@ from granchain_core.hdf5 import VERSIONS, seal
 from granchain_core.regime import Regime
 from granchain_core.result import ForceErrors
 from granchain_core.state import rest
-from granchain_core.virtual import Sensors, virtual_series_csv
+from granchain_core.virtual_experiment import Sensors, virtual_series_csv
 
 FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
 

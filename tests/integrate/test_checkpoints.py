@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from granchain_core.hard.long_runs import cut_and_gone_on, uninterrupted
+from granchain_core.hard_cases.long_runs import cut_and_gone_on, uninterrupted
 from granchain_core.integrate import METHODS
 
 

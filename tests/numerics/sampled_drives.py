@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import Scene, Signal, drive, scene
-from granchain_core.driven.signal import KNOTS
+from granchain_core.prescribed_drive.signal import KNOTS
 from granchain_core.tables import MAXIMA
 
 #: Knots from sample to sample.

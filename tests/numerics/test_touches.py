@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import touches
 
-from granchain_core.hard.chains import Bench
+from granchain_core.hard_cases.chains import Bench
 from granchain_core.kernels.effects.dissipation import LinearDashpot
 
 COUNT = 2000

@@ -2,7 +2,7 @@
 
     python -m tests.numerics.touches --count 100000 [--seed 1]
 
-Single touches are those of the hard case (granchain_core/hard/touches.py); two in one step are here.
+Single touches are those of the hard case (granchain_core/hard_cases/touches.py); two in one step are here.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from math import pi
 
 import numpy as np
 
-from granchain_core.hard.touches import (
+from granchain_core.hard_cases.touches import (
     DEPTH,
     ONSET_ERROR,
     ONSETS,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.hard.chains import Bench
+from granchain_core.hard_cases.chains import Bench
 from granchain_core.kernels.effects.dissipation import LinearDashpot, Tsuji
 from granchain_core.scaling import scale_chain
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import State, run, scene
-from granchain_core.hard.chains import Bench
+from granchain_core.hard_cases.chains import Bench
 from granchain_core.integrate import Engine, Setting
 from granchain_core.kernels.effects.dissipation import LinearDashpot
 from granchain_core.kernels.effects.driver import Harmonic

@@ -9,7 +9,7 @@ from bokeh.models import GlyphRenderer, Legend, LogScale
 from app.pictures.check import check
 from app.pictures.theme import THEMES
 from app.pictures.themed import apply_theme
-from granchain_core.hard import Picture, Trace
+from granchain_core.hard_cases import Picture, Trace
 
 LIGHT = THEMES["light"]
 

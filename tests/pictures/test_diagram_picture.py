@@ -11,8 +11,8 @@ from bokeh.models import LogScale
 from app.pictures.diagram import CATEGORIES, category, cell_rows, cell_words, diagram, nothing, scale_models
 from app.pictures.theme import THEMES
 from granchain_core import scene
-from granchain_core.diagram import Axis, Diagram, Grid
-from granchain_core.diagram.cells import CELL_REGIMES, empty_cells
+from granchain_core.parameter_map import Axis, Diagram, Grid
+from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
 
 GRID = Grid(scene("sec2").evolve(N=2), Axis.of("f", [1900.0, 2000.0, 2100.0]), Axis.of("A0", [1e-7, 1e-6, 1e-5]))
 

@@ -15,7 +15,7 @@ from app.pictures.paper.panels import fewer
 from app.pictures.theme import THEMES
 from granchain_core.experiment import Measured, Series, Shaker
 from granchain_core.paper import FIGURES, Given, Result, computations, compute
-from granchain_core.paper.peaks_and_dips import dips, peaks
+from granchain_core.paper.peaks_and_valleys import dips, peaks
 
 
 @cache

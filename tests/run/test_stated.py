@@ -123,8 +123,8 @@ def test_numba_tells_when_it_compiles() -> None:
 
 
 def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Section 2's run needs three computations (tests/hard/test_outcomes.py); each takes a hundredth of the budget,
-    after compiling for longer than all of it.
+    """Section 2's run needs three computations (tests/hard_cases/test_outcomes.py); each takes a hundredth of the
+    budget, after compiling for longer than all of it.
     """
     budget, clock = 1.0, Clock()
     computes, compiler, computed = to_accuracy._attempt, CompilerClock(clock), []

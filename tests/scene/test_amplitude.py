@@ -12,9 +12,9 @@ import pytest
 
 from app.cli import main
 from granchain_core import Amplitude, BadInput, branch, diagram, resonance_curve, scene, settle
-from granchain_core.diagram import Grid
-from granchain_core.diagram.scheduled import describe
 from granchain_core.experiment import read_amplitude
+from granchain_core.parameter_map import Grid
+from granchain_core.parameter_map.scheduled import describe
 from granchain_core.steady.curve.curve import Curve
 from granchain_core.store import load_branch, save_branch, save_curve
 from granchain_core.store.curves import load_curve

@@ -12,7 +12,7 @@ import xarray
 from granchain_core import Signal, drive, load, resonance_curve, run, save, scene
 from granchain_core.experiment import Measured, Series, read_data
 from granchain_core.store import load_curve
-from granchain_core.virtual import Sensors, virtual_series_csv
+from granchain_core.virtual_experiment import Sensors, virtual_series_csv
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)
 CURVE = read_data(b"# my rig\nf [kHz],F [mN],error [mN]\n1.8,3300,100\n2.0,2300,100\n2.0,2340,100\n", source="mine.csv")

@@ -13,9 +13,9 @@ import numpy as np
 
 from app.cli.orbit import _start
 from granchain_core import observe, resonance_curve, run, scene
-from granchain_core.diagram import Axis, Grid, diagram
 from granchain_core.observe import first_state, read_force
 from granchain_core.orbits import Continuation, begin_branch
+from granchain_core.parameter_map import Axis, Grid, diagram
 from granchain_core.store import load, load_branch, save, save_branch, save_curve, save_observation
 from granchain_core.store.curves import load_curve
 from granchain_core.store.diagrams import load_diagram, save_diagram

@@ -68,7 +68,7 @@ STATED = (
            "the first sample's difference is stated for all", k.HONESTY),
     Mutant("done-too-early", _RUN, "if error <= scene.accuracy:\n", "if error <= 1e4 * scene.accuracy:\n",
            "a run is called done that is not as accurate as asked for",
-           ("tests/hard/test_outcomes.py", "-k", "accuracy_not_reached or files_carry or not_begun")),
+           ("tests/hard_cases/test_outcomes.py", "-k", "accuracy_not_reached or files_carry or not_begun")),
     Mutant("finer-is-the-same", _METHODS, "min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0)",
            "self.tolerance",
            "the finer of two computations is the same one", k.HONESTY),
@@ -82,7 +82,7 @@ STATED = (
 
 FAILING = (
     Mutant("failed-step-of-its-end", "integrate/fixed.py", "if b), 1), low % n", "if b), 1), high % n",
-           "the step after the one that failed is named", ("tests/hard/test_outcomes.py", "-k", "middle_of_a_long_call")),
+           "the step after the one that failed is named", ("tests/hard_cases/test_outcomes.py", "-k", "middle_of_a_long_call")),
     Mutant("failed-time-since-call", "integrate/engine.py", "Failure(status, self.elapsed + done, bead,", "Failure(status, done, bead,",
            "the time of a failure is counted from the present call", k.FAILURES_T),
     Mutant("nan-of-velocity-unseen", "kernels/samples.py", "if not (np.isfinite(y[i]) and np.isfinite(y[bodies + i])):",
@@ -95,9 +95,9 @@ FAILING = (
     Mutant("checkpoint-at-phase-0", "integrate/checkpoint.py", "engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed",
            "engine.elapsed = kept.elapsed", "a run that was cut inside a period goes on at its beginning", k.CHECKPOINTS),
     Mutant("budget-of-one-computation", "run/budget.py", "steps, seconds = steps * often, seconds * often", "steps, seconds = 0.25 * steps, 0.25 * seconds",
-           "the estimate of a run is a fraction of it", ("tests/hard/test_outcomes.py", "-k", "within_a_factor_of_two and (knobs0 or knobs3 or knobs6)")),
+           "the estimate of a run is a fraction of it", ("tests/hard_cases/test_outcomes.py", "-k", "within_a_factor_of_two and (knobs0 or knobs3 or knobs6)")),
     Mutant("budget-not-kept", "run/budget.py", "if found.seconds <= budget:", "if found.seconds <= 1e30 * budget:",
-           "a run of years is begun", ("tests/hard/test_outcomes.py", "-k", "command_line_refuses or offered_number_of_periods")),
+           "a run of years is begun", ("tests/hard_cases/test_outcomes.py", "-k", "command_line_refuses or offered_number_of_periods")),
 )
 
 OBSERVED = (

@@ -37,7 +37,7 @@ CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cu
 FORCE_FREE = ("tests/numerics/test_force_free.py",)
 FORCE_FREE_ENERGY = ("tests/numerics/test_force_free.py", "tests/physics/test_energy.py", "-k",
                      "force_free or account_closes and (linear-cut or kuwabara-kono-cut) or cut_contacts_closes")
-CUT_SYMMETRY = ("tests/hard/test_cases.py", "-k", "case_holds and several")
+CUT_SYMMETRY = ("tests/hard_cases/test_cases.py", "-k", "case_holds and several")
 
 #: A short chain in a vector, and a long one in blocks, against the scalar method.
 SIMD = ("tests/kernels/simd/test_simd.py", "-k", "along_the_chain and (tsuji-rigid or tsuji-pressed)")

@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _TIME, _STEP, _EVENTS = "kernels/flow/event_time.py", "kernels/flow/attempt.py", "kernels/flow/events.py"
-_FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", "kernels/flow/saltation.py"
+_FLOW, _TANGENT, _SALTATION = "kernels/flow/run.py", "kernels/flow/tangent.py", "kernels/flow/velocity_tangent.py"
 _MAP, _ORBIT = "orbits/stroboscopic_map.py", "orbits/orbit.py"
 _NORMAL_FORMS, _CRITICALITY = "orbits/branch/normal_forms.py", "orbits/branch/criticality.py"
 

@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from granchain_core import BadInput, NumbersFailed
-from granchain_core.hard import CASES, Case, Check, Picture
+from granchain_core.hard_cases import CASES, Case, Check, Picture
 
 from ...serve.queues import MEASUREMENTS
 from ...session.activities import Activity

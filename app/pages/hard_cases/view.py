@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from granchain_core.hard import CASES, Check, Picture
+from granchain_core.hard_cases import CASES, Check, Picture
 
 from ...format import duration
 from ...parts.component import text

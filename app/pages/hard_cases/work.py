@@ -10,7 +10,7 @@ from multiprocessing.process import BaseProcess
 
 from granchain_core import Cancelled
 from granchain_core.child_processes import end_with_parent, starting
-from granchain_core.hard import CASES, Case, Check, Picture, run_case
+from granchain_core.hard_cases import CASES, Case, Check, Picture, run_case
 from granchain_core.stop import Stop
 
 from ...serve.delays import STOP_POLL

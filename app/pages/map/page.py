@@ -11,8 +11,9 @@ import numpy as np
 from panel.io import unlocked
 
 from granchain_core import Scene
-from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
-from granchain_core.diagram.cells import cell_of, empty_cells
+from granchain_core.attractors import Attractor, attractors
+from granchain_core.parameter_map import Axis, Grid, iter_diagram
+from granchain_core.parameter_map.cells import cell_of, empty_cells
 from granchain_core.pieces import ORBIT_KERNELS
 from granchain_core.stop import Stop
 

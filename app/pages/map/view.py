@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from granchain_core.diagram import Attractor, Grid
+from granchain_core.attractors import Attractor
 from granchain_core.orbits import response
+from granchain_core.parameter_map import Grid
 from granchain_core.regime import exponent_words, modulus_words
 
 from ...format import figures_of, in_words, short_error

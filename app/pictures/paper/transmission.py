@@ -6,7 +6,7 @@ from bokeh.models import ColumnDataSource
 from bokeh.plotting import figure
 
 from granchain_core.paper import Transmission
-from granchain_core.paper.peaks_and_dips import dips, peaks
+from granchain_core.paper.peaks_and_valleys import dips, peaks
 
 from ..axes import force_scale
 from ..curve import curve

@@ -2,7 +2,7 @@
 
 Equation   Harmonic: u_0 = A sin θ,  θ = 2πft;  v_0 = β A cos θ
            PrescribedMotion: u_0 = p_0 + p_1 θ + p_2 θ² between two knots, θ the time since the first of them
-Source     Zhang et al. 2016, eqs. (1) and (2); chirps, bursts, tones, noise, measured motion: driven/signal.py
+Source     Zhang et al. 2016, eqs. (1) and (2); chirps, tones, noise, measured motion: prescribed_drive/signal.py
 Values     Harmonic: amplitude: 1 in scaled units, 0 for a driver at rest; beta = 2πf/φ
            PrescribedMotion: piece (3,), which rk4/piecewise.py fills before each piece. The velocity is a straight line
            there, so that the acceleration, which the energy account needs, does not depend on the time

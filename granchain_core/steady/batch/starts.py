@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from ...integrate import following_setting
@@ -15,6 +15,7 @@ from ..settling.single_chain import settle_or_failure, settled_alone
 from ..steady_state import SteadyState
 from .engine import batch_states
 from .job import Start
+from .threads import on_all_cores
 
 
 def settling_methods(scene: Scene, each: str) -> str:
@@ -45,3 +46,10 @@ def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:
         return
     for one in together:
         yield replace(settle_or_failure(one.scene, one.state, stop), number=one.number)
+
+
+def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,
+                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
+    """Steady states from starts of one structure, as they are found; closing the generator ends it."""
+    ended = Stop()
+    return on_all_cores(lambda shared: settle_starts(shared, ended), starts, ended, stop, workers, pause)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from granchain_core import Run, Scene, resonance_curve, run, scene, settled
-from granchain_core.diagram import diagram
 from granchain_core.integrate import METHODS, Engine, Setting, adaptive_setting, fixed_step_setting
 from granchain_core.integrate.methods import ADAPTIVE, FIXED_STEP, jump_errors
+from granchain_core.parameter_map import diagram
 from granchain_core.state import State
 
 #: One bead that touches the driver when that starts with its full speed: the first force there is D A₀ 2πf, at t = 0+.

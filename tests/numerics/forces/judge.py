@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 
 from granchain_core import NumbersFailed, Scene, resonance_curve, run
-from granchain_core.diagram.cells import ERRORS, cell_of
-from granchain_core.diagram.compute import iter_diagram
-from granchain_core.diagram.grid import Axis, Grid
 from granchain_core.errors import OverBudget
+from granchain_core.parameter_map.cells import ERRORS, cell_of
+from granchain_core.parameter_map.compute import iter_diagram
+from granchain_core.parameter_map.grid import Axis, Grid
 from granchain_core.state import State
 
 from .draw import LONGEST, Draw, draw, draw_steady, strength

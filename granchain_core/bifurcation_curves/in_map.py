@@ -15,9 +15,9 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..orbits import Orbit, periodic_orbit
+from ..parameter_map.cells import CELL_REGIMES, Diagram
 from ..stop import Stop
-from .boundary import BoundaryPoint, boundary_curves, boundary_point
-from .cells import CELL_REGIMES, Diagram
+from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
 
 #: Steps in which an orbit is carried from its cell to the neighbour.
 _STEPS = 6
@@ -28,12 +28,12 @@ _CELLS_APART = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class BoundaryCurve:
+class BifurcationCurve:
     """A bifurcation curve: where orbits of `period` drive periods meet a bifurcation of one `kind`, in ascending y."""
 
     kind: str
     period: int
-    points: list[BoundaryPoint]
+    points: list[BifurcationPoint]
 
 
 @dataclass(frozen=True)
@@ -46,9 +46,9 @@ class _Pair:
     period: int
 
 
-def boundaries(found: Diagram, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
+def bifurcation_curves(found: Diagram, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
                stop: Stop | None = None,
-               on_curve: Callable[[BoundaryCurve], None] | None = None) -> list[BoundaryCurve]:
+               on_curve: Callable[[BifurcationCurve], None] | None = None) -> list[BifurcationCurve]:
     """Bifurcation curves from some rows of a diagram (the middle one), at `values` of y (those of its rows).
 
     Curves that cannot be followed are left out: a pair of cells from rest may be two attractors with no bifurcation
@@ -59,7 +59,7 @@ def boundaries(found: Diagram, rows: Iterable[int] | None = None, values: Iterab
     if any(not 0 <= row < grid.shape[0] for row in chosen):
         raise BadInput(f"rows are numbers from 0 to {grid.shape[0] - 1}.")
     heights = list(grid.y.values if values is None else values)
-    curves: list[BoundaryCurve] = []
+    curves: list[BifurcationCurve] = []
     for row in chosen:
         for pair in _pairs(found, row):
             point = _between(found, pair, stop)
@@ -67,11 +67,11 @@ def boundaries(found: Diagram, rows: Iterable[int] | None = None, values: Iterab
                 continue
             scene = grid.cell(pair.inside).evolve(**{grid.x.knob: point.x})
             try:
-                points = boundary_curves(scene, pair.kind, point.state, heights, pair.period, grid.x.knob, grid.y.knob,
+                points = points_of_curve(scene, pair.kind, point.state, heights, pair.period, grid.x.knob, grid.y.knob,
                                          stop)
             except NumbersFailed:
                 continue
-            curves.append(BoundaryCurve(pair.kind, pair.period, points))
+            curves.append(BifurcationCurve(pair.kind, pair.period, points))
             if on_curve is not None:
                 on_curve(curves[-1])
     return curves
@@ -95,7 +95,7 @@ def _pairs(found: Diagram, row: int) -> Iterator[_Pair]:
                 yield _Pair(inside, outside, "fold", period)
 
 
-def _between(found: Diagram, pair: _Pair, stop: Stop | None) -> BoundaryPoint | None:
+def _between(found: Diagram, pair: _Pair, stop: Stop | None) -> BifurcationPoint | None:
     """The point between two cells, from the orbit that comes nearest to it; None where there is none."""
     grid = found.grid
     columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]
@@ -114,7 +114,7 @@ def _between(found: Diagram, pair: _Pair, stop: Stop | None) -> BoundaryPoint | 
     if best is None:
         return None
     try:
-        point = boundary_point(best.scene, pair.kind, best.state, pair.period, grid.x.knob, grid.y.knob, stop)
+        point = bifurcation_point(best.scene, pair.kind, best.state, pair.period, grid.x.knob, grid.y.knob, stop)
     except (BadInput, NumbersFailed):
         return None
     low, high = min(a, b) - _CELLS_OUTSIDE * abs(b - a), max(a, b) + _CELLS_OUTSIDE * abs(b - a)
@@ -129,7 +129,7 @@ def _away(orbit: Orbit, kind: str) -> float:
     return float(np.abs(orbit.multipliers - (1.0 if kind == "fold" else -1.0)).min())
 
 
-def _lies_on(found: Diagram, point: BoundaryPoint, pair: _Pair, curve: BoundaryCurve) -> bool:
+def _lies_on(found: Diagram, point: BifurcationPoint, pair: _Pair, curve: BifurcationCurve) -> bool:
     """Whether a point is on a curve found before."""
     if (curve.kind, curve.period) != (pair.kind, pair.period):
         return False

@@ -21,13 +21,13 @@ from ..scene import Scene
 from ..scene.refusals import require_scene
 from ..state import State, rest
 from ..steady.batch.job import Start
+from ..steady.batch.starts import settle_on_all_cores
 from ..steady.exponent_measurements import MEASURED_PERIODS, TURNING_PERIODS
 from ..steady.regime_criteria import find_period, grows, is_neutral, rounding_of
 from ..steady.settling.regime_decisions import REMEMBERED
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .attractor import Attractor, Attractors, Origin
-from .compute import settle_on_all_cores
 from .sameness import Found, found, merged
 
 #: Frequencies of a sweep before the one asked for.

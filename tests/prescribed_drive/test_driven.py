@@ -15,7 +15,7 @@ import pytest
 
 from app.cli import main
 from granchain_core import BadInput, Run, Signal, drive, run, scene
-from granchain_core.driven.signal import KNOTS
+from granchain_core.prescribed_drive.signal import KNOTS
 
 CHAIN = scene("sec2").evolve(N=3)
 
@@ -96,7 +96,7 @@ def test_errors_of_the_largest_input_force_hold_what_knots_leave_out_of_a_formul
     """Against sixteen times the knots, whose velocity is off by 1/256 of the error stated here."""
     chain = CHAIN.evolve(dissipation=law)
     found = drive(chain.evolve(accuracy=accuracy), signal())
-    monkeypatch.setattr("granchain_core.driven.signal.KNOTS", 16 * KNOTS)
+    monkeypatch.setattr("granchain_core.prescribed_drive.signal.KNOTS", 16 * KNOTS)
     fine = drive(chain.evolve(accuracy=1e-10), signal())
     wrong = abs(found.max_input_force / fine.max_input_force - 1.0)
     stated = found.force_errors.input

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import Scene, scene
-from granchain_core.diagram.sameness import Found, found, merged
+from granchain_core.attractors.sameness import Found, found, merged
 from granchain_core.integrate import Engine, adaptive_setting
 from granchain_core.orbits import periodic_orbit
 from granchain_core.regime import Regime

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Scene, resonance_curve, scene, settled
-from granchain_core.diagram import Attractor, attractors, listing
-from granchain_core.diagram.attractor import Origin
-from granchain_core.diagram.attractors import _locks, share
-from granchain_core.diagram.attractors import _regime as irregular_regime
-from granchain_core.diagram.sameness import Found
+from granchain_core.attractors import Attractor, attractors, listing
+from granchain_core.attractors.attractor import Origin
+from granchain_core.attractors.attractors import _locks, share
+from granchain_core.attractors.attractors import _regime as irregular_regime
+from granchain_core.attractors.sameness import Found
 from granchain_core.orbits import periodic_orbit, response
 from granchain_core.regime import Regime
 from granchain_core.state import State, rest
@@ -138,7 +138,7 @@ def test_failed_starts_are_named_and_count_among_the_random_states(monkeypatch: 
     pressed = State(np.array([0.0, 1.0]), np.zeros(2))
     origins = [Origin("rest", rest(chain)), Origin("random 0", rest(chain)), Origin("random 1", pressed)]
     # the package has a function of the name of the module
-    monkeypatch.setattr(sys.modules["granchain_core.diagram.attractors"], "_origins", lambda *_: origins)
+    monkeypatch.setattr(sys.modules["granchain_core.attractors.attractors"], "_origins", lambda *_: origins)
     found = attractors(chain, random_states=2)
     assert [one.share for one in found] == [0.5]
     assert [origin.name for origin in found.failed] == ["random 1"]

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from granchain_core.hard import CASES, Picture
-from granchain_core.hard.case import Trace
-from granchain_core.hard.contacts import at_once_picture, collisions_picture
-from granchain_core.hard.energy import switched_picture
-from granchain_core.hard.extremes import preloads_picture, sizes_picture
-from granchain_core.hard.oracle import PlainChain
-from granchain_core.hard.regimes import drifting_picture
+from granchain_core.hard_cases import CASES, Picture
+from granchain_core.hard_cases.case import Trace
+from granchain_core.hard_cases.contacts import at_once_picture, collisions_picture
+from granchain_core.hard_cases.energy import switched_picture
+from granchain_core.hard_cases.extremes import preloads_picture, sizes_picture
+from granchain_core.hard_cases.oracle import PlainChain
+from granchain_core.hard_cases.regimes import drifting_picture
 from granchain_core.scene import scene
 
 #: What is seen from the back row: a part of the picture's height, powers of ten, a part of its width without a line.

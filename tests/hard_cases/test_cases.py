@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from granchain_core.hard import CASES, Check, run_case
+from granchain_core.hard_cases import CASES, Check, run_case
 
 #: Rows that are timings; on a machine that does other things they are not a test.
 TIMINGS = ("time per bead", "time of an evaluation")

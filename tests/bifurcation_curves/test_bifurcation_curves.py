@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, NumbersFailed, Scene, State, scene, settled
-from granchain_core.diagram import boundaries, diagram
-from granchain_core.diagram.boundary import BoundaryPoint, boundary_curves, boundary_point
+from granchain_core.bifurcation_curves import bifurcation_curves
+from granchain_core.bifurcation_curves.continuation import BifurcationPoint, bifurcation_point, points_of_curve
 from granchain_core.orbits import continue_branch, periodic_orbit
+from granchain_core.parameter_map import diagram
 
 pytestmark = pytest.mark.quick
 
@@ -25,13 +26,13 @@ def near(kind: str) -> tuple[Scene, np.ndarray, int]:
 
 
 @pytest.fixture(scope="module")
-def points() -> dict[str, BoundaryPoint]:
-    return {kind: boundary_point(near(kind)[0], kind, *near(kind)[1:]) for kind in NEAR}
+def points() -> dict[str, BifurcationPoint]:
+    return {kind: bifurcation_point(near(kind)[0], kind, *near(kind)[1:]) for kind in NEAR}
 
 
 @pytest.mark.parametrize(("kind", "condition"), [
     ("period_doubling", lambda mu: mu + 1.0), ("fold", lambda mu: mu - 1.0), ("neimark_sacker", lambda mu: abs(mu) - 1.0)])
-def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, BoundaryPoint], kind: str, condition) -> None:  # type: ignore[no-untyped-def]
+def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, BifurcationPoint], kind: str, condition) -> None:  # type: ignore[no-untyped-def]
     found = points[kind]
     assert abs(condition(found.multiplier)) <= 1e-6
     shown, start, period = near(kind)
@@ -40,7 +41,7 @@ def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, BoundaryP
         assert np.abs(condition(orbit.multipliers)).min() <= 1e-5
 
 
-def test_beyond_a_period_doubling_the_period_is_two(points: dict[str, BoundaryPoint]) -> None:
+def test_beyond_a_period_doubling_the_period_is_two(points: dict[str, BifurcationPoint]) -> None:
     at = points["period_doubling"].x
     assert settled(scene("sec2").evolve(f=at - 3.0)).regime.period == 1
     assert settled(scene("sec2").evolve(f=at + 3.0)).regime.period == 2
@@ -48,7 +49,7 @@ def test_beyond_a_period_doubling_the_period_is_two(points: dict[str, BoundaryPo
 
 @pytest.mark.parametrize(("away", "name"), [(-8.0, "quasi-periodic"), (15.0, "periodic")])
 def test_on_one_side_of_a_neimark_sacker_point_the_motion_is_quasi_periodic(
-        points: dict[str, BoundaryPoint], away: float, name: str) -> None:
+        points: dict[str, BifurcationPoint], away: float, name: str) -> None:
     shown = scene("sec2").evolve(f=points["neimark_sacker"].x + away)
     orbit = periodic_orbit(shown, 1)
     assert orbit.stable == (name == "periodic")
@@ -56,32 +57,32 @@ def test_on_one_side_of_a_neimark_sacker_point_the_motion_is_quasi_periodic(
     assert settled(shown, beside).regime.name == name
 
 
-def test_beyond_a_fold_there_is_no_such_orbit(points: dict[str, BoundaryPoint]) -> None:
+def test_beyond_a_fold_there_is_no_such_orbit(points: dict[str, BifurcationPoint]) -> None:
     at, (shown, start, period) = points["fold"].x, near("fold")
     assert periodic_orbit(shown.evolve(f=at - 0.5), period, start).stable
     with pytest.raises(NumbersFailed, match="found no orbit of 5 drive periods"):
         periodic_orbit(shown.evolve(f=at + 5.0), period, start)
 
 
-def test_a_curve_goes_through_its_rows_and_scales(points: dict[str, BoundaryPoint]) -> None:
+def test_a_curve_goes_through_its_rows_and_scales(points: dict[str, BifurcationPoint]) -> None:
     shown, start, period = near("neimark_sacker")
     rows = [3.5e-7, 5e-7, 8e-7]
-    curve = boundary_curves(shown, "neimark_sacker", start, rows, period)
+    curve = points_of_curve(shown, "neimark_sacker", start, rows, period)
     assert [point.y for point in curve] == rows
     assert all(abs(abs(point.multiplier) - 1.0) <= 1e-6 for point in curve)
     assert curve[1].x == pytest.approx(points["neimark_sacker"].x, rel=1e-9)
     # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D): the curve at another D, point by point
     s = 2.0
     other = shown.evolve(A0=s * shown.A0, f=s**0.25 * shown.f, D=s**0.25 * shown.D)
-    scaled = boundary_curves(other, "neimark_sacker", periodic_orbit(other, 1).state, [s * row for row in rows], period)
+    scaled = points_of_curve(other, "neimark_sacker", periodic_orbit(other, 1).state, [s * row for row in rows], period)
     for a, b in zip(curve, scaled, strict=True):
         assert b.x == pytest.approx(s**0.25 * a.x, rel=1e-6)  # |μ| is met to 1e-6
         assert abs(b.multiplier.real) == pytest.approx(abs(a.multiplier.real), abs=1e-5)
 
 
-def test_a_fold_is_followed(points: dict[str, BoundaryPoint]) -> None:
+def test_a_fold_is_followed(points: dict[str, BifurcationPoint]) -> None:
     shown, start, period = near("fold")
-    curve = boundary_curves(shown, "fold", start, [4.5e-7, 5e-7], period)
+    curve = points_of_curve(shown, "fold", start, [4.5e-7, 5e-7], period)
     assert [point.y for point in curve] == [4.5e-7, 5e-7]
     assert abs(curve[0].multiplier - 1.0) <= 1e-6 and curve[0].x < curve[1].x
 
@@ -89,16 +90,16 @@ def test_a_fold_is_followed(points: dict[str, BoundaryPoint]) -> None:
 @pytest.mark.parametrize(("kind", "start", "end", "period"), [
     ("neimark_sacker", 1245.0, 1226.0, 1), ("period_doubling", 508.0, 515.0, 1), ("fold", 1951.0, 1956.0, 5)])
 def test_the_point_is_where_the_branch_encloses_one(kind: str, start: float, end: float, period: int) -> None:
-    """A branch encloses the change of stability by two orbits; the secants of the boundary know nothing of them."""
+    """A branch encloses the change of stability by two orbits; a bifurcation curve finds it by secants of its own."""
     branch = continue_branch(scene("sec2"), "f", start, end, period)
     [special] = [one for one in branch.special if one.kind == kind]
     begun = branch.points[0]  # 1.4 to 9 Hz from the special point
-    found = boundary_point(branch.axis.scene_at(begun.knob), kind, branch.state(begun), period)
+    found = bifurcation_point(branch.axis.scene_at(begun.knob), kind, branch.state(begun), period)
     low, high = special.interval
     assert high - low < 2e-5 * special.knob
     before, after = (np.abs(one.multipliers[max(special.before.unstable, special.after.unstable) - 1])
                      for one in (special.before, special.after))
-    # the boundary's |μ| is 1 to 1e-6; at a fold the knob turns, and such an error of μ moves it by the square of that
+    # the curve's |μ| is 1 to 1e-6; at a fold the knob turns, and such an error of μ moves it by the square of that
     unsure = 0.0 if kind == "fold" else 1e-6 * (high - low) / abs(after - before)
     assert unsure < high - low
     assert low - unsure <= found.x <= high + unsure
@@ -106,35 +107,35 @@ def test_the_point_is_where_the_branch_encloses_one(kind: str, start: float, end
 
 def test_wrong_requests_are_one_sentence() -> None:
     shown, start, _ = near("period_doubling")
-    with pytest.raises(BadInput, match="Unknown kind of boundary 'hopf'"):
-        boundary_point(shown, "hopf", start)
+    with pytest.raises(BadInput, match="Unknown kind of bifurcation curve 'hopf'"):
+        bifurcation_point(shown, "hopf", start)
     with pytest.raises(BadInput, match="two distinct"):
-        boundary_point(shown, "fold", start, x="f", y="f")
+        bifurcation_point(shown, "fold", start, x="f", y="f")
     with pytest.raises(BadInput, match="begins at a value above 0"):
-        boundary_point(shown, "fold", start, x="f", y="k")
+        bifurcation_point(shown, "fold", start, x="f", y="k")
     with pytest.raises(NumbersFailed, match=r"lost the branch|No fold was found"):
-        boundary_point(scene("sec2"), "fold", periodic_orbit(scene("sec2")).state)
+        bifurcation_point(scene("sec2"), "fold", periodic_orbit(scene("sec2")).state)
 
 
-def test_a_diagram_shows_where_its_boundaries_are() -> None:
+def test_a_diagram_shows_where_its_bifurcation_curves_are() -> None:
     found = diagram(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
-    curves = boundaries(found, rows=[1])
+    curves = bifurcation_curves(found, rows=[1])
     told = {(curve.kind, curve.period): curve for curve in curves}
     # period 1 doubles at 512 Hz; the orbit of period 2 in its turn near 572 Hz, into one of period 4 or more
     first = told["period_doubling", 1]
     assert [point.y for point in first.points] == [4.5e-7, 5e-7]
-    assert first.points[1].x == pytest.approx(boundary_point(*near("period_doubling")[:1], "period_doubling",
+    assert first.points[1].x == pytest.approx(bifurcation_point(*near("period_doubling")[:1], "period_doubling",
                                                              near("period_doubling")[1]).x, rel=1e-6)
     assert 0.0 < first.points[1].x - first.points[0].x < 20.0  # f ∝ A0^{1/4} nearly: 13 Hz
     with pytest.raises(BadInput, match="rows are numbers from 0 to 1"):
-        boundaries(found, rows=[2])
+        bifurcation_curves(found, rows=[2])
 
 
-def test_a_boundary_is_followed_to_where_its_second_knob_is_zero() -> None:
+def test_a_bifurcation_curve_is_followed_to_where_its_second_knob_is_zero() -> None:
     """Three beads at 1300 Hz: from k = 2e4 N/m to a chain without foundation, whose period doubling a branch over D
     finds as well."""
     chain = scene("sec2").evolve(N=3, f=1300.0)
-    found = boundaries(diagram(chain, ("D", np.linspace(70.0, 76.0, 5)), ("k", [0.0, 2e4])), rows=[1])
+    found = bifurcation_curves(diagram(chain, ("D", np.linspace(70.0, 76.0, 5)), ("k", [0.0, 2e4])), rows=[1])
     (curve,) = [one for one in found if one.kind == "period_doubling" and one.period == 1]
     (at_zero,) = [point.x for point in curve.points if point.y == 0.0]
     doublings = [one for one in continue_branch(chain, "D", 76.0, 70.0).special if one.kind == "period_doubling"]

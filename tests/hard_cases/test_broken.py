@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import NumbersFailed, Scene
-from granchain_core.hard import (
+from granchain_core.hard_cases import (
     Case,
     Measurement,
     contacts,

@@ -26,11 +26,11 @@ from ..errors import BadInput, Cancelled, NumbersFailed
 from ..input_checks import unknown_name
 from ..orbits.branch.special import BIFURCATIONS
 from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, StroboscopicMap
+from ..parameter_map.grid import KNOBS
 from ..quantities import QUANTITIES
 from ..scene import Scene
 from ..state import State
 from ..stop import Stop
-from .grid import KNOBS
 
 #: How exactly the critical multiplier meets its condition: it is not known better.
 _CONDITION_ERROR = MULTIPLIER_ERROR
@@ -55,7 +55,7 @@ _REAL_ANGLE = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
-class BoundaryPoint:
+class BifurcationPoint:
     """A point of a bifurcation curve: both knobs, the critical multiplier, and the orbit's scaled state at phase 0."""
 
     x: float
@@ -143,8 +143,8 @@ def _met(multiplier: complex, kind: str) -> bool:
     return abs(away) <= _CONDITION_ERROR
 
 
-def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: int = 1, x: str = "f", y: str = "A0",
-                   stop: Stop | None = None) -> BoundaryPoint:
+def bifurcation_point(scene: Scene, kind: str, state: State | np.ndarray, period: int = 1, x: str = "f", y: str = "A0",
+                   stop: Stop | None = None) -> BifurcationPoint:
     """The point of `kind` on the branch over knob x nearest to an orbit through `state`.
 
     `state` is at phase 0, in SI or scaled (2N,) of displacements, then w. Raises `BadInput`, and `NumbersFailed` where
@@ -161,17 +161,17 @@ def boundary_point(scene: Scene, kind: str, state: State | np.ndarray, period: i
 
 def _check(scene: Scene, kind: str, x: str, y: str) -> None:
     if kind not in BIFURCATIONS:
-        raise unknown_name("kind of boundary", kind, BIFURCATIONS)
+        raise unknown_name("kind of bifurcation curve", kind, BIFURCATIONS)
     for knob in (x, y):
         if knob not in KNOBS:
-            raise unknown_name("knob for a boundary", knob, KNOBS)
+            raise unknown_name("knob of a bifurcation curve", knob, KNOBS)
         if not float(scene.knobs[knob] if knob != "wall" else scene.wall_factor) > 0.0:
-            raise BadInput(f"A boundary over {knob} begins at a value above 0; give the scene one.")
+            raise BadInput(f"A bifurcation curve over {knob} begins at a value above 0; give the scene one.")
     if x == y:
         raise BadInput(f"Both knobs are {x}; give two distinct ones.")
 
 
-def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y: str) -> BoundaryPoint:
+def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y: str) -> BifurcationPoint:
     """Go along the branch by secants until the condition is met."""
     try:
         slope = branch.slope(guess)
@@ -180,7 +180,7 @@ def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y
         step = _FIRST_STEP * float(np.linalg.norm(before)) * branch.tangent(derivative, slope, along)
         for _ in range(_MOST_SECANTS):
             if _met(mu, kind):
-                return BoundaryPoint(float(before[-1]) * branch.unit, float(branch.scene.knobs[y]), mu, before[:-1])
+                return BifurcationPoint(float(before[-1]) * branch.unit, float(branch.scene.knobs[y]), mu, before[:-1])
             X, there, mu = _advanced(branch, kind, before, step, slope)
             gain = condition - there
             factor = there / gain if gain != 0.0 else _LONGEST_SECANT
@@ -205,16 +205,16 @@ def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,
     raise NumbersFailed("Newton's method lost the branch.", "no-convergence")
 
 
-def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: Iterable[float], period: int = 1,
+def points_of_curve(scene: Scene, kind: str, state: State | np.ndarray, values: Iterable[float], period: int = 1,
                     x: str = "f", y: str = "A0", stop: Stop | None = None,
-                    on_point: Callable[[BoundaryPoint], None] | None = None) -> list[BoundaryPoint]:
+                    on_point: Callable[[BifurcationPoint], None] | None = None) -> list[BifurcationPoint]:
     """The curve of `kind` through the point near the orbit `state` of `scene`, at the `values` of knob y.
 
     It is followed to both sides of the scene's own y, as far as it goes: where the branch or the critical multiplier is
     lost the curve ends, and points beyond that are left out. Points come back in ascending y, that at the scene's own y
     included. Raises `BadInput`, `Cancelled`, and `NumbersFailed` where there is no such point to begin with.
     """
-    first = boundary_point(scene, kind, state, period, x, y, stop)
+    first = bifurcation_point(scene, kind, state, period, x, y, stop)
     wanted = sorted({float(QUANTITIES[y].check(value)) for value in values} - {first.y})
     found = [first]
     if on_point is not None:
@@ -234,8 +234,8 @@ def boundary_curves(scene: Scene, kind: str, state: State | np.ndarray, values: 
     return sorted(found, key=lambda point: point.y)
 
 
-def _follow(scene: Scene, kind: str, points: list[BoundaryPoint], value: float, period: int, x: str, y: str,
-            stop: Stop | None) -> BoundaryPoint | None:
+def _follow(scene: Scene, kind: str, points: list[BifurcationPoint], value: float, period: int, x: str, y: str,
+            stop: Stop | None) -> BifurcationPoint | None:
     """The curve's point at y = `value`, by smaller steps where one is too large; None where the curve ends."""
     way, part = points[-2:], 1.0
     whole = abs(value - way[-1].y)
@@ -251,8 +251,8 @@ def _follow(scene: Scene, kind: str, points: list[BoundaryPoint], value: float, 
     return way[-1]
 
 
-def _stepped(scene: Scene, kind: str, way: list[BoundaryPoint], end: float, period: int, x: str, y: str,
-             stop: Stop | None) -> BoundaryPoint | None:
+def _stepped(scene: Scene, kind: str, way: list[BifurcationPoint], end: float, period: int, x: str, y: str,
+             stop: Stop | None) -> BifurcationPoint | None:
     """The point at y = `end` by one step from the last two; None if there is none that continues smoothly."""
     guess, state = _extrapolated(way, end, x, y)
     try:
@@ -274,7 +274,7 @@ def _inwards(branch: _Branch, state: np.ndarray) -> np.ndarray:
     return np.append(rows[-1], 0.0)
 
 
-def _extrapolated(way: list[BoundaryPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
+def _extrapolated(way: list[BifurcationPoint], y: float, x_knob: str, y_knob: str) -> tuple[float, np.ndarray]:
     """Knob x and state at y: on the line through the last two points; from one alone by f ∝ A0^{1/4}, else unchanged.
 
     (A0, f) → (s A0, s^{1/4} f) leaves the scaled orbit unchanged where D and k go along, and nearly where they do not.
@@ -291,7 +291,7 @@ def _extrapolated(way: list[BoundaryPoint], y: float, x_knob: str, y_knob: str) 
     return float(b.x * (b.x / a.x) ** part), b.state + part * (b.state - a.state)
 
 
-def _continues(before: BoundaryPoint, after: BoundaryPoint) -> bool:
+def _continues(before: BifurcationPoint, after: BifurcationPoint) -> bool:
     """Whether the critical multiplier and the first knob continue smoothly: else the point is on another curve."""
     turned = abs(abs(np.angle(after.multiplier)) - abs(np.angle(before.multiplier)))
     return bool(turned <= 0.15 and abs(after.x / before.x - 1.0) <= 0.25)

@@ -44,7 +44,7 @@ class Sensors:
 
     Examples
     --------
-    >>> from granchain_core.virtual import Sensors
+    >>> from granchain_core.virtual_experiment import Sensors
     >>> Sensors(noise=0.01, bandwidth=20e3).words
     'noise 0.01 N, bandwidth 20000 Hz, 100000 samples/s'
     """

@@ -79,7 +79,7 @@ def virtual_series_csv(scene: Scene, periods: int, sensors: Sensors, seed: int =
     --------
     >>> from granchain_core import scene
     >>> from granchain_core.experiment import read_data
-    >>> from granchain_core.virtual import Sensors, virtual_series_csv
+    >>> from granchain_core.virtual_experiment import Sensors, virtual_series_csv
     >>> text = virtual_series_csv(scene("sec2").evolve(N=2, f=2000.0), 3, Sensors(noise=0.01))
     >>> found = read_data(text.encode())
     >>> found.virtual, len(found.time)
@@ -139,7 +139,7 @@ def virtual_curve_csv(scene: Scene, frequencies: Sequence[float] | np.ndarray, s
     --------
     >>> from granchain_core import scene
     >>> from granchain_core.experiment import read_data
-    >>> from granchain_core.virtual import Sensors, virtual_curve_csv
+    >>> from granchain_core.virtual_experiment import Sensors, virtual_curve_csv
     >>> text = virtual_curve_csv(scene("sec2").evolve(N=2), [1800.0, 2000.0], Sensors(noise=0.01), scatter=0.02)
     >>> found = read_data(text.encode())
     >>> found.repeats.tolist(), found.virtual

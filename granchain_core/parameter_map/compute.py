@@ -10,8 +10,7 @@ import numpy as np
 from ..input_checks import axis_in
 from ..scene import Amplitude, Scene
 from ..steady.batch.job import Start
-from ..steady.batch.starts import settle_starts
-from ..steady.batch.threads import on_all_cores
+from ..steady.batch.starts import settle_on_all_cores, settle_starts
 from ..steady.steady_state import SteadyState
 from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells
@@ -54,13 +53,6 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
         yield from settle_on_all_cores(starts_of(grid, group), stop, workers, pause)
         if stop:
             return
-
-
-def settle_on_all_cores(starts: Iterable[Start], stop: Stop | None = None,
-                        workers: int | None = None, pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
-    """Steady states from starts of one structure, as they are found; closing the generator ends it."""
-    ended = Stop()
-    return on_all_cores(lambda shared: settle_starts(shared, ended), starts, ended, stop, workers, pause)
 
 
 def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],

@@ -1,0 +1,6 @@
+"""Folds, period doublings and Neimark–Sacker points over two knobs, continued from one point or found in a map."""
+
+from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
+from .in_map import BifurcationCurve, bifurcation_curves
+
+__all__ = ["BifurcationCurve", "BifurcationPoint", "bifurcation_curves", "bifurcation_point", "points_of_curve"]
