@@ -10,7 +10,7 @@ from ..kernels.dop853.run import SampleRange, run_dop853
 from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace, DriveCycle
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.peaks import largest_forces, next_period
-from ..kernels.samples import Output, Samples, first_not_finite
+from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.status import DONE
 from ..scaling import ScaledChain
 from ..stop import Stop
@@ -62,12 +62,12 @@ class Dop853Stepper:
         """Recompute driver state and dy/dt for y."""
         evaluate_at_phase(self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
 
-    def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
+    def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
         return self.stretch(y, first, len(samples.displacement) - 1, 1, samples, out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
-                out: Output) -> tuple[int, int]:
+                out: KernelIO) -> tuple[int, int]:
         """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
         keep, row = empty_samples(self.scaled, 2), self.scaled.bodies
         strobes[0] = y[:row], self.work.k[0, :row]
@@ -83,7 +83,7 @@ class Dop853Stepper:
         return DONE, len(maxima)
 
     def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
-             out: Output) -> tuple[int, int]:
+             out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         status, rows = run_dop853(self.method, self.trajectory(y), SampleRange(first, points, self.grid, every),
                                   samples, out)

@@ -74,12 +74,12 @@ class Batch:
         )
         rows = 2 * (n + 2)
         counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
-            "steps", "left", "periods", "return_at", "next_check", "extrapolate_from", "wait_after_undo", "due",
+            "steps", "steps_left", "periods", "return_at", "next_check", "extrapolate_from", "wait_after_undo", "due",
             "shadow", "strobe_count", "tested_period")}
         numbers = {name: np.zeros(BATCH_SIZE) for name in (
             "slowest_decay", "slowest_decay_before", "change_before_extrapolation", "distance")}
         self.state = kernels.BatchState(
-            **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), ends=_rows(4), phase=_rows(2),
+            **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), end_contacts=_rows(4), phase=_rows(2),
             first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
             peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)),
             state_before=np.zeros((BATCH_SIZE, 2, n + 2)),
@@ -117,9 +117,9 @@ class Batch:
         members.beta[0, member], members.h[0, member] = scaled.beta, scaled.period / steps
         state.phase[:, member] = 0.0, 1.0
         state.peaks[:, member] = 0.0
-        state.steps[member] = state.left[member] = steps
+        state.steps[member] = state.steps_left[member] = steps
         state.y[:, member], state.overlaps[:, member] = y, 0.0
-        state.ends[:, member] = 1.0  # counts as closed, so that no closing is recorded here
+        state.end_contacts[:, member] = 1.0  # counts as closed, so that no closing is recorded here
         state.strobes[member, 0], state.strobe_count[member] = y.reshape(2, -1), 1
         state.first_strobe[:, member] = 0
         state.periods[member], state.return_at[member], state.next_check[member] = 0, return_at, earliest

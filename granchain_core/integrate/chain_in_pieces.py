@@ -12,14 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..kernels.contact_cubic import ENDS
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
 from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
 from ..kernels.rk4.piecewise import DrivePieces, run_pieces
 from ..kernels.rk4.step import DriveTable, Rk4Split, Rk4Workspace
-from ..kernels.samples import Output, Samples, first_not_finite
+from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.status import CANCELLED, NOT_FINITE
+from ..kernels.step_ends import END_ROWS
 from ..scaling import ScaledChain
 from ..state import State
 from ..stop import Stop
@@ -81,7 +81,7 @@ class ChainInPieces:
         displacement[:] = start.displacement / scaled.scales.length
         velocity[:] = start.velocity / scaled.scales.velocity
         workspace = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
-                                 np.zeros((ENDS, row - 1)), scaled.forces(), None)
+                                 np.zeros((END_ROWS, row - 1)), scaled.forces(), None)
         scaled.slots.driver.piece[:] = self._pieces[0]
         evaluate_at_phase(scaled.slots, 0.0, y, workspace.k[0], workspace.forces, True)
         reset_peaks(self._log.peaks)
@@ -89,7 +89,7 @@ class ChainInPieces:
         nothing = DriveTable(np.zeros((0, 2)), 0.0, 0.0)
         status, done = run_pieces(Rk4Split(0), Trajectory(scaled.slots, nothing, y, workspace),
                                   DrivePieces(self._spans, self._pieces, self._substeps * 2**halvings), samples,
-                                  Output(self._log, self.counts.array, self._stop.flag))
+                                  KernelIO(self._log, self.counts.array, self._stop.flag))
         if status == CANCELLED:
             raise Cancelled
         if status == NOT_FINITE:

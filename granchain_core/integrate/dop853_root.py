@@ -12,7 +12,7 @@ from ..kernels.dop853_root.chain import STATE_ROWS, Dop853RootWorkspace, Stages
 from ..kernels.dop853_root.run import run_dop853_root
 from ..kernels.forces.largest import new_log
 from ..kernels.rk4.short_chain import CHAIN_WIDTHS
-from ..kernels.samples import Output, Samples
+from ..kernels.samples import KernelIO, Samples
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
 from ..stop import Stop
@@ -34,7 +34,7 @@ class Dop853RootStepper(Dop853Stepper):
         super().use(scaled)
 
     def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
-                out: Output) -> tuple[int, int]:
+                out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         status, rows = run_dop853_root(self.method, self._vectors, self.trajectory(y),
                                   SampleRange(first, points, self.grid, every), samples, out)
@@ -48,7 +48,7 @@ class Dop853RootStepper(Dop853Stepper):
         again, now = Dop853Stepper(self.method.tolerance, self.scaled, self.grid), before.copy()
         again.prepare(now)
         kept = empty_samples(self.scaled, round(self.grid * (done + 2.0)))
-        again.samples(now, first, kept, Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag))
+        again.samples(now, first, kept, KernelIO(new_log(), np.zeros(4, dtype=np.int64), Stop().flag))
         return again.locate_failure(now, start, done)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import BadInput
 from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
 from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
-from ..kernels.samples import Output, Samples, first_not_finite
+from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.status import DONE, NOT_FINITE
 from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
@@ -148,10 +148,10 @@ class Engine:
         self.elapsed += count
         return strobes[:, :, 1:-1], maxima
 
-    def _output(self, closings: int = 0) -> Output:
+    def _output(self, closings: int = 0) -> KernelIO:
         """A new log with places for this number of closings, the counts and the stop flag."""
         self.log = new_log(self.log, closings)
-        return Output(self.log, self.counts.array, self.stop.flag)
+        return KernelIO(self.log, self.counts.array, self.stop.flag)
 
     # --- largest forces ------------------------------------------------------------------------------------
 

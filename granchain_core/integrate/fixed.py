@@ -18,7 +18,6 @@ import numpy as np
 
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
-from ..kernels.contact_cubic import ENDS
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
 from ..kernels.naive import naive_motion
@@ -26,8 +25,9 @@ from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import RunRecord, run_steps
 from ..kernels.rk4.short_chain import CHAIN_WIDTHS, STATE_ROWS, STEPS_IN_BLOCK, ShortChain
 from ..kernels.rk4.step import DriveTable, Rk4Workspace
-from ..kernels.samples import Output, Samples, first_not_finite
+from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
+from ..kernels.step_ends import END_ROWS
 from ..scaling import ScaledChain
 from ..stop import Stop
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
@@ -59,7 +59,7 @@ class FixedStep:
         self._structure: Any = None
         self.drive = self._driver_table(scaled)
         self.work = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
-                                 np.zeros((ENDS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
+                                 np.zeros((END_ROWS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
 
     @property
     def work(self) -> Any:
@@ -121,7 +121,7 @@ class FixedStep:
         slots, work = self.scaled.slots, self.work
         _EVALUATE_AT_PHASE(self._structure, slots, theta, y, work.k[0], work.forces, from_velocity)
 
-    def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
+    def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """Advance from step `first`, filling the samples; returns status and number of rows filled."""
         part = steps_in_part(self.scaled.bodies)
         if self._every * (len(samples.displacement) - 1) > part:
@@ -129,7 +129,7 @@ class FixedStep:
         return self.run(y, first, self._every, samples, out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
-                out: Output) -> tuple[int, int]:
+                out: KernelIO) -> tuple[int, int]:
         """Advance whole periods, filling strobes and largest forces (at no cost); returns status and periods done."""
         part = steps_in_part(self.scaled.bodies)
         if self.grid > part:
@@ -138,7 +138,7 @@ class FixedStep:
         status, done = _RUN_STEPS(self._structure, self.method, self.trajectory(y), 0, self.grid, record, out)
         return status, done
 
-    def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: Output) -> tuple[int, int]:
+    def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
         record = RunRecord(samples, *self._no_periods)
         status, done = _RUN_STEPS(self._structure, self.method, self.trajectory(y), first, stride, record, out)
@@ -178,7 +178,7 @@ class FixedStep:
         work = self.work._replace(simd=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
         work.k[0] = slope
         trajectory = self.trajectory(now)._replace(workspace=work)
-        kept, out = empty_samples(self.scaled, 2), Output(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
+        kept, out = empty_samples(self.scaled, 2), KernelIO(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
         j = first
         while j < last:
             stride = min(last, (j // n + 1) * n) - j
@@ -216,7 +216,7 @@ def short_chain_workspace(scaled: ScaledChain, width: int) -> ShortChain:
 
     preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
     return ShortChain(CHAIN_WIDTHS[width], padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,
-                      aligned(2 * STATE_ROWS, width), aligned(ENDS, width), np.zeros((3, STEPS_IN_BLOCK)))
+                      aligned(2 * STATE_ROWS, width), aligned(END_ROWS, width), np.zeros((3, STEPS_IN_BLOCK)))
 
 
 def _long_chain(scaled: ScaledChain) -> LongChain:

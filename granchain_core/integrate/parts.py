@@ -14,7 +14,7 @@ import numpy as np
 
 from ..kernels.forces.largest import CLOSED
 from ..kernels.forces.peaks import largest_forces, next_period
-from ..kernels.samples import Output, Samples, keep_strobe
+from ..kernels.samples import KernelIO, Samples, write_strobe
 from ..kernels.status import CANCELLED, DONE
 from ..scaling import ScaledChain
 from .stepper import empty_samples
@@ -34,7 +34,7 @@ class InParts(Protocol):
     def slope(self) -> np.ndarray:
         """The slope dy/dt (M,) at the present state."""
 
-    def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: Output) -> tuple[int, int]:
+    def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
 
 
@@ -44,7 +44,7 @@ def steps_in_part(bodies: int) -> int:
 
 
 def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,
-                     out: Output) -> tuple[int, int]:
+                     out: KernelIO) -> tuple[int, int]:
     """Fill the samples; returns status and number of rows filled."""
     rows, at_once = len(samples.displacement), max(1, part // stride)
     row, step = 0, first
@@ -67,22 +67,22 @@ def samples_in_parts(stepper: InParts, y: np.ndarray, first: int, stride: int, p
 
 
 def periods_in_parts(stepper: InParts, y: np.ndarray, part: int, strobes: np.ndarray, maxima: np.ndarray,
-                     out: Output) -> tuple[int, int]:
+                     out: KernelIO) -> tuple[int, int]:
     """Advance whole periods from phase 0, filling strobes and largest forces; returns status and periods done."""
     slope = stepper.slope
-    keep_strobe(y, slope, strobes[0])
+    write_strobe(y, slope, strobes[0])
     for i in range(len(maxima)):
         next_period(out.log.peaks)
         status = _stride(stepper, y, 0, stepper.grid, part, empty_samples(stepper.scaled, 2), out)
         if status != DONE:
             return status, i
-        keep_strobe(y, slope, strobes[i + 1])
+        write_strobe(y, slope, strobes[i + 1])
         maxima[i] = largest_forces(out.log.peaks)
     return DONE, len(maxima)
 
 
 def _stride(stepper: InParts, y: np.ndarray, first: int, stride: int, part: int, samples: Samples,
-            out: Output) -> int:
+            out: KernelIO) -> int:
     """From one sample (2 rows) to the next in several calls; returns the status."""
     scratch = empty_samples(stepper.scaled, 2)
     for j in range(0, stride, part):

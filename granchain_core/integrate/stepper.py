@@ -8,7 +8,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from ..kernels.equations.motion import Trajectory
-from ..kernels.samples import Output, Samples
+from ..kernels.samples import KernelIO, Samples
 from ..scaling import ScaledChain
 
 #: Where a call began: state and slope (M,), and the grid index.
@@ -42,11 +42,11 @@ class Stepper(Protocol):
     def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the driver and the slope in step with y at drive phase `theta`."""
 
-    def samples(self, y: np.ndarray, first: int, samples: Samples, out: Output) -> tuple[int, int]:
+    def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """Advance from grid index `first`, filling the samples; returns status and number of rows filled."""
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
-                out: Output) -> tuple[int, int]:
+                out: KernelIO) -> tuple[int, int]:
         """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
 
     def step_at(self, grid_index: int) -> int | None:

@@ -16,7 +16,7 @@ from .effects.dissipation import dashpot_force
 from .effects.preload import overlap
 from .effects.tension import cut_at_zero
 from .equations.body_forces import force_on_bead
-from .forces.crossings import end_overlaps, watch_crossings
+from .forces.crossings import end_approaches, record_crossings
 from .forces.largest import Instant
 from .rk4.step import span_of, step, tabulated_displacement, tabulated_velocity
 from .status import EVALUATIONS, STEPS
@@ -58,7 +58,7 @@ def _(method, trajectory, j, out):
     slots, drive, y, workspace = trajectory
     k, stage, forces, h = workspace.k, workspace.stage, workspace.forces, drive.h
     now = Instant(y, k[0])
-    before = end_overlaps(slots.dissipation, slots, now)
+    before = end_approaches(slots.dissipation, slots, now)
     ua, va = tabulated_displacement(slots, drive, 2 * j + 1), tabulated_velocity(slots, drive, 2 * j + 1)
     ub, vb = tabulated_displacement(slots, drive, 2 * j + 2), tabulated_velocity(slots, drive, 2 * j + 2)
     for i in range(y.size):
@@ -73,7 +73,7 @@ def _(method, trajectory, j, out):
     for i in range(y.size):
         y[i] += h / 6.0 * (k[0, i] + 2.0 * (k[1, i] + k[2, i]) + k[3, i])
     naive_motion(slots, ub, vb, y, k[0], forces)
-    watch_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
+    record_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
     out.counts[STEPS] += 1
     out.counts[EVALUATIONS] += 4
     return h
@@ -84,7 +84,7 @@ def _(method, trajectory, j, out):
     slots, drive, y, workspace = trajectory
     bodies, k, h = slots.chain.inverse_mass.size, workspace.k, drive.h
     now = Instant(y, k[0])
-    before = end_overlaps(slots.dissipation, slots, now)
+    before = end_approaches(slots.dissipation, slots, now)
     for i in range(1, bodies - 1):
         y[bodies + i] += 0.5 * h * k[0, bodies + i]
         y[i] += h * y[bodies + i]
@@ -93,7 +93,7 @@ def _(method, trajectory, j, out):
     for i in range(1, bodies - 1):
         y[bodies + i] += 0.5 * h * k[0, bodies + i]
         k[0, i] = y[bodies + i]
-    watch_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
+    record_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
     out.counts[STEPS] += 1
     out.counts[EVALUATIONS] += 1
     return h

@@ -24,7 +24,7 @@ class Samples(NamedTuple):
     energy: Any
 
 
-class Output(NamedTuple):
+class KernelIO(NamedTuple):
     """What a kernel writes besides its result, and the stop flag (1,) it reads; `counts` (4,) as in status.py."""
 
     log: ForceLog
@@ -33,7 +33,7 @@ class Output(NamedTuple):
 
 
 @internal
-def keep(slots, row, y, dy, e, samples):
+def write_sample(slots, row, y, dy, e, samples):
     """Write one sample of state y, whose slope is dy and whose forces are in e."""
     n = samples.displacement.shape[1]
     for i in range(n):
@@ -41,15 +41,15 @@ def keep(slots, row, y, dy, e, samples):
         samples.velocity[row, i] = dy[i + 1]
     for c in range(n + 1):
         samples.force[row, c] = contact_force(slots, y, dy, e, c)
-    keep_account(slots.account, slots, row, y, dy, samples)
+    write_account(slots.account, slots, row, y, dy, samples)
 
 
 @by_slot
-def keep_account(account, slots, row, y, dy, samples):
+def write_account(account, slots, row, y, dy, samples):
     """Write stored energy, work and loss of one sample. Absent: there is no account and no array for it."""
 
 
-@keep_account.of(EnergyAccount)
+@write_account.of(EnergyAccount)
 def _(account, slots, row, y, dy, samples):
     samples.energy[row, 0] = stored_energy(slots, y, dy)
     work, lost = account_ends(slots, y, dy)
@@ -67,7 +67,7 @@ def first_not_finite(y, bodies):
 
 
 @internal
-def keep_strobe(y, dy, strobe):
+def write_strobe(y, dy, strobe):
     """Displacements and velocities of the beads at one instant; driver and wall stay zero."""
     for i in range(1, strobe.shape[1] - 1):
         strobe[0, i] = y[i]

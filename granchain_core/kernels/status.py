@@ -17,8 +17,8 @@ CHATTER = 4
 TOO_MANY_STEPS = 5
 #: The array that records the run is too small for it: it is computed again with a larger one.
 FULL = 6
-#: A step of the flow was aimed at a release, but the contact does not open there: the step is tried again. It stays
-#: among the kernels.
+#: A step of the flow was aimed at a release, but the contact does not open there: the step is tried again. Only kernels
+#: of the flow see it.
 LOST = -1
 
 #: More events in a period than this, times the number of contacts, are CHATTER.

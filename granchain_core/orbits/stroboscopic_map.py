@@ -86,7 +86,7 @@ class StroboscopicMap:
         events = np.zeros((EVENTS_PER_CONTACT * (row - 1) * self.periods, 2))
         self._contacts = ContactStatus(np.zeros(2 * row), np.zeros(row - 1, dtype=np.int64), events,
                                        np.zeros(1, dtype=np.int64))
-        held = self.engine.stepper.work.forces._replace(held=FrozenContacts(self._contacts.closed))
+        held = self.engine.stepper.work.forces._replace(frozen=FrozenContacts(self._contacts.closed))
         self._work = self.engine.stepper.work._replace(forces=held)
 
     def inner(self, y: np.ndarray) -> np.ndarray:

@@ -33,7 +33,7 @@ from granchain_core.kernels.flow.attempt import FlowProblem
 from granchain_core.kernels.flow.run import run_flow
 from granchain_core.kernels.flow.tangent import new_tangent
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
-from granchain_core.kernels.samples import Output
+from granchain_core.kernels.samples import KernelIO
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scaling import scale_chain
 from granchain_core.scene.effects import EFFECTS
@@ -109,7 +109,7 @@ def argument_types(knobs: dict) -> dict[str, tuple]:
     chain = scene("sec2").evolve(**knobs)
     e, block = Engine(chain, Setting("rk4-split"), 1), Batch(chain, Stop())
     stepper = e.stepper
-    one = (stepper.work.simd, stepper.trajectory(e.y), 0, 4, Output(e.log, e.counts.array, e.stop.flag))
+    one = (stepper.work.simd, stepper.trajectory(e.y), 0, 4, KernelIO(e.log, e.counts.array, e.stop.flag))
     return {"chain": tuple(map(numba.typeof, one)), "batch": tuple(map(numba.typeof, (block.members, block.state, 4)))}
 
 

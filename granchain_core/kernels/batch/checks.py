@@ -26,8 +26,8 @@ from ..strobes.periodicity import (
     SETTLED_DISTANCE,
     change_between,
     detect_period,
-    largest_of,
     window_of,
+    write_scale,
 )
 from .record import STROBES_KEPT, move_member, undo_extrapolation
 
@@ -78,7 +78,7 @@ def extrapolate_member(state, member, n, decay, change):
         return False
     limit, record = state.limit, record[count - 1 - ORBITS * n :]
     reduced_rank(record[::n], state.basis, state.triangle, limit)
-    largest_of(record, state.scale)
+    write_scale(record, state.scale)
     reach = FARTHEST_EXTRAPOLATION * change / (1.0 - decay)
     for q in range(2):
         for i in range(limit.shape[1]):
@@ -158,7 +158,7 @@ def judge_disturbance(state, member):
     n, bodies = state.tested_period[member], state.limit.shape[1]
     record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
     state.tested_period[member] = 0
-    largest_of(record[: _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
+    write_scale(record[: _TEST_ORBITS * n + 1], state.scale)  # other members have used it since
     first, middle, late, last = 0.0, 0.0, 0.0, 0.0
     for k in range(_TEST_ORBITS + 1):
         there, whole = 0.0, 0.0
@@ -201,7 +201,7 @@ def check_fine(state, member):
     fine, count, last_check = state.fine_record[member], state.strobe_count[member], state.last_check[member]
     n, contraction = int(fine[FINE_PERIOD]), fine[FINE_CONTRACTION]
     record = state.strobes[member, count - 1 - n : count]
-    largest_of(record, state.scale)
+    write_scale(record, state.scale)
     change = change_between(record, state.scale, n, 0)
     last_check[CHECK_PERIOD], last_check[CHECK_DECAY] = n, contraction
     last_check[CHECK_DISTANCE] = change * contraction / (1.0 - contraction)

@@ -16,7 +16,7 @@ from ..compiling.jit import by_slot, inline_llvm
 from ..effects.dissipation import LAWS, exponent, primitive_factor, primitive_power
 from ..effects.preload import batch_overlap
 from ..simd.functions import above_zero, clip, gate, larger, root_by_series
-from ..simd.vector import blank, load_batch, positive_mask, store
+from ..simd.vector import load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
 
 
@@ -38,7 +38,7 @@ def impulse_error(r, r_power, mid_power):
 
 
 @inline_llvm
-def power_three_halves(s):
+def three_halves_by_series(s):
     """s^{3/2} in all members, 0 or above."""
     return s * root_by_series(above_zero(s))
 
@@ -63,12 +63,12 @@ def correct_displacement(law, values, y, c, changed, shift):
 
 @correct_displacement.of(*LAWS)
 def _(law, values, y, c, changed, shift):
-    correct_state(values, y, c, 0, gate(changed, shift))
+    correct_two_beads(values, y, c, 0, gate(changed, shift))
 
 
 @inline_llvm
-def correct_state(values, y, c, row, error):
-    """Correct the two beads of contact c by a quadrature error, in the row of y that begins at `row`."""
+def correct_two_beads(values, y, c, row, error):
+    """Correct the two beads beside contact c by a quadrature error, in the row of y that begins at `row`."""
     if c > 0:
         store(y, row + c, load_batch(y, row + c) + over_mass(values.unequal, c, error))
     if c < values.last:
@@ -85,16 +85,16 @@ def correct_contacts(values, y, overlaps, h, u0):
         overlap = batch_overlap(values.slots.preload, left, right, c)
         before = load_batch(overlaps, c)
         store(overlaps, c, overlap)
-        changed = blank(overlap) - before * overlap
+        changed = -before * overlap
         if positive_mask(changed) != 0:
             moved = abs(overlap - before)
             r = larger(overlap, before) / moved
             r_mid = clip(r - 0.5)
-            error = impulse_error(r, power_three_halves(r), power_three_halves(r_mid))
-            impulse = h * power_three_halves(moved) * error
+            error = impulse_error(r, three_halves_by_series(r), three_halves_by_series(r_mid))
+            impulse = h * three_halves_by_series(moved) * error
             impulse = times_stiffness(values.unequal, values.wall, c, c == values.last, impulse)
             shift = displacement_error(law, r, r_mid, moved, h)
-            correct_state(values, y, c, bodies, gate(changed, impulse))
+            correct_two_beads(values, y, c, bodies, gate(changed, impulse))
             correct_displacement(law, values, y, c, changed, shift)
             right = load_batch(y, c + 1)
         left = right

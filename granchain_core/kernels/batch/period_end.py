@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..compiling.by_address import call_at
 from ..compiling.jit import inline_llvm
 from ..forces.peaks import row_of, row_of_jump
-from .record import STROBES_KEPT, is_finite_member, keep_member_strobe
+from .record import STROBES_KEPT, append_strobe, is_finite_member
 
 
 @inline_llvm
@@ -16,7 +16,7 @@ def end_period(state, member, check):
     """
     state.periods[member] += 1
     periods = state.periods[member]
-    keep_member_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
+    append_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
     maxima = state.maxima[member, periods % STROBES_KEPT]
     for q in range(3):
         maxima[q] = state.peaks[row_of(q), member]
@@ -26,7 +26,7 @@ def end_period(state, member, check):
         maxima[q] = max(maxima[q], maxima[3 + q])
         state.peaks[row_of_jump(q), member] = 0.0
     state.phase[0, member], state.phase[1, member] = 0.0, 1.0
-    state.left[member] = state.steps[member]
+    state.steps_left[member] = state.steps[member]
     if not is_finite_member(state.y, member):
         return True
     if periods >= state.next_check[member] and call_at(check, (state, member)):

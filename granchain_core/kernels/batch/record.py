@@ -21,7 +21,7 @@ def is_finite_member(y, member):
 
 
 @internal
-def keep_member_strobe(strobes, strobe_count, first_strobe, y, member):
+def append_strobe(strobes, strobe_count, first_strobe, y, member):
     """Append the state to the strobes, dropping their older half if they are full."""
     bodies = y.shape[0] // 2
     if strobe_count[member] == strobes.shape[1]:
@@ -47,7 +47,7 @@ def set_state(state, member, there):
     for c in range(bodies - 1):
         state.overlaps[c, member] = 0.0
     for row in range(4):
-        state.ends[row, member] = 1.0  # counts as closed, so that no closing is recorded here
+        state.end_contacts[row, member] = 1.0  # counts as closed, so that no closing is recorded here
 
 
 @internal
@@ -56,7 +56,7 @@ def move_member(state, member, there):
     set_state(state, member, there)
     state.first_strobe[1, member] = state.first_strobe[0, member]
     state.first_strobe[0, member] = state.strobe_count[member]
-    keep_member_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
+    append_strobe(state.strobes, state.strobe_count, state.first_strobe, state.y, member)
 
 
 @internal

@@ -22,7 +22,7 @@ from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .contact_correction import correct_contacts
 from .period_end import end_period
 from .record import is_finite_member
-from .step import Values, batch_step, watch_batch_ends
+from .step import Values, batch_step, update_batch_peaks
 
 #: `shadow` of a member that has none, and of one that is a shadow itself.
 NO_SHADOW, IS_SHADOW = -1, -2
@@ -51,10 +51,10 @@ class BatchState(NamedTuple):
 
     y (2(N+2), L)            state
     overlaps (N+1, L)        overlaps of the contacts one step ago
-    ends (4, L)              one step ago: overlap and rate of the first contact, overlap and rate of the last
+    end_contacts (4, L)      one step ago: overlap and rate of the first contact, overlap and rate of the last
     phase (2, L)             sine and cosine of the drive phase
     peaks (PEAKS, L)         largest forces (forces/peaks.py)
-    steps, left (L,)         steps in a period, and how many of them are left
+    steps, steps_left (L,)   steps in a period, and how many of them are left
     periods, return_at (L,)  periods run, and the period at which the kernel returns at the latest
     next_check (L,)          next period at which the strobes are checked
     extrapolate_from (L,)    period from which a transient may be extrapolated
@@ -79,16 +79,17 @@ class BatchState(NamedTuple):
     last_check (L, CHECK_COLUMNS)  result of the last check (checks.py)
     stages                   three states, (2(N+2), L) each, of the stages of a step (step.py)
 
-    The others are workspaces of checks.py.
+    Workspaces of checks.py, with ORBITS of strobes/extrapolation.py: scale (2,), change (3·LONGEST_PERIOD or more,),
+    limit (2, N+2), basis (ORBITS, 2(N+2)), triangle (ORBITS, ORBITS).
     """
 
     y: np.ndarray
     overlaps: np.ndarray
-    ends: np.ndarray
+    end_contacts: np.ndarray
     phase: np.ndarray
     peaks: np.ndarray
     steps: np.ndarray
-    left: np.ndarray
+    steps_left: np.ndarray
     periods: np.ndarray
     return_at: np.ndarray
     next_check: np.ndarray
@@ -136,8 +137,9 @@ def take_steps(members, state, count):
         correct_contacts(values, y, state.overlaps, h, sine)
         first_overlap = batch_overlap(preload, sine, load_batch(y, 1), 0)
         last_overlap = batch_overlap(preload, load_batch(y, last), load_batch(y, last + 1), last)
-        ends = batch_step(values, y, state.stages, h, sine, middle, end)
-        watch_batch_ends(values, h, first_overlap, last_overlap, beta * cosine, ends, state.ends, state.peaks)
+        chain_ends = batch_step(values, y, state.stages, h, sine, middle, end)
+        update_batch_peaks(values, h, first_overlap, last_overlap, beta * cosine, chain_ends, state.end_contacts,
+                           state.peaks)
         sine, cosine = end, end_cosine
     store(state.phase, 0, sine)
     store(state.phase, 1, cosine)
@@ -174,7 +176,7 @@ def run_batch(members, state, stop, check):
     Returns (status, member). Every member that is due is returned before any of them continues. `check` is the address
     of `check_member`.
     """
-    left, due, shadow = state.left, state.due, state.shadow
+    steps_left, due, shadow = state.steps_left, state.due, state.shadow
     some_due, some_shadow = True, False
     for member in range(BATCH_SIZE):
         some_shadow = some_shadow or shadow[member] >= 0
@@ -189,14 +191,14 @@ def run_batch(members, state, stop, check):
             return CANCELLED, -1
         count = STEPS_BETWEEN_STOP_CHECKS
         for member in range(BATCH_SIZE):
-            count = min(count, left[member])
+            count = min(count, steps_left[member])
         take_steps(members, state, count)
         for member in range(BATCH_SIZE):
-            left[member] -= count
-            if left[member] == 0 and end_period(state, member, check) and shadow[member] != IS_SHADOW:
+            steps_left[member] -= count
+            if steps_left[member] == 0 and end_period(state, member, check) and shadow[member] != IS_SHADOW:
                 due[member], some_due = 1, True
         if some_shadow:
             for member in range(BATCH_SIZE):
-                if shadow[member] >= 0 and left[member] == state.steps[member]:
+                if shadow[member] >= 0 and steps_left[member] == state.steps[member]:
                     bring_back(state, member)
                     some_due = some_due or due[member] != 0

@@ -14,7 +14,7 @@ from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, u
 from ..effects.preload import batch_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.crossings import Approach, brief_touch, closing_rate
-from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, watch_batch
+from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, update_batch_peak
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
 from ..simd.vector import blank, load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
@@ -122,7 +122,7 @@ def bead(values, root_of, stage, source, i, left, is_last):
     return velocity, LeftNeighbour(right, e, right_primitive)
 
 
-class Ends(NamedTuple):
+class ChainEnds(NamedTuple):
     """The chain's two ends in a stage: elastic forces and the beads' velocities."""
 
     first_elastic: Any
@@ -133,7 +133,7 @@ class Ends(NamedTuple):
 
 @inline_llvm
 def run_stage(values, stage, source, driver):
-    """One stage at the state `source` with the driver at `driver`; returns its `Ends`."""
+    """One stage at the state `source` with the driver at `driver`; returns its `ChainEnds`."""
     last, u = values.last, load_batch(source, 1)
     e_first, first_primitive = contact(values, by_multipliers, driver, u, 0, False)
     left, v_first = LeftNeighbour(u, e_first, first_primitive), u
@@ -146,50 +146,50 @@ def run_stage(values, stage, source, driver):
     for i in range(max(2, last - (last - 2) % 3), last):
         _, left = bead(values, by_divider, stage, source, i, left, False)
     v_last, left = bead(values, by_divider, stage, source, last, left, True)
-    return Ends(e_first, v_first if last > 1 else v_last, left.e, v_last)
+    return ChainEnds(e_first, v_first if last > 1 else v_last, left.e, v_last)
 
 
 @inline_llvm
 def batch_step(values, y, stages, h, u0, middle, end):
-    """One RK4 step in place, the driver at u0, at `middle` and at `end`; returns the `Ends` where it began.
+    """One RK4 step in place, the driver at u0, at `middle` and at `end`; returns the `ChainEnds` where it began.
 
     `stages` has room for the states of three stages.
     """
     y1, y2, y3 = stages
-    ends = run_stage(values, Inner(y, y1, 0.5 * h), y, u0)
+    chain_ends = run_stage(values, Inner(y, y1, 0.5 * h), y, u0)
     run_stage(values, Inner(y, y2, 0.5 * h), y1, middle)
     run_stage(values, Inner(y, y3, h), y2, middle)
     run_stage(values, Final(y, y1, y2, y3, (1.0 / 6.0) * h), y3, end)
-    return ends
+    return chain_ends
 
 
 @inline_llvm
-def watch_batch_ends(values, h, first_overlap, last_overlap, v0, ends, before, peaks):
+def update_batch_peaks(values, h, first_overlap, last_overlap, v0, chain_ends, before, peaks):
     """Follow input force, output force and its elastic part in all members, where a step began."""
     law = values.slots.dissipation
-    first, last = Approach(first_overlap, v0 - ends.v_first), Approach(last_overlap, ends.v_last)
-    watch_batch(peaks, INPUT, ends.first_elastic + dashpot_force(law, first.overlap, first.rate))
-    watch_batch(peaks, OUTPUT, ends.last_elastic + dashpot_force(law, last.overlap, last.rate))
-    watch_batch(peaks, OUTPUT_ELASTIC, ends.last_elastic)
-    watch_jumps(law, values, h, first, last, before, peaks)
+    first, last = Approach(first_overlap, v0 - chain_ends.v_first), Approach(last_overlap, chain_ends.v_last)
+    update_batch_peak(peaks, INPUT, chain_ends.first_elastic + dashpot_force(law, first.overlap, first.rate))
+    update_batch_peak(peaks, OUTPUT, chain_ends.last_elastic + dashpot_force(law, last.overlap, last.rate))
+    update_batch_peak(peaks, OUTPUT_ELASTIC, chain_ends.last_elastic)
+    update_jumps(law, values, h, first, last, before, peaks)
 
 
 @by_slot
-def watch_jumps(law, values, h, first, last, before, peaks):
+def update_jumps(law, values, h, first, last, before, peaks):
     """Follow the jumps of both end contacts over the last step. Absent, and where g(0) = 0: forces have none."""
 
 
-@watch_jumps.of(*JUMP_LAWS)
+@update_jumps.of(*JUMP_LAWS)
 def _(law, values, h, first, last, before, peaks):
-    watch_jump(law, over_mass(values.unequal, 1, law.coefficient), h, first, before, 0, peaks, INPUT_JUMP)
-    watch_jump(law, over_mass(values.unequal, values.last, law.coefficient), h, last, before, 2, peaks, OUTPUT_JUMP)
+    update_jump(law, over_mass(values.unequal, 1, law.coefficient), h, first, before, 0, peaks, INPUT_JUMP)
+    update_jump(law, over_mass(values.unequal, values.last, law.coefficient), h, last, before, 2, peaks, OUTPUT_JUMP)
 
 
-watch_jumps.absent_for(*SMOOTH_LAWS)
+update_jumps.absent_for(*SMOOTH_LAWS)
 
 
 @inline_llvm
-def watch_jump(law, own_damping, h, approach, before, row, peaks, peak):
+def update_jump(law, own_damping, h, approach, before, row, peaks, peak):
     """Follow the jump of one contact; overlap and rate a step ago are rows of `before`, and become those of now."""
     overlap, rate = approach
     overlap_before, rate_before = load_batch(before, row), load_batch(before, row + 1)

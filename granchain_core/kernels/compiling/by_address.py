@@ -32,8 +32,9 @@ def call_at(typing_context, address, arguments):
         passed = [builder.extract_value(packed, i) for i in range(len(kinds))]
         function = context.call_conv.get_function_type(types.boolean, kinds)
         target = builder.inttoptr(where, function.as_pointer())
-        # kernels raise nothing, so that the status need not be looked at
-        _, result = context.call_conv.call_function(builder, target, types.boolean, kinds, passed)
+        status, result = context.call_conv.call_function(builder, target, types.boolean, kinds, passed)
+        with builder.if_then(status.is_error, likely=False):  # an index out of bounds under NUMBA_BOUNDSCHECK
+            context.call_conv.return_status_propagate(builder, status)
         return result
 
     return signature, generate

@@ -32,8 +32,9 @@ _INTERNAL = _OPTIONS | compiler_options()
 
 
 class _CollectorPause(event.Listener):
-    """Pauses garbage collection while Numba compiles: it makes millions of objects that live until it is done, and
-    searching them again and again takes a sixth of the time. Compilations are nested; one thread compiles at a time.
+    """Pauses garbage collection while Numba compiles: it makes millions of objects that live until it is done.
+
+    Compilations are nested; one thread compiles at a time.
     """
 
     def __init__(self) -> None:
@@ -105,8 +106,8 @@ def inline_llvm(function):
 def inline_numba(function):
     """Decorator for a function with one caller, or one in each kind of step; its code is copied there before compiling.
 
-    A function compiled by itself is linked and optimised again in every caller, up to the kernel that Python calls.
-    Copying saves a fifth of the compiler's time for a step of the adaptive method.
+    A function compiled by itself is linked and optimised again in every caller, up to the kernel that Python calls
+    (docs/compiling.md).
     """
     return numba.njit(nogil=True, inline="always", **_OPTIONS)(function)
 
@@ -115,6 +116,38 @@ def inline_numba(function):
 _TERMS: list[Any] = []
 #: The folders with kernels in vectors, which repeat the equations, and the slot classes for which each has code.
 _IN_SIMD_KERNELS: dict[str, set[type]] = {"rk4": set(), "batch": set(), "dop853_root": set()}
+
+
+def _by_first_type(declared, forceinline, implementations):
+    """A function whose code, one of `implementations`, the type of its first argument decides."""
+
+    def chosen(slot_class):
+        if slot_class not in implementations:
+            raise TypeError(_missing(slot_class, [generic]))
+        return implementations[slot_class]
+
+    def generic(*args):
+        return chosen(type(args[0]))(*args)
+
+    generic.__name__ = generic.__qualname__ = declared.__name__
+    generic.__doc__, generic.__module__ = declared.__doc__, declared.__module__
+
+    compiled = functools.cache(numba.njit(nogil=True, **_INTERNAL | {"forceinline": forceinline}))
+
+    def choose(slot):
+        return compiled(chosen(slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)))
+
+    generic._numba_type_ = ChoiceType(declared.__qualname__, choose)
+
+    def of(*slot_classes):
+        def register(implementation):
+            implementations.update(dict.fromkeys(slot_classes, implementation))
+            return implementation
+
+        return register
+
+    generic.of, generic.implementations = of, implementations
+    return generic
 
 
 def by_slot(absent, forceinline=False):
@@ -126,40 +159,15 @@ def by_slot(absent, forceinline=False):
     products with zero in the flow with tangents. A slot without code is a TypeError that names slot and function, in
     Python and while a kernel is typed.
     """
-    implementations = {type(None): absent}
-
-    def chosen(slot_class):
-        if slot_class not in implementations:
-            raise TypeError(_missing(slot_class, [generic]))
-        return implementations[slot_class]
-
-    def generic(*args):
-        return chosen(type(args[0]))(*args)
-
-    generic.__name__ = generic.__qualname__ = absent.__name__
-    generic.__doc__, generic.__module__ = absent.__doc__, absent.__module__
-
-    compiled = functools.cache(numba.njit(nogil=True, **_INTERNAL | {"forceinline": forceinline}))
-
-    def choose(slot):
-        return compiled(chosen(slot.instance_class if isinstance(slot, types.BaseNamedTuple) else type(None)))
-
-    generic._numba_type_ = ChoiceType(absent.__qualname__, choose)
-
-    def of(*slot_classes):
-        def register(implementation):
-            implementations.update(dict.fromkeys(slot_classes, implementation))
-            return implementation
-
-        return register
+    function = _by_first_type(absent, forceinline, {type(None): absent})
 
     def absent_for(*slot_classes):
         """Use the code of an absent effect for slots of these classes."""
-        implementations.update(dict.fromkeys(slot_classes, absent))
+        function.implementations.update(dict.fromkeys(slot_classes, absent))
 
-    generic.of, generic.absent_for, generic.implementations = of, absent_for, implementations
-    _TERMS.append(generic)
-    return generic
+    function.absent_for = absent_for
+    _TERMS.append(function)
+    return function
 
 
 def by_slot_inlined(absent):
@@ -172,10 +180,7 @@ def by_type(declared, forceinline=False):
 
     It does not count as a term of an effect.
     """
-    function = by_slot(declared, forceinline)
-    _TERMS.remove(function)
-    del function.implementations[type(None)]
-    return function
+    return _by_first_type(declared, forceinline, {})
 
 
 def by_type_inlined(declared):

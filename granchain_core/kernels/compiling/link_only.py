@@ -30,7 +30,7 @@ class _NoAddresses:
         return getattr(self._generator, name)
 
     def set_env(self, name: str, env: Any) -> None:
-        """Nothing: kernels raise nothing and hold no objects, so that they need no environment."""
+        """Nothing: such a function holds no Python objects; what it may raise needs none either."""
 
 
 #: Numba's class for it; where there is none, nothing below is used.

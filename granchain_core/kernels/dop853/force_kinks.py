@@ -23,6 +23,8 @@ from .bracket import Bracket, root_inside, value_at
 from .step import evaluate, interpolate, prepare_dense
 from .tableau import DENSE_EVALUATIONS, STAGES
 
+#: What `first_kink` finds.
+NO_KINK, KINK, WRONG_SIDE = range(3)
 #: A kink nearer to an end of the step than this changes the motion by less than rounding: by its square.
 _LEAST_DISTANCE = 1e-8
 #: A contact whose F/g is less than this part of the largest velocity is at rest ahead of a wave: its sign is rounding.
@@ -105,22 +107,22 @@ def _(tension, trajectory):
 
 @by_slot
 def first_kink(tension, step, until, counts, again):
-    """Fraction of the accepted step, up to `until`, at which the force of a contact first reaches F = 0.
+    """Look for the first point of the accepted step, up to `until`, at which the force of a contact reaches F = 0.
 
-    Returns one of three values:
-        a fraction  a contact stops pushing or pushes again there
-        0           repeat the step: rounding put a contact on the wrong side of F = 0 at the start. All such contacts
-                    change sides together, to keep a symmetric motion symmetric, once a step (`again`); where F is only
-                    rounding, either choice is right
-        2           there is no such kink. Absent: always
+    Returns (outcome, fraction):
+        NO_KINK        there is none. Absent: always
+        KINK           a contact stops pushing, or pushes again, at the fraction
+        WRONG_SIDE     rounding put a contact on the wrong side of F = 0 at the start. All such contacts have changed
+                       sides together, to keep a symmetric motion symmetric, and the step is to be repeated; once a step
+                       (`again`), because where F is only rounding, either choice is right
     """
-    return 2.0
+    return NO_KINK, 1.0
 
 
 @first_kink.of(TensionCut)
 def _(tension, step, until, counts, again):
     slots, drive, y, workspace = step.trajectory
-    first, ready, turned, k, still = 2.0, False, False, workspace.k, _REST_PART * workspace.scale[1]
+    first, ready, turned, k, still = 1.0, False, False, workspace.k, _REST_PART * workspace.scale[1]
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)
         if not d0 > 0.0:
@@ -154,5 +156,5 @@ def _(tension, step, until, counts, again):
             turned = True
     if turned:
         evaluate(slots, drive.beta, step.t, y, k[0], workspace.forces)
-        return 0.0
-    return first
+        return WRONG_SIDE, 0.0
+    return (KINK if first < 1.0 else NO_KINK), first

@@ -69,7 +69,7 @@ def _(quantity, step, x):
 
 
 @internal
-def keep_end_forces(slots, y, dy, e):
+def write_end_elastic_forces(slots, y, dy, e):
     """The elastic forces, those of a cut included, of the two outer contacts at either end."""
     last = slots.chain.stiffness.size - 1
     for q in range(4):
@@ -84,7 +84,7 @@ def keep_end_forces(slots, y, dy, e):
 def slopes_of(slots, y, dy, workspace):
     """Slopes Ḟ of the three forces at state y."""
     last = slots.chain.stiffness.size - 1
-    keep_end_forces(slots, y, dy, workspace.forces.e)
+    write_end_elastic_forces(slots, y, dy, workspace.forces.e)
     e, d = workspace.forces.e, positive_part(overlap(slots.preload, y, last))
     elastic = elastic_slope(slots.chain.stiffness[last], d) * (dy[last] - dy[last + 1])
     return force_slope(slots, y, dy, e, 0, -1, False), force_slope(slots, y, dy, e, last, -1, False), elastic
@@ -101,7 +101,7 @@ def is_monotone(f0, s0, f1, s1, h):
 
 
 @internal
-def follow_step(step, ready, peaks, counts):
+def update_forces_in_step(step, ready, peaks, counts):
     """Raise the largest forces to those in the accepted step; returns whether its dense output is prepared now.
 
     Its slopes at both ends are workspace.k[0] and workspace.k[12]. A force that only rises or only falls is largest at

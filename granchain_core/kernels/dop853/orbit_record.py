@@ -16,7 +16,7 @@ from ..equations.motion import copy
 from ..samples import first_not_finite
 from ..status import CANCELLED, DONE, FULL, NOT_FINITE
 from .bracket import value_at
-from .force_search import follow_step
+from .force_search import update_forces_in_step
 from .run import located_step
 from .step import PERIOD_END, Overlap, Step, evaluate, new_scale, prepare_dense, turning_point
 from .tableau import STAGES
@@ -35,7 +35,7 @@ class OrbitRecord(NamedTuple):
 
 
 @inline_numba
-def follow_turns(step, since, record, row):
+def record_turns(step, since, record, row):
     """Keep the turning points of all overlaps inside the step; returns the next free row.
 
     Its slopes at both ends are workspace.k[0] and workspace.k[12]; it begins `since` after the orbit's start.
@@ -71,8 +71,8 @@ def record_orbit(method, trajectory, periods, record, counts, stop):
                 return status, p, row
             step = Step(trajectory, t, h)
             prepare_dense(step)
-            row = follow_turns(step, p * period + t, record, row)
-            follow_step(step, True, record.peaks, counts)
+            row = record_turns(step, p * period + t, record, row)
+            update_forces_in_step(step, True, record.peaks, counts)
             copy(workspace.end, y)
             new_scale(y, workspace, bodies)
             copy(workspace.k[STAGES], workspace.k[0])

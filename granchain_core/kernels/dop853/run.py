@@ -16,8 +16,8 @@ from ..effects.energy_account import add_to_account, force_free_loss
 from ..effects.preload import overlap
 from ..effects.tension import TensionCut
 from ..equations.motion import copy
-from ..forces.largest import SAMPLE, Instant, Span, note_closings
-from ..samples import first_not_finite, keep
+from ..forces.largest import SAMPLE, Instant, Span, record_closings
+from ..samples import first_not_finite, write_sample
 from ..status import (
     CANCELLED,
     CHATTER,
@@ -31,8 +31,8 @@ from ..status import (
     STEPS,
 )
 from .bracket import may_turn, value_at
-from .force_kinks import enter_force_free, first_kink, leave_force_free
-from .force_search import follow_step
+from .force_kinks import KINK, WRONG_SIDE, enter_force_free, first_kink, leave_force_free
+from .force_search import update_forces_in_step
 from .step import (
     PERIOD_END,
     RESOLUTION,
@@ -81,7 +81,7 @@ class SampleRange(NamedTuple):
 
 
 @inline_numba
-def first_crossing(step, counts):
+def first_event(step, counts):
     """(contact, fraction) of the first opening or closing inside the accepted step; (−1, 2) if there is none.
 
     Events closer to t than the resolution of the time within a period are ignored. The resolution at t itself would be
@@ -187,12 +187,12 @@ def located_step(method, trajectory, t, limit, counts):
         if h == tried and (aimed >= 0 or kinked):
             break
         kinked = False
-        aimed, x = first_crossing(step, counts)
-        kink = first_kink(tension, step, min(x, 1.0), counts, again)
-        if kink == 0.0:
+        aimed, x = first_event(step, counts)
+        outcome, kink = first_kink(tension, step, min(x, 1.0), counts, again)
+        if outcome == WRONG_SIDE:
             aimed, again = -1, True
             continue
-        if kink < 1.0:
+        if outcome == KINK:
             next_step[0] = min(next_step[0], h * factor)
             aimed, kinked = -1, True
             h *= kink
@@ -218,7 +218,7 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
     """
     slots, drive, y, workspace = step.trajectory
     t, h = step.t, step.h
-    ready = follow_step(step, False, out.log.peaks, out.counts)
+    ready = update_forces_in_step(step, False, out.log.peaks, out.counts)
     for point in range(g + 1, g + 1 + passed):
         if point % every == 0:
             if not ready:
@@ -230,10 +230,10 @@ def record_step(step, g, passed, spacing, row, every, samples, out):
             lost = force_free_loss(slots.account, slots, y, workspace.probe)
             add_to_account(slots.account, workspace.probe, 0.0, lost)
             evaluate(slots, drive.beta, at, workspace.probe, workspace.slope, workspace.forces)
-            keep(slots, row, workspace.probe, workspace.slope, workspace.forces.e, samples)
+            write_sample(slots, row, workspace.probe, workspace.slope, workspace.forces.e, samples)
             row += 1
     out.log.counts[SAMPLE] = row - 1
-    note_closings(slots.dissipation, slots, Instant(y, workspace.k[0]), Instant(workspace.end, workspace.k[STAGES]),
+    record_closings(slots.dissipation, slots, Instant(y, workspace.k[0]), Instant(workspace.end, workspace.k[STAGES]),
                   Span(h, drive.beta * t, drive.beta * h), out.log)
     return row
 
@@ -252,19 +252,19 @@ def accept(trajectory):
 
 
 @kernel
-def run_dop853(method, trajectory, stretch, samples, out):
-    """Run over a stretch of the grid; the largest forces, closings and samples on it are kept if it asks for them.
+def run_dop853(method, trajectory, sample_range, samples, out):
+    """Run over a range of the grid; its samples, closings and largest forces are recorded if `every` is above 0.
 
-    Row 0 of `samples` is the start. Returns (status, rows or points done).
+    Row 0 of `samples` is the start. Returns (status, samples filled); where nothing is recorded, (status, points done).
     """
     slots, drive, y, workspace = trajectory
-    first, points, grid, every = stretch
+    first, points, grid, every = sample_range
     bodies, period, spacing = slots.chain.inverse_mass.size, drive.period, drive.period / grid
     g, done, row, events = first, 0, 1, 0
     t = g * spacing
     evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
     if every > 0:
-        keep(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
+        write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     while done < points:
         if out.stop[0] != 0:
             return CANCELLED, row if every > 0 else done

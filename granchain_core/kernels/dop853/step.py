@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import by_type, inline_numba, internal, kernel
+from ..compiling.jit import by_type, inline_llvm, inline_numba, internal, kernel
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import motion
@@ -119,7 +119,7 @@ def shrunk(h, error):
 
 @internal
 def growth(error):
-    """Step-size factor after an accepted step."""
+    """Step-size factor after an accepted step; an error below 1e-12 allows no more than the largest factor anyway."""
     return min(_LARGEST_GROWTH, _SAFETY * max(error, 1e-12) ** (-1.0 / 8.0))
 
 
@@ -142,6 +142,7 @@ def error_norm(tolerance, h, y, workspace, bodies):
             third += (e3 * unit) ** 2
     if fifth == 0.0 and third == 0.0:
         return 0.0
+    # as in Hairer's dop853.f: 0.01 weighs the error of order 3, which keeps the quotient regular where order 5 is tiny
     return abs(h) * fifth / sqrt((fifth + 0.01 * third) * (2 * (bodies - 2)))
 
 
@@ -174,16 +175,27 @@ def dense_coefficients(h, y, workspace):
                     dense[3 + row, i] += a * k[s, i]
 
 
+@inline_llvm
+def interpolant(start, rows, x):
+    """The polynomial of the dense output at fraction x of the step, from its value at the start and its seven rows.
+
+    Hairer, Nørsett & Wanner 1993, eq. (II.6.20). For numbers and vectors.
+    """
+    back = 1.0 - x
+    value = rows[6] * x
+    value = (value + rows[5]) * back
+    value = (value + rows[4]) * x
+    value = (value + rows[3]) * back
+    value = (value + rows[2]) * x
+    value = (value + rows[1]) * back
+    return start + (value + rows[0]) * x
+
+
 @internal
 def dense_value(dense, y0, x, i):
     """Component i at fraction x of the step."""
-    value = dense[6, i] * x
-    value = (value + dense[5, i]) * (1.0 - x)
-    value = (value + dense[4, i]) * x
-    value = (value + dense[3, i]) * (1.0 - x)
-    value = (value + dense[2, i]) * x
-    value = (value + dense[1, i]) * (1.0 - x)
-    return y0 + (value + dense[0, i]) * x
+    rows = (dense[0, i], dense[1, i], dense[2, i], dense[3, i], dense[4, i], dense[5, i], dense[6, i])
+    return interpolant(y0, rows, x)
 
 
 @internal

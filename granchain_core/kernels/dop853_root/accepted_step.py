@@ -9,11 +9,11 @@ from ..compiling.jit import inline_llvm, inline_numba
 from ..dop853.step import RESOLUTION
 from ..dop853.tableau import DENSE_EVALUATIONS, STAGES
 from ..flow.event_time import nonnegative_root
-from ..simd.sums import largest_of, rough_sixteenth
+from ..simd.sums import inverse_sixteenth_root, largest_of
 from ..simd.vector import at, splat8, with_first
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .chain import ROOT, TIME, Point, powers, transform_at
-from .changes import StepInXi, changes_in, first_change, size_in_xi
+from .changes import StepInXi, changes_in, first_event, size_in_xi
 from .forces import end_forces, in_xi, may_exceed
 from .step import Units, attempt, prepare_dense_rows
 
@@ -114,7 +114,7 @@ def accepted_attempt(constants, begin, chosen, dt, units):
         counts[REJECTED] += 1
         factor, limited = _SHRINK, True  # an overflow: ξ covers far more time than it should
         if isfinite(error):
-            factor = max(_SHRINK, _SAFETY_AGAIN * rough_sixteenth(error))
+            factor = max(_SHRINK, _SAFETY_AGAIN * inverse_sixteenth_root(error))
         elif dt < _OVERFLOW_STEP:
             status = NOT_FINITE
             break
@@ -153,7 +153,7 @@ def accepted_step(constants, begin, chosen, dt, units, g):
                 prepare_dense_rows(values, constants.driver, work, step.transform, step.start, step.end, step.h)
                 counts[EVALUATIONS] += DENSE_EVALUATIONS
             if changes:
-                contact, x = first_change(slots, work, step, begin.bits, crossed, turned)
+                contact, x = first_event(slots, work, step, begin.bits, crossed, turned)
         done = status != DONE or contact < 0 or contact == chosen or (begin.bits >> contact) & 1 == 0 or x == 0.0
         if done:
             break

@@ -6,7 +6,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from ..compiling.jit import inline_llvm, inline_numba, internal
-from ..contact_cubic import hermite_turn
+from ..contact_cubic import hermite_turn, hermite_value, turns
 from ..flow.event_time import nonnegative_root, smooth_power
 from ..simd.sums import largest_of, lowest_bit
 from ..simd.vector import at, positive_mask
@@ -15,6 +15,10 @@ from .inside import change_before, take_distance, turn_of
 
 #: Time is transformed if the contact's nearest event, at its present speed, is at most this many steps away.
 _MOST_STEPS_AWAY = 1.5
+#: Added to speeds, so that none is divided by zero.
+_LEAST_SPEED = 1e-300
+#: Added to the time to the event of an open contact, which is then never the nearest.
+_OPEN_AWAY = 1e30
 #: A contact that moves less than this part of the largest displacement in a step is at rest: it transforms no time.
 _REST_PART = 1e-9
 #: Length of the first step after an onset, and of the last before a release, as a part of the step in t.
@@ -66,8 +70,8 @@ def size_in_xi(power, q, speed, dt):
 def nearest_event(rates, closed, scale, dt):
     """The closed contact whose onset or release is next; −1 if it is more than `_MOST_STEPS_AWAY` steps of dt away."""
     speed, still = abs(rates.rate), _REST_PART * scale
-    away = (abs(rates.overlap) + still) / (speed + 1e-300) + 1e30 * (1.0 - closed)
-    least = 0.0 - largest_of(0.0 - away)
+    away = (abs(rates.overlap) + still) / (speed + _LEAST_SPEED) + _OPEN_AWAY * (1.0 - closed)
+    least = -largest_of(-away)
     contact = lowest_bit(~positive_mask(away - least))
     return contact if least < _MOST_STEPS_AWAY * dt and at(speed, contact) * dt > still else -1
 
@@ -81,7 +85,7 @@ def may_touch(d0, s0, d1, s1):
     if not (s0 > 0.0 and s1 < 0.0):
         return False
     x = hermite_turn(d0, s0, d1, s1)
-    top = d0 + x * (s0 + x * (3.0 * (d1 - d0) - 2.0 * s0 - s1 + x * (2.0 * (d0 - d1) + s0 + s1)))
+    top = hermite_value(d0, s0, d1, s1, x)
     return top + _MISSED_PART * (top - max(d0, d1)) > 0.0
 
 
@@ -92,8 +96,8 @@ def changes_in(step, bits, contacts):
     Bit c of `bits` says whether contact c was closed at the start.
     """
     rising, risen, overlap = positive_mask(step.rates.rate), positive_mask(step.end_rates.rate), step.end_rates.overlap
-    crossed = (positive_mask(overlap) & ~bits) | (positive_mask(0.0 - overlap) & bits)
-    turned = (rising & ~risen & ~bits) | (~rising & risen & bits)
+    crossed = (positive_mask(overlap) & ~bits) | (positive_mask(-overlap) & bits)
+    turned = turns(bits, rising, risen)
     if step.transform.active != 0.0:
         own = 1 << step.transform.contact
         crossed = crossed | own if at(step.end.clock, ROOT) < 0.0 else crossed & ~own
@@ -102,7 +106,7 @@ def changes_in(step, bits, contacts):
 
 
 @inline_numba
-def first_change(slots, work, step, bits, crossed, turned):
+def first_event(slots, work, step, bits, crossed, turned):
     """(contact, fraction) of the first change in the step, whose dense output is prepared; (−1, 2) if there is none."""
     first, contact, power, h = 2.0, -1, smooth_power(slots.dissipation), step.h
     for c in range(slots.chain.stiffness.size):

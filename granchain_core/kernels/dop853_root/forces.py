@@ -13,7 +13,7 @@ from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import dashpot_force, dashpot_slope
 from ..effects.driver import driver_acceleration
 from ..equations.body_forces import force_on_bead
-from ..forces.largest import cubic_top, reach
+from ..forces.largest import cubic_top, update_largest
 from ..forces.peaks import row_of
 from ..rk4.short_chain import chain_values, load_row
 from ..simd.vector import at, blank, from_left, from_right, load, with_first
@@ -93,7 +93,7 @@ def may_exceed(start, end, h, peaks):
     """Raise the largest forces to those at the two ends of h in ξ; whether a larger one may lie in between."""
     exceeds = False
     for q in range(3):
-        reach(peaks, row_of(q), max(start.values[q], end.values[q]))
+        update_largest(peaks, row_of(q), max(start.values[q], end.values[q]))
         exceeds = exceeds or (max(start.values[q], end.values[q]) > SEARCHED * peaks[row_of(q)] and not is_monotone(
             start.values[q], start.slopes[q], end.values[q], end.slopes[q], h))
     return exceeds
@@ -105,10 +105,10 @@ def search_forces(slots, work, start, end, until, h, out):
     peaks = out.log.peaks
     middle = forces_inside(slots, work, 0.5 * until, out.counts)
     for q in range(3):
-        reach(peaks, row_of(q), middle[q])
+        update_largest(peaks, row_of(q), middle[q])
         guess = max(middle[q], cubic_top(start.values[q], start.slopes[q], end.values[q], end.slopes[q], h))
         rising = start.slopes[q] > 0.0 or middle[q] > start.values[q]
         falling = end.slopes[q] < 0.0 or middle[q] > end.values[q]
         if rising and falling and guess > WORTH * peaks[row_of(q)]:
             _, top = top_inside(ForceInside(q, out.counts), PreparedStep(slots, work), until, FORCE_SECTIONS)
-            reach(peaks, row_of(q), top)
+            update_largest(peaks, row_of(q), top)

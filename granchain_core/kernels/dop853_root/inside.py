@@ -8,7 +8,7 @@ import numpy as np
 
 from ..compiling.jit import internal
 from ..dop853.bracket import top_inside, value_at
-from ..dop853.step import TURN_SECTIONS
+from ..dop853.step import TURN_SECTIONS, interpolant
 from ..effects.preload import overlap
 from .chain import ROOT, TIME
 
@@ -47,14 +47,8 @@ def take_time(work, instant):
 
 @internal
 def polynomial_at(p, x):
-    """The polynomial at fraction x of the step, as `dense_value` (dop853/step.py) adds up its rows."""
-    back = 1.0 - x
-    value = (p[6] * x + p[5]) * back
-    value = (value + p[4]) * x
-    value = (value + p[3]) * back
-    value = (value + p[2]) * x
-    value = (value + p[1]) * back
-    return p[7] + (value + p[0]) * x
+    """The polynomial at fraction x of the step."""
+    return interpolant(p[7], p, x)
 
 
 @value_at.of(Polynomial)
@@ -66,7 +60,8 @@ def _(quantity, step, x):
 def zero_between(p, low, high):
     """Where the polynomial passes from negative to positive: secants within a bracket, else its middle.
 
-    They need fewer evaluations than `root_inside` (dop853/bracket.py), which halves a value at each end that stays.
+    They need fewer evaluations than `root_inside` (dop853/bracket.py), which halves a value at each end that stays. 60
+    evaluations are more than halving to rounding would take.
     """
     last, x, f_last, f = low, high, polynomial_at(p, low), polynomial_at(p, high)
     for _ in range(60):

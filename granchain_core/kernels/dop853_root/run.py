@@ -12,10 +12,10 @@ from ..compiling.jit import inline_llvm, inline_numba, kernel
 from ..dop853.step import PERIOD_END, evaluate
 from ..effects.driver import driver_displacement, driver_velocity
 from ..flow.event_time import smooth_power
-from ..forces.largest import SAMPLE, note_closing
+from ..forces.largest import SAMPLE, record_closing
 from ..rk4.short_chain import chain_values, load_row
-from ..samples import first_not_finite, keep
-from ..simd.sums import rough_sixteenth
+from ..samples import first_not_finite, write_sample
+from ..simd.sums import inverse_sixteenth_root
 from ..simd.vector import at, blank, positive_mask, splat8, store, with_first
 from ..status import (
     CANCELLED,
@@ -155,7 +155,7 @@ def record_step(constants, begin, checked, end, g, row, samples):
         if number % constants.every == 0:
             inside = point_inside(work, step.start, fraction_at(work, number * constants.spacing, x))
             keep_state(work, inside, rates_at(values, driver, no_transform(values, begin.closed), inside))
-            keep(slots, row, work.state[DISPLACEMENT], work.state[VELOCITY], work.state[ELASTIC], samples)
+            write_sample(slots, row, work.state[DISPLACEMENT], work.state[VELOCITY], work.state[ELASTIC], samples)
             row += 1
     out.log.counts[SAMPLE] = row - 1
     return forces, row
@@ -167,7 +167,7 @@ def growth(step, end):
     if end.cut and end.x < 0.5:
         return 1.0
     most = _GROW if step.error > _SMALL_ERROR**2 else _GROW_FAST
-    return min(1.0 if step.limited else most, _SAFETY * rough_sixteenth(max(step.error, 1e-24)))
+    return min(1.0 if step.limited else most, _SAFETY * inverse_sixteenth_root(max(step.error, 1e-24)))
 
 
 @inline_numba
@@ -181,19 +181,19 @@ def write_beads(constants, begin, y, bodies):
 
 
 @kernel
-def run_dop853_root(method, work, trajectory, stretch, samples, out):
-    """Run over a stretch of the grid, as `run_dop853` (dop853/run.py) does, with the chain's own workspace `work`."""
+def run_dop853_root(method, work, trajectory, sample_range, samples, out):
+    """Run over a range of the grid, as `run_dop853` (dop853/run.py) does, with the chain's own workspace `work`."""
     slots, drive, y, workspace = trajectory
-    points, grid, every, counts = stretch.points, stretch.grid, stretch.every, out.counts
+    points, grid, every, counts = sample_range.points, sample_range.grid, sample_range.every, out.counts
     bodies, period = slots.chain.inverse_mass.size, drive.period
     constants = RunConstants(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
                       smooth_power(slots.dissipation), bodies - 2, period / grid, PERIOD_END * period, every)
-    g, done, row, dt, renew = stretch.first, 0, 1, workspace.next_step[0], True
+    g, done, row, dt, renew = sample_range.first, 0, 1, workspace.next_step[0], True
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
     begin = begin_of_run(constants, g * constants.spacing, y, bodies)
     if every > 0:
         evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
-        keep(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
+        write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     while done < points:
         if out.stop[0] != 0:
             return CANCELLED, row if every > 0 else done
@@ -231,7 +231,7 @@ def run_dop853_root(method, work, trajectory, stretch, samples, out):
                 return CHATTER, row if every > 0 else done
             begin = with_contact_toggled(constants, begin, end.contact)
             if (begin.bits >> end.contact) & 1 != 0 and every > 0:
-                note_closing(slots.dissipation, at(begin.rates.rate, end.contact), end.contact, constants.last,
+                record_closing(slots.dissipation, at(begin.rates.rate, end.contact), end.contact, constants.last,
                              drive.beta * begin.t, out.log)
         if begin.t >= period:
             begin = StepBegin(begin.t - period, begin.point, begin.rates, begin.forces, begin.bits, begin.closed)

@@ -38,14 +38,14 @@ def positive_part(overlap):
 
 
 @by_slot
-def closed_overlap(held, c, overlap):
-    """[δ]_+ of contact c, 0 where `held` keeps it open. Absent: the overlap's sign says whether it is closed."""
+def closed_overlap(frozen, c, overlap):
+    """[δ]_+ of contact c, 0 where `frozen` keeps it open. Absent: the overlap's sign says whether it is closed."""
     return positive_part(overlap)
 
 
 @closed_overlap.of(FrozenContacts)
-def _(held, c, overlap):
-    return positive_part(overlap) if held.closed[c] != 0 else 0.0
+def _(frozen, c, overlap):
+    return positive_part(overlap) if frozen.closed[c] != 0 else 0.0
 
 
 @inline_llvm

@@ -7,7 +7,7 @@ Equation   F_d = λ δ^a δ̇ H(δ),   g = λ δ^a,   G = λ δ^{1+a}/(1 + a)
 Values     coefficient: λ = D (A₀/δ_r)^a/(mφ), at an overlap of one length unit where a > 0
 Law        defined by its `exponent` a and its `power` δ^a, from which all other terms follow, here and elsewhere
 Terms      damping, damping_slope, dashpot_force, onset_force, dashpot_slope, primitive, times_primitive,
-           unit_primitive = G/λ, v_from_w and its inverse w_from_v (absent: v = w); keep_primitive, put_primitive and
+           unit_primitive = G/λ, v_from_w and its inverse w_from_v (absent: v = w); write_primitive, put_primitive and
            put_prescribed_primitive write into the array of G
 """
 
@@ -17,9 +17,9 @@ import math
 from typing import NamedTuple
 
 from ..compiling.jit import by_slot, by_slot_inlined, in_simd_kernels, inline_llvm, require_terms
-from ..contact_cubic import TINY
 from ..simd.functions import clip, gate, root
 from ..simd.vector import load_batch
+from ..step_ends import TINY
 from .batch_values import batch_values
 
 
@@ -215,11 +215,11 @@ def _(law, d, r):
 
 
 @by_slot
-def keep_primitive(law, G, c, d):
+def write_primitive(law, G, c, d):
     """Store G of contact c; without dissipation there is no array to store it in."""
 
 
-@keep_primitive.of(*LAWS)
+@write_primitive.of(*LAWS)
 def _(law, G, c, d):
     G[c] = primitive(law, d)
 

@@ -59,11 +59,11 @@ def _(tension, slots, y, c, d):
 
 
 @by_slot
-def keep_force_free_primitive(tension, slots, y, G):
+def write_force_free_primitive(tension, slots, y, G):
     """Continue G of force-free contacts linearly, also below δ = 0. Absent: no contact is force-free."""
 
 
-@keep_force_free_primitive.of(TensionCut)
+@write_force_free_primitive.of(TensionCut)
 def _(tension, slots, y, G):
     for c in range(tension.force_free.size):
         if tension.force_free[c] != 0:

@@ -23,12 +23,12 @@ import numpy as np
 from ..compiling.jit import brief_kernel, check_effects, inline_llvm, internal
 from ..effects.batch_values import batch_values
 from ..effects.contact import closed_overlap, elastic_energy, elastic_force, positive_part
-from ..effects.dissipation import dashpot_force, keep_primitive, v_from_w, w_from_v
+from ..effects.dissipation import dashpot_force, v_from_w, w_from_v, write_primitive
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.energy_account import account_rates
 from ..effects.given_force import prescribe_force, prescribe_primitive
 from ..effects.preload import overlap
-from ..effects.tension import cut_tension, keep_force_free_primitive, unless_force_free
+from ..effects.tension import cut_tension, unless_force_free, write_force_free_primitive
 from .body_forces import account_for_bodies, force_on_bead, stored_on_bead
 
 
@@ -61,12 +61,12 @@ def batch_slots(slots):
 class Forces(NamedTuple):
     """Workspace of one evaluation: elastic forces e (N+1,) and primitives G (N+1,), None without dissipation.
 
-    `held` is None, or says which contacts stay open whatever their overlap.
+    `frozen` is None, or says which contacts stay open whatever their overlap.
     """
 
     e: np.ndarray
     G: Any
-    held: Any = None
+    frozen: Any = None
 
 
 class Trajectory(NamedTuple):
@@ -95,10 +95,10 @@ def motion(slots, u0, v0, y, dy, forces):
     y[0] = u0
     dy[0] = v0
     for c in range(bodies - 1):
-        d = closed_overlap(forces.held, c, overlap(slots.preload, y, c))
+        d = closed_overlap(forces.frozen, c, overlap(slots.preload, y, c))
         e[c] = elastic_force(stiffness[c], d)
-        keep_primitive(slots.dissipation, G, c, d)
-    keep_force_free_primitive(slots.tension, slots, y, G)
+        write_primitive(slots.dissipation, G, c, d)
+    write_force_free_primitive(slots.tension, slots, y, G)
     prescribe_primitive(slots.driver, slots, y, G)
     for i in range(1, bodies - 1):
         dy[i] = v_from_w(slots.dissipation, inverse_mass, y[bodies + i], G, i)
@@ -129,7 +129,7 @@ def write_w(slots, y, dy, forces):
     """The variables w of state y from the velocities in dy."""
     bodies = slots.chain.inverse_mass.size
     for c in range(bodies - 1):
-        keep_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
+        write_primitive(slots.dissipation, forces.G, c, positive_part(overlap(slots.preload, y, c)))
     prescribe_primitive(slots.driver, slots, y, forces.G)
     for i in range(1, bodies - 1):
         y[bodies + i] = w_from_v(slots.dissipation, slots.chain.inverse_mass, dy[i], forces.G, i)

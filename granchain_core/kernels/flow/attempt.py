@@ -67,34 +67,34 @@ def _(step, x):
 
 
 @by_slot
-def keep_stage(tangent, state, slope, stage):
+def record_stage(tangent, state, slope, stage):
     """Keep what tangents need of one stage: displacements, and velocities from `slope`. Absent: there are none."""
 
 
 @internal
-def attempt_in_time(method, course, time, h):
+def attempt_in_time(method, problem, time, h):
     """Try a step of size h in x from y; the result is in workspace.end, its slope in t in workspace.slope.
 
     Returns the error over the tolerance.
     """
-    trajectory, contacts, tangent = course
+    trajectory, contacts, tangent = problem
     slots, drive, y, workspace = trajectory
     rate = rate_at(time, 0.0)
     for i in range(y.size):
         workspace.k[0, i] = rate * contacts.first[i]
-    keep_stage(tangent, y, contacts.first, 0)
+    record_stage(tangent, y, contacts.first, 0)
     for s in range(1, STAGES + 1):
         combine(y, h, workspace.k, s, workspace.end)
         slope_in_x(slots, drive.beta, time, C[s] * h, workspace.end, s, workspace)
-        keep_stage(tangent, workspace.end, workspace.slope, s)
+        record_stage(tangent, workspace.end, workspace.slope, s)
     return error_norm(method.tolerance, h, y, workspace, slots.chain.inverse_mass.size)
 
 
 @inline_numba
-def accepted_in_time(method, course, time, h, counts):
+def accepted_in_time(method, problem, time, h, counts):
     """Shrink a step until its error is tolerable; returns (status, size, error over the tolerance)."""
     while True:
-        error = attempt_in_time(method, course, time, h)
+        error = attempt_in_time(method, problem, time, h)
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, h, error
@@ -119,9 +119,9 @@ def prepare_dense_in_time(step):
 
 
 @inline_numba
-def first_change(course, time, h, excluded, counts):
+def first_event(problem, time, h, excluded, counts):
     """(contact, fraction) of the first change inside the step, of any contact except `excluded`; (−1, 2): none."""
-    trajectory, contacts, _ = course
+    trajectory, contacts, _ = problem
     slots, _, y, workspace = trajectory
     step, contact, first, ready = FlowStep(trajectory, time, h), -1, 2.0, False
     dt = time_at(time, h) - time.start

@@ -12,7 +12,7 @@ from ..dop853.step import growth, shrunk
 from ..dop853.tableau import STAGES
 from ..effects.preload import overlap
 from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .attempt import accepted_in_time, attempt_in_time, first_change
+from .attempt import accepted_in_time, attempt_in_time, first_event
 from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
 
 #: Largest overlap at a located event, in units of the largest displacement: a few roundings.
@@ -43,10 +43,10 @@ def next_release(slots, y, contacts):
 
 
 @inline_numba
-def locate_change(method, course, time, h, c, counts):
+def locate_change(method, problem, time, h, c, counts):
     """Repeat a step, first with size h, until it ends where contact c opens or closes; returns the size."""
-    slots, _, _, workspace = course.trajectory
-    attempt_in_time(method, course, time, h)
+    slots, _, _, workspace = problem.trajectory
+    attempt_in_time(method, problem, time, h)
     counts[EVALUATIONS] += STAGES
     for _ in range(_LOCATION_ATTEMPTS):
         d = overlap(slots.preload, workspace.end, c)
@@ -57,23 +57,23 @@ def locate_change(method, course, time, h, c, counts):
         if h - d / speed == h:
             break
         h -= d / speed
-        attempt_in_time(method, course, time, h)
+        attempt_in_time(method, problem, time, h)
         counts[EVALUATIONS] += STAGES
     return h
 
 
 @inline_numba
-def step_to_release(method, course, t, goal, c, counts):
+def step_to_release(method, problem, t, goal, c, counts):
     """Step from t towards the release of contact c, estimated at `goal`: onto it, or part of the way.
 
     Returns (status, time, size, c or −1, goal), with a status of LOST where the contact does not open there.
     """
-    slots, drive, _, workspace = course.trajectory
+    slots, drive, _, workspace = problem.trajectory
     power, farthest = smooth_power(slots.dissipation), goal + 3.0 * (goal - t)
     time = time_from(BEFORE, goal, t, power)
     error, located = np.inf, False
     for _ in range(_LOCATION_ATTEMPTS):
-        error = attempt_in_time(method, course, time, time.s)
+        error = attempt_in_time(method, problem, time, time.s)
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
             return NOT_FINITE, time, 0.0, -1, goal
@@ -92,7 +92,7 @@ def step_to_release(method, course, t, goal, c, counts):
     h = size_of(time, min(goal, drive.period) - t)
     if goal > drive.period:
         located = False
-        error = attempt_in_time(method, course, time, h)
+        error = attempt_in_time(method, problem, time, h)
         counts[EVALUATIONS] += STAGES
     while error > 1.0:
         located = False
@@ -100,19 +100,19 @@ def step_to_release(method, course, t, goal, c, counts):
         h = shrunk(h, error)
         if not t + 0.1 * (time_at(time, h) - t) > t:
             return STEP_TOO_SMALL, time, h, -1, goal
-        error = attempt_in_time(method, course, time, h)
+        error = attempt_in_time(method, problem, time, h)
         counts[EVALUATIONS] += STAGES
     return DONE, time, h, c if located else -1, goal
 
 
 @internal
-def flow_step(method, course, t, onset, counts):
+def flow_step(method, problem, t, onset, counts):
     """One accepted step from y at local time t, at most to the period's end, with the last onset at `onset` (−∞: none).
 
     Returns (status, time, size, contact); a size of 0 with a contact: it changes at t itself.
     workspace.next_step[0] is the next step to try, in t.
     """
-    trajectory, contacts, _ = course
+    trajectory, contacts, _ = problem
     slots, drive, y, workspace = trajectory
     next_step, limit = workspace.next_step, drive.period
     dt = min(next_step[0], method.largest_step, limit - t)
@@ -124,17 +124,17 @@ def flow_step(method, course, t, onset, counts):
     for _ in range(_STEP_ATTEMPTS):
         located, error = -1, 0.0
         if aiming:
-            status, time, h, located, goal = step_to_release(method, course, t, goal, target, counts)
+            status, time, h, located, goal = step_to_release(method, problem, t, goal, target, counts)
             if status == LOST:
                 aiming, lost = False, True
                 time, h = usual, size_of(usual, dt)
                 continue
         else:
-            status, h, error = accepted_in_time(method, course, time, h, counts)
+            status, h, error = accepted_in_time(method, problem, time, h, counts)
             dt = min(dt, time_at(time, h) - t)
         if status != DONE:
             return status, time, h, -1
-        contact, x = first_change(course, time, h, located, counts)
+        contact, x = first_event(problem, time, h, located, counts)
         if contact < 0:
             if not aiming:
                 next_step[0] = next_dt(time, h, error, next_step[0], limit)
@@ -148,7 +148,7 @@ def flow_step(method, course, t, onset, counts):
                 h *= _FIRST_STEP_PART * x
                 dt = time_at(time, h) - t
             continue
-        return DONE, time, locate_change(method, course, time, h * x, contact, counts), contact
+        return DONE, time, locate_change(method, problem, time, h * x, contact, counts), contact
     return STEP_TOO_SMALL, time, h, -1
 
 

@@ -54,12 +54,12 @@ def toggle_contact(slots, contacts, tangent, c, t):
 
 
 @kernel
-def run_flow(method, course, periods, counts, stop):
+def run_flow(method, problem, periods, counts, stop):
     """Propagate motion and tangents through whole periods from phase 0.
 
     Returns (status, periods done, ∫ trace); the log's times count from the first period's start.
     """
-    trajectory, contacts, tangent = course
+    trajectory, contacts, tangent = problem
     slots, drive, y, workspace = trajectory
     bodies, period, trace, onset = slots.chain.inverse_mass.size, drive.period, 0.0, -np.inf
     begin(slots, y, contacts)
@@ -73,7 +73,7 @@ def run_flow(method, course, periods, counts, stop):
             if steps > _MOST_STEPS:
                 return TOO_MANY_STEPS, p, trace
             evaluate(slots, drive.beta, t, y, contacts.first, workspace.forces)
-            status, time, h, contact = flow_step(method, course, t, onset, counts)
+            status, time, h, contact = flow_step(method, problem, t, onset, counts)
             if status != DONE:
                 return status, p, trace
             if h > 0.0:

@@ -17,14 +17,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import by_slot, by_slot_inlined, inline_llvm, inline_numba, internal
-from ..contact_cubic import TINY
 from ..dop853.tableau import STAGES, A, C
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import LAWS, damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope, add_force_trace
 from ..simd.vector import VECTOR_WIDTH, aligned, blank, load, store
-from .attempt import keep_stage
+from ..step_ends import TINY
+from .attempt import record_stage
 from .event_time import rate_at
 
 
@@ -86,7 +86,7 @@ def columns_of(tangent, columns):
     return np.ascontiguousarray(blocks.transpose(1, 0, 2).reshape(rows, -1)[:, :columns])
 
 
-@keep_stage.of(Tangent)
+@record_stage.of(Tangent)
 def _(tangent, state, slope, stage):
     if tangent.matrix.shape[0] > 0:
         write_stage_motion(tangent.stages, state, slope, stage)
@@ -176,7 +176,7 @@ def block_slope(slots, tangent, stage, rate):
     inverse_mass, s, g, stages = slots.chain.inverse_mass, tangent.stiffness, tangent.damping[stage], tangent.stages
     n = tangent.state.shape[0] // 2
     here = load(tangent.state, 0)
-    left = blank(here) - here
+    left = -here
     for i in range(n):
         ahead = load(tangent.state, i + 1) if i + 1 < n else blank(here)
         right, inverse = here - ahead, inverse_mass[i + 1]

@@ -15,13 +15,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import inline_numba
-from ..contact_cubic import TINY
 from ..dop853.tableau import STAGES, A, C
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope
-from .attempt import keep_stage
+from ..step_ends import TINY
+from .attempt import record_stage
 from .event_time import rate_at
 from .run import apply_saltation
 from .tangent import StageMotions, new_stage_motions, propagate, write_stage_motion
@@ -46,7 +46,7 @@ def new_velocity_tangent(start, bodies, jumps):
                            jumps)
 
 
-@keep_stage.of(VelocityTangent)
+@record_stage.of(VelocityTangent)
 def _(tangent, state, slope, stage):
     write_stage_motion(tangent.stages, state, slope, stage)
 

@@ -13,7 +13,7 @@ from ..compiling.jit import by_slot, inline_llvm, internal
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS
 from ..effects.preload import overlap
 from ..simd.functions import clip, root
-from .largest import UNRESOLVED, note_closing
+from .largest import UNRESOLVED, record_closing
 
 
 class Approach(NamedTuple):
@@ -25,7 +25,7 @@ class Approach(NamedTuple):
 
 @inline_llvm
 def between_0_and_1(s):
-    """The nearest number in 0 to 1; far above 1 it may be 0. A NaN stays a NaN. For numbers and vectors."""
+    """The nearest number in 0 to 1. A NaN stays a NaN. For numbers and vectors, below 2^53, where rounding gives 0."""
     least = clip(s)
     return least - clip(least - 1.0)
 
@@ -73,44 +73,44 @@ def approach_of(slots, instant, c):
 
 
 @by_slot
-def end_overlaps(law, slots, instant):
+def end_approaches(law, slots, instant):
     """First and last contact at the start of a step. Absent: no force jumps there."""
     return 0.0
 
 
-@end_overlaps.of(*JUMP_LAWS)
+@end_approaches.of(*JUMP_LAWS)
 def _(law, slots, instant):
     return approach_of(slots, instant, 0), approach_of(slots, instant, slots.chain.stiffness.size - 1)
 
 
 @by_slot
-def watch_crossings(law, slots, before, end, span, log):
-    """Record which end contacts closed between two instants a step apart; `before` are their `end_overlaps`."""
+def record_crossings(law, slots, before, end, span, log):
+    """Record which end contacts closed between two instants a step apart; `before` are their `end_approaches`."""
 
 
-@watch_crossings.of(*JUMP_LAWS)
+@record_crossings.of(*JUMP_LAWS)
 def _(law, slots, before, end, span, log):
     first, last = before
     if first.overlap <= 0.0:
-        watch_crossing(law, slots, 0, first, end, span, log)
+        record_crossing(law, slots, 0, first, end, span, log)
     if last.overlap <= 0.0:
-        watch_crossing(law, slots, slots.chain.stiffness.size - 1, last, end, span, log)
+        record_crossing(law, slots, slots.chain.stiffness.size - 1, last, end, span, log)
 
 
 @inline_llvm
-def watch_crossing(law, slots, c, before, end, span, log):
+def record_crossing(law, slots, c, before, end, span, log):
     """Record whether contact c, open at the start of the step, closed in it or touched."""
     after, h, last = approach_of(slots, end, c), span.h, slots.chain.stiffness.size - 1
     if after.overlap > 0.0:
         own_damping = law.coefficient * (slots.chain.inverse_mass[c] + slots.chain.inverse_mass[c + 1])
         undamped = after.rate + own_damping * after.overlap
         s, jump = closing_rate(before.overlap, after.overlap, before.rate, undamped, own_damping, h)
-        note_closing(law, jump, c, last, span.theta + s * span.dtheta, log)
+        record_closing(law, jump, c, last, span.theta + s * span.dtheta, log)
     elif before.rate > 0.0 and after.rate < 0.0:
         jump = brief_touch(before.overlap, after.overlap, before.rate, after.rate, h)
-        note_closing(law, jump, c, last, span.theta + 0.5 * span.dtheta, log)
+        record_closing(law, jump, c, last, span.theta + 0.5 * span.dtheta, log)
         log.counts[UNRESOLVED] += jump > 0.0
 
 
-end_overlaps.absent_for(*SMOOTH_LAWS)
-watch_crossings.absent_for(*SMOOTH_LAWS)
+end_approaches.absent_for(*SMOOTH_LAWS)
+record_crossings.absent_for(*SMOOTH_LAWS)

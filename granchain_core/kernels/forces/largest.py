@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import by_slot, inline_numba, internal
-from ..contact_cubic import OVERLAP, RATE, TINY, hermite_turn
+from ..contact_cubic import hermite_turn, hermite_value
 from ..effects.contact import elastic_force, elastic_slope, positive_part
 from ..effects.dissipation import JUMP_LAWS, SMOOTH_LAWS, dashpot_force, dashpot_slope, onset_force
 from ..effects.driver import driver_acceleration
@@ -23,11 +23,12 @@ from ..effects.preload import overlap
 from ..effects.tension import cut_at_zero
 from ..equations.body_forces import force_on_bead
 from ..equations.motion import contact_force
+from ..step_ends import OVERLAP, RATE, TINY
 from .peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, PEAKS, row_of
 
-#: Only a force above this part of the largest so far is followed with its slope: a maximum inside a step exceeds the
+#: Only above this part of the largest force so far is a force's slope computed: a maximum inside a step exceeds the
 #: step's ends by h²/8 times the force's curvature, which is a few per cent.
-_FOLLOWED_WITH_SLOPE = 0.9
+_SLOPE_COMPUTED_ABOVE = 0.9
 #: Bound on the cubic's slope: the largest rise or fall of a force in one step, over its value. It is needed after a
 #: closing, where g may have an infinite slope.
 _STEEPEST = 3.0
@@ -37,10 +38,10 @@ CLOSED, UNRESOLVED, SAMPLE = range(3)
 
 
 class ForceLog(NamedTuple):
-    """The forces so far: the largest, the last ones followed, and the jumps.
+    """The forces so far: the largest, those at the last state, and the jumps.
 
     `peaks` (PEAKS,) holds input, output and elastic output force and the largest jumps (peaks.py), `last` (3, 2) value
-    and slope of each force at the last state followed. Rows of `closings` (C, 4) are the number of the last sample
+    and slope of each force at the last state looked at. Rows of `closings` (C, 4) are the number of the last sample
     before a contact closed, the drive phase θ, the contact and the force after the jump; `counts` (3,) are the numbers
     CLOSED, UNRESOLVED and SAMPLE.
     """
@@ -73,8 +74,8 @@ def new_log(before: ForceLog | None = None, closings: int = 0) -> ForceLog:
 
 
 @internal
-def reach(peaks, row, value):
-    """Raise one of the largest forces to `value` if that is larger."""
+def update_largest(peaks, row, value):
+    """Raise one of the largest forces to `value` if `value` is larger."""
     if value > peaks[row]:
         peaks[row] = value
 
@@ -119,88 +120,88 @@ def cubic_top(f0, s0, f1, s1, h):
     most = _STEEPEST * largest
     a, b = min(h * s0, most), max(h * s1, -most)
     x = hermite_turn(f0, a, f1, b)
-    return max(largest, f0 + x * (a + x * (3.0 * (f1 - f0) - 2.0 * a - b + x * (2.0 * (f0 - f1) + a + b))))
+    return max(largest, hermite_value(f0, a, f1, b, x))
 
 
 @internal
-def track_force(log, q, value, slope, h):
+def update_maximum(log, q, value, slope, h):
     """Update the maximum of force q over the step of size h."""
     peaks, last = log.peaks, log.last
     row = row_of(q)
-    reach(peaks, row, cubic_top(last[q, 0], last[q, 1], value, slope, h) if h > 0.0 else value)
+    update_largest(peaks, row, cubic_top(last[q, 0], last[q, 1], value, slope, h) if h > 0.0 else value)
     last[q, 0], last[q, 1] = value, slope
 
 
 @internal
-def watch_at_event(slots, y, dy, e, h, event, closed, log):
-    """Follow the three forces to state y, whose slope is dy, h after the last one; h = 0 begins anew there."""
+def update_forces_at_event(slots, y, dy, e, h, event, closed, log):
+    """Update the largest forces over the h up to state y, whose slope is dy; h = 0 begins anew there."""
     last = e.size - 1
     for q in range(2):
         c = 0 if q == 0 else last
         value, slope = force_at_event(slots, y, dy, e, c, event, closed), np.nan
-        if value > _FOLLOWED_WITH_SLOPE * log.peaks[row_of(q)]:
+        if value > _SLOPE_COMPUTED_ABOVE * log.peaks[row_of(q)]:
             slope = force_slope(slots, y, dy, e, c, event, closed)
-        track_force(log, q, value, slope, h)
+        update_maximum(log, q, value, slope, h)
     d = 0.0 if event == last else positive_part(overlap(slots.preload, y, last))
     stiffness, slope = slots.chain.stiffness[last], np.nan
     value = elastic_force(stiffness, d)
-    if value > _FOLLOWED_WITH_SLOPE * log.peaks[OUTPUT_ELASTIC]:
+    if value > _SLOPE_COMPUTED_ABOVE * log.peaks[OUTPUT_ELASTIC]:
         slope = elastic_slope(stiffness, d) * (dy[last] - dy[last + 1])
-    track_force(log, 2, value, slope, h)
+    update_maximum(log, 2, value, slope, h)
 
 
 @internal
-def watch_state(slots, y, dy, e, h, log):
-    """`watch_at_event` where no contact changes; values alone where none of the forces can be near a maximum."""
+def update_forces(slots, y, dy, e, h, log):
+    """`update_forces_at_event` where no contact changes; values alone where no force can be near a maximum."""
     last, peaks = e.size - 1, log.peaks
     input_force, output_force = contact_force(slots, y, dy, e, 0), contact_force(slots, y, dy, e, last)
     elastic = elastic_force(slots.chain.stiffness[last], positive_part(overlap(slots.preload, y, last)))
-    if (input_force > _FOLLOWED_WITH_SLOPE * peaks[INPUT] or output_force > _FOLLOWED_WITH_SLOPE * peaks[OUTPUT]
-            or elastic > _FOLLOWED_WITH_SLOPE * peaks[OUTPUT_ELASTIC]):
-        watch_at_event(slots, y, dy, e, h, -1, False, log)
+    if (input_force > _SLOPE_COMPUTED_ABOVE * peaks[INPUT] or output_force > _SLOPE_COMPUTED_ABOVE * peaks[OUTPUT]
+            or elastic > _SLOPE_COMPUTED_ABOVE * peaks[OUTPUT_ELASTIC]):
+        update_forces_at_event(slots, y, dy, e, h, -1, False, log)
     else:
         log.last[0, 0], log.last[1, 0], log.last[2, 0] = input_force, output_force, elastic
         log.last[0, 1] = log.last[1, 1] = log.last[2, 1] = np.nan
 
 
 @internal
-def watch_event(slots, y, dy, e, h, c, theta, log):
-    """Follow the forces up to the event of contact c at drive phase θ, and begin anew after it."""
+def update_forces_across_event(slots, y, dy, e, h, c, theta, log):
+    """Update the largest forces up to the event of contact c at drive phase θ, and begin anew after it."""
     rate = dy[c] - dy[c + 1]
-    watch_at_event(slots, y, dy, e, h, c, rate < 0.0, log)
-    watch_at_event(slots, y, dy, e, 0.0, c, rate > 0.0, log)
-    note_closing(slots.dissipation, rate, c, e.size - 1, theta, log)
+    update_forces_at_event(slots, y, dy, e, h, c, rate < 0.0, log)
+    update_forces_at_event(slots, y, dy, e, 0.0, c, rate > 0.0, log)
+    record_closing(slots.dissipation, rate, c, e.size - 1, theta, log)
 
 
 @inline_numba
-def watch_ends_at_event(slots, ends, c, theta, log):
-    """Raise the largest forces at the event of contact c; overlaps and rates are in `ends` (contact_cubic.py)."""
+def update_end_forces_at_event(slots, ends, c, theta, log):
+    """Raise the largest forces at the event of contact c; overlaps and rates are in `ends` (step_ends.py)."""
     last = slots.chain.stiffness.size - 1
     for q in range(2):
         contact = 0 if q == 0 else last
         delta = ends[OVERLAP, contact]
         force = elastic_force(slots.chain.stiffness[contact], positive_part(delta))
-        reach(log.peaks, row_of(q), force + dashpot_force(slots.dissipation, delta, ends[RATE, contact]))
+        update_largest(log.peaks, row_of(q), force + dashpot_force(slots.dissipation, delta, ends[RATE, contact]))
         if q == 1:
-            reach(log.peaks, OUTPUT_ELASTIC, force)
-    note_closing(slots.dissipation, ends[RATE, c], c, last, theta, log)
+            update_largest(log.peaks, OUTPUT_ELASTIC, force)
+    record_closing(slots.dissipation, ends[RATE, c], c, last, theta, log)
 
 
 @by_slot
-def note_closing(law, rate, c, last, theta, log):
+def record_closing(law, rate, c, last, theta, log):
     """Record the jump of contact c, which closes at `rate` at drive phase θ. Absent, and where g(0) = 0: none."""
 
 
-@note_closing.of(*JUMP_LAWS)
+@record_closing.of(*JUMP_LAWS)
 def _(law, rate, c, last, theta, log):
     if rate > 0.0:
         force = onset_force(law, rate)
         if c == 0:
-            reach(log.peaks, INPUT, force)
-            reach(log.peaks, INPUT_JUMP, force)
+            update_largest(log.peaks, INPUT, force)
+            update_largest(log.peaks, INPUT_JUMP, force)
         if c == last:
-            reach(log.peaks, OUTPUT, force)
-            reach(log.peaks, OUTPUT_JUMP, force)
+            update_largest(log.peaks, OUTPUT, force)
+            update_largest(log.peaks, OUTPUT_JUMP, force)
         number = log.counts[CLOSED]
         log.counts[CLOSED] = number + 1
         if number < log.closings.shape[0]:
@@ -209,7 +210,7 @@ def _(law, rate, c, last, theta, log):
 
 
 @by_slot
-def note_closings(law, slots, start, end, span, log):
+def record_closings(law, slots, start, end, span, log):
     """Record the contacts that closed in a located step between two instants. Absent: no force jumps there.
 
     The step ends just past an event; an event too near to the step's start to be distinguished from it belongs to
@@ -217,17 +218,17 @@ def note_closings(law, slots, start, end, span, log):
     """
 
 
-@note_closings.of(*JUMP_LAWS)
+@record_closings.of(*JUMP_LAWS)
 def _(law, slots, start, end, span, log):
     last = slots.chain.stiffness.size - 1
     for c in range(last + 1):
         before, after = overlap(slots.preload, start.y, c), overlap(slots.preload, end.y, c)
         if before <= 0.0 and after > 0.0:
             if after < -before:
-                note_closing(law, end.dy[c] - end.dy[c + 1], c, last, span.theta + span.dtheta, log)
+                record_closing(law, end.dy[c] - end.dy[c + 1], c, last, span.theta + span.dtheta, log)
             else:
-                note_closing(law, start.dy[c] - start.dy[c + 1], c, last, span.theta, log)
+                record_closing(law, start.dy[c] - start.dy[c + 1], c, last, span.theta, log)
 
 
-note_closing.absent_for(*SMOOTH_LAWS)
-note_closings.absent_for(*SMOOTH_LAWS)
+record_closing.absent_for(*SMOOTH_LAWS)
+record_closings.absent_for(*SMOOTH_LAWS)

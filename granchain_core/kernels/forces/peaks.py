@@ -40,14 +40,14 @@ def quartic_top(a, b, c, d, e):
     second = (16.0 * (b + d) - a - e - 30.0 * c) / 12.0
     third = 0.5 * (e - a) + b - d
     fourth = a + e + 6.0 * c - 4.0 * (b + d)
-    x = 0.0 - first / second
+    x = -first / second
     slope = first + x * (second + x * (0.5 * third + x * (fourth / 6.0)))
     x = x - slope / (second + x * (third + x * (0.5 * fourth)))
     return c + x * (first + x * (0.5 * second + x * (third / 6.0 + x * (fourth / 24.0))))
 
 
 @internal
-def watch(peaks, row, value):
+def update_peak(peaks, row, value):
     """Follow one force, whose values begin at peaks[row]."""
     d, c, b, a = peaks[row + 1], peaks[row + 2], peaks[row + 3], peaks[row + 4]
     if value > peaks[row]:
@@ -70,7 +70,7 @@ def largest_jumps(peaks: np.ndarray) -> np.ndarray:
 
 
 @inline_llvm
-def keep_largest_forces(peaks, out):
+def write_largest_forces(peaks, out):
     """The largest input, output and elastic output force so far into `out` (3,)."""
     for q in range(3):
         out[q] = peaks[row_of(q)]
@@ -93,7 +93,7 @@ def next_period(peaks):
 
 
 @inline_llvm
-def watch_batch(peaks, row, value):
+def update_batch_peak(peaks, row, value):
     """Follow one force in all members; its values begin at row `row` of a (rows, lanes) array."""
     d, c = load_batch(peaks, row + 1), load_batch(peaks, row + 2)
     b, a = load_batch(peaks, row + 3), load_batch(peaks, row + 4)

@@ -16,7 +16,7 @@ from ..effects.contact import elastic_force, positive_part
 from ..effects.dissipation import LAWS, dashpot_force, primitive
 from ..effects.preload import batch_overlap
 from ..equations.body_forces import force_on_bead
-from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, watch
+from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, update_peak
 from ..simd.vector import VECTOR_WIDTH, from_left, from_right, load, positive_mask, splat8, store, with_first
 from .step import tabulated_displacement, tabulated_velocity
 
@@ -62,7 +62,7 @@ def steps_without_events(simd, trajectory, j, count, peaks):
             if changed or (first_before and not first) or (last_before and not last):
                 pack(before, blocks, y, bodies)
                 return done - 1
-            watch_long_chain_ends(slots, simd, v0, peaks)
+            update_long_chain_peaks(slots, simd, v0, peaks)
         if done == count:
             pack(now, blocks, y, bodies)
             return done
@@ -149,16 +149,16 @@ def comes_nearer(simd, slots, v0):
 
 
 @internal
-def watch_long_chain_ends(slots, simd, v0, peaks):
+def update_long_chain_peaks(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
     block, lane = last // VECTOR_WIDTH, last % VECTOR_WIDTH
     damped = dashpot_force(slots.dissipation, simd.overlap[0, 0], v0 - simd.velocity[0, 1])
-    watch(peaks, INPUT, simd.elastic[0, 0] + damped)
+    update_peak(peaks, INPUT, simd.elastic[0, 0] + damped)
     elastic = simd.elastic[block, lane]
     damped = dashpot_force(slots.dissipation, simd.overlap[block, lane], simd.velocity[block, lane])
-    watch(peaks, OUTPUT, elastic + damped)
-    watch(peaks, OUTPUT_ELASTIC, elastic)
+    update_peak(peaks, OUTPUT, elastic + damped)
+    update_peak(peaks, OUTPUT_ELASTIC, elastic)
 
 
 @inline_numba

@@ -14,8 +14,8 @@ from ..compiling.jit import by_slot, kernel
 from ..effects.driver import PrescribedMotion, driver_displacement, driver_velocity
 from ..effects.given_force import Sampled
 from ..equations.motion import Trajectory, motion
-from ..forces.largest import watch_state
-from ..samples import first_not_finite, keep
+from ..forces.largest import update_forces
+from ..samples import first_not_finite, write_sample
 from ..status import CANCELLED, DONE, NOT_FINITE, STEPS_BETWEEN_STOP_CHECKS
 from .step import DriveTable, step
 
@@ -57,8 +57,8 @@ def run_pieces(method, trajectory, pieces, samples, out):
     slots, drive, y, workspace = trajectory
     bodies = slots.chain.inverse_mass.size
     taken = 0
-    watch_state(slots, y, workspace.k[0], workspace.forces.e, 0.0, out.log)
-    keep(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
+    update_forces(slots, y, workspace.k[0], workspace.forces.e, 0.0, out.log)
+    write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     for i in range(pieces.spans.size):
         for q in range(pieces.coefficients.shape[1]):
             slots.driver.piece[q] = pieces.coefficients[i, q]
@@ -66,12 +66,12 @@ def run_pieces(method, trajectory, pieces, samples, out):
         h = pieces.spans[i] / pieces.substeps[i]
         here = Trajectory(slots, DriveTable(drive.values, h, h), y, workspace)
         for j in range(pieces.substeps[i]):
-            left = step(method, here, j, out)
-            watch_state(slots, y, workspace.k[0], workspace.forces.e, left, out.log)
+            since = step(method, here, j, out)
+            update_forces(slots, y, workspace.k[0], workspace.forces.e, since, out.log)
             taken += 1
             if taken % STEPS_BETWEEN_STOP_CHECKS == 0 and out.stop[0] != 0:
                 return CANCELLED, i + 1
         if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, i + 1
-        keep(slots, i + 1, y, workspace.k[0], workspace.forces.e, samples)
+        write_sample(slots, i + 1, y, workspace.k[0], workspace.forces.e, samples)
     return DONE, pieces.spans.size + 1

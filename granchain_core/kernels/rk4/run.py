@@ -10,9 +10,9 @@ from ..compiling.jit import by_slot_inlined, internal, kernel
 from ..effects.contact import elastic_force, positive_part
 from ..effects.preload import overlap
 from ..equations.motion import contact_force, motion
-from ..forces.largest import SAMPLE, watch_state
-from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, keep_largest_forces, next_period, watch
-from ..samples import Samples, first_not_finite, keep, keep_strobe
+from ..forces.largest import SAMPLE, update_forces
+from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, next_period, update_peak, write_largest_forces
+from ..samples import Samples, first_not_finite, write_sample, write_strobe
 from ..status import CANCELLED, DONE, EVALUATIONS, NOT_FINITE, STEPS, STEPS_BETWEEN_STOP_CHECKS
 from .long_chain import LongChain, steps_without_events
 from .short_chain import ShortChain
@@ -28,8 +28,8 @@ def advance(simd, method, trajectory, j, count, out):
     """
     slots, _, y, workspace = trajectory
     for i in range(j, j + count):
-        left = step(method, trajectory, i, out)
-        watch_state(slots, y, workspace.k[0], workspace.forces.e, left, out.log)
+        since = step(method, trajectory, i, out)
+        update_forces(slots, y, workspace.k[0], workspace.forces.e, since, out.log)
         if i % STEPS_BETWEEN_STOP_CHECKS == 0 and out.stop[0] != 0:
             break
 
@@ -54,21 +54,21 @@ def _(simd, method, trajectory, j, count, out):
             u0, v0 = tabulated_displacement(slots, drive, i), tabulated_velocity(slots, drive, i)
             motion(slots, u0, v0, y, workspace.k[0], workspace.forces)
         if done < count:
-            watch_state(slots, y, workspace.k[0], workspace.forces.e, 0.0, out.log)
-            left = step(method, trajectory, j + done, out)
-            watch_state(slots, y, workspace.k[0], workspace.forces.e, left, out.log)
-            watch_equal(slots, y, workspace.k[0], workspace.forces.e, out.log.peaks)
+            update_forces(slots, y, workspace.k[0], workspace.forces.e, 0.0, out.log)
+            since = step(method, trajectory, j + done, out)
+            update_forces(slots, y, workspace.k[0], workspace.forces.e, since, out.log)
+            update_peaks_at_step_end(slots, y, workspace.k[0], workspace.forces.e, out.log.peaks)
             done += 1
 
 
 @internal
-def watch_equal(slots, y, dy, e, peaks):
+def update_peaks_at_step_end(slots, y, dy, e, peaks):
     """Follow the three forces at the end of one of the equal steps (forces/peaks.py)."""
     last = e.size - 1
-    watch(peaks, INPUT, contact_force(slots, y, dy, e, 0))
-    watch(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
+    update_peak(peaks, INPUT, contact_force(slots, y, dy, e, 0))
+    update_peak(peaks, OUTPUT, contact_force(slots, y, dy, e, last))
     d = positive_part(overlap(slots.preload, y, last))
-    watch(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
+    update_peak(peaks, OUTPUT_ELASTIC, elastic_force(slots.chain.stiffness[last], d))
 
 
 class RunRecord(NamedTuple):
@@ -93,11 +93,11 @@ def run_steps(method, trajectory, first_step, stride, record, out):
     slots, _, y, workspace = trajectory
     bodies, log, j = slots.chain.inverse_mass.size, out.log, first_step
     sampled = record.samples.displacement.shape[0] > 0
-    watch_state(slots, y, workspace.k[0], workspace.forces.e, 0.0, log)
+    update_forces(slots, y, workspace.k[0], workspace.forces.e, 0.0, log)
     if sampled:
-        keep(slots, 0, y, workspace.k[0], workspace.forces.e, record.samples)
+        write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, record.samples)
     else:
-        keep_strobe(y, workspace.k[0], record.strobes[0])
+        write_strobe(y, workspace.k[0], record.strobes[0])
     for i in range(record.samples.displacement.shape[0] - 1 if sampled else record.maxima.shape[0]):
         if first_not_finite(y, bodies) != 0:  # checked before a step spreads it, so that the bead can be reported
             return NOT_FINITE, i
@@ -113,8 +113,8 @@ def run_steps(method, trajectory, first_step, stride, record, out):
         if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, done
         if sampled:
-            keep(slots, i + 1, y, workspace.k[0], workspace.forces.e, record.samples)
+            write_sample(slots, i + 1, y, workspace.k[0], workspace.forces.e, record.samples)
         else:
-            keep_strobe(y, workspace.k[0], record.strobes[i + 1])
-            keep_largest_forces(log.peaks, record.maxima[i])
+            write_strobe(y, workspace.k[0], record.strobes[i + 1])
+            write_largest_forces(log.peaks, record.maxima[i])
     return DONE, max(record.samples.displacement.shape[0], record.maxima.shape[0])

@@ -12,13 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.jit import by_slot, by_type, inline_llvm
-from ..contact_cubic import OVERLAP, RATE
 from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.preload import row_overlap, row_values
 from ..equations.body_forces import force_on_bead
 from ..simd.functions import root
 from ..simd.vector import blank, from_left, from_right, load, load16, load32, store, with_first
+from ..step_ends import OVERLAP_AT, RATE_AT
 
 
 class Width8(NamedTuple):
@@ -52,8 +52,8 @@ STEPS_IN_BLOCK = 32
 class ShortChain(NamedTuple):
     """Workspace of a chain of up to `width` bodies: values padded with zeros (1, width), `rows` (10, width) of states.
 
-    `ends` (6, width) are overlaps and rates at the ends of a step that is split (contact_events.py), `forces` (3, 32)
-    input force, output force and its elastic part of the last steps.
+    `ends` (END_ROWS, width) are overlaps and rates at the ends of a step that is split (step_ends.py), `forces`
+    (3, STEPS_IN_BLOCK) input force, output force and its elastic part of the last steps.
     """
 
     width: Any
@@ -182,8 +182,8 @@ def store_state(short, end, x):
     store(short.rows, first + DU, x.du)
     store(short.rows, first + NET_FORCE, x.net_force)
     store(short.rows, first + ELASTIC, x.elastic)
-    store(short.ends, 2 * end + OVERLAP, x.overlap)
-    store(short.ends, 2 * end + RATE, x.rate)
+    store(short.ends, OVERLAP_AT[end], x.overlap)
+    store(short.ends, RATE_AT[end], x.rate)
 
 
 @inline_llvm
@@ -192,8 +192,8 @@ def load_state(short, end):
     width, rows, first = short.width, short.rows, STATE_ROWS * end
     return ChainState(
         load_row(width, rows, first + U), load_row(width, rows, first + W), load_row(width, rows, first + DU),
-        load_row(width, rows, first + NET_FORCE), load_row(width, short.ends, 2 * end + OVERLAP),
-        load_row(width, short.ends, 2 * end + RATE), load_row(width, rows, first + ELASTIC))
+        load_row(width, rows, first + NET_FORCE), load_row(width, short.ends, OVERLAP_AT[end]),
+        load_row(width, short.ends, RATE_AT[end]), load_row(width, rows, first + ELASTIC))
 
 
 @inline_llvm

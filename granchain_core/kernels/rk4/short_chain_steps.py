@@ -5,15 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiling.jit import inline_llvm, inline_numba, internal
-from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR
+from ..contact_cubic import turns
 from ..effects.dissipation import dashpot_force
 from ..effects.driver import driver_displacement, driver_velocity
-from ..forces.largest import watch_ends_at_event
-from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, watch
+from ..forces.largest import update_end_forces_at_event
+from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, update_peak
 from ..simd.functions import larger
 from ..simd.subnormals import flush_subnormals, restore_subnormals
 from ..simd.vector import at, blank, positive_mask
 from ..status import EVALUATIONS, EVENTS, STEPS
+from ..step_ends import DISPLACEMENT_ERROR, MOMENTUM_ERROR
 from .contact_events import (
     MOST_SPLITS,
     add_quadrature_errors,
@@ -70,7 +71,7 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
         done += stepped
         add_quadrature_errors(slots.dissipation, short.stiffness[0, contact], ends, contact, h, done)
         # after add_quadrature_errors, which gives the overlap the sign that it has after the event
-        watch_ends_at_event(slots, ends, contact, there, out.log)
+        update_end_forces_at_event(slots, ends, contact, there, out.log)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         end = chain_step(values, driver_displacement(driver, middle), u_end, v_end, h * (1.0 - done), event,
                        chain_correction(values, load_row(short.width, ends, DISPLACEMENT_ERROR)),
@@ -91,19 +92,19 @@ def keep_forces(short, values, last, k, x):
 
 
 @internal
-def watch_block(values, count, largest, peaks, first):
+def update_block_peak(values, count, largest, peaks, first):
     """Follow one force through the steps of a block; step by step only where a largest value may be among them."""
     skipped = 0 if HIGHEST * largest > peaks[first] else max(0, count - 4)
     for k in range(skipped, count):
-        watch(peaks, first, values[k])
+        update_peak(peaks, first, values[k])
 
 
 @inline_numba
-def follow_block(short, count, maxima, peaks):
+def update_block_peaks(short, count, maxima, peaks):
     """Follow the three forces through the last `count` steps, whose largest values are `maxima`."""
-    watch_block(short.forces[0], count, maxima[0], peaks, INPUT)
-    watch_block(short.forces[1], count, maxima[1], peaks, OUTPUT)
-    watch_block(short.forces[2], count, maxima[2], peaks, OUTPUT_ELASTIC)
+    update_block_peak(short.forces[0], count, maxima[0], peaks, INPUT)
+    update_block_peak(short.forces[1], count, maxima[1], peaks, OUTPUT)
+    update_block_peak(short.forces[2], count, maxima[2], peaks, OUTPUT_ELASTIC)
 
 
 @inline_llvm
@@ -136,12 +137,12 @@ def write_chain(short, x, trajectory, j):
 def run_short_chain(short, trajectory, j, count, out):
     """Take `count` steps from step index j of the period, slope and forces at the end included.
 
-    The stop flag leaves them incomplete.
+    If the stop flag is set, fewer are taken.
     """
     slots, drive, _, _ = trajectory
     values, before, last = chain_values(short, slots), flush_subnormals(), slots.chain.stiffness.size - 1
     x = start_chain(short, values, trajectory, j)
-    closed, rising, nothing = positive_mask(x.overlap), positive_mask(x.rate), blank(x.w)
+    closed, rising, zero = positive_mask(x.overlap), positive_mask(x.rate), blank(x.w)
     taken = count
     for first in range(j, j + count, STEPS_IN_BLOCK):
         block = min(STEPS_IN_BLOCK, j + count - first)
@@ -150,10 +151,9 @@ def run_short_chain(short, trajectory, j, count, out):
             i = 2 * (first + k)
             ua, ub = tabulated_displacement(slots, drive, i + 1), tabulated_displacement(slots, drive, i + 2)
             vb = tabulated_velocity(slots, drive, i + 2)
-            end = chain_step(values, ua, ub, vb, drive.h, x, nothing, nothing)
+            end = chain_step(values, ua, ub, vb, drive.h, x, zero, zero)
             closed_after, rising_after = positive_mask(end.overlap), positive_mask(end.rate)
-            # the test of `may_change` (step.py) in bits: another sign, or towards zero at first and away at last
-            if (closed_after ^ closed) | ((rising ^ closed) & ~(rising_after ^ closed)) != 0:
+            if (closed ^ closed_after) | turns(closed, rising, rising_after) != 0:  # `may_change` (step.py) in bits
                 store_state(short, BEGIN, x)
                 store_state(short, END, end)
                 split_short_step(short, trajectory, first + k, ub, vb, out)
@@ -163,7 +163,7 @@ def run_short_chain(short, trajectory, j, count, out):
             input_force, output_force, elastic = keep_forces(short, values, last, k, x)
             top_in, top_out = larger(top_in, input_force), larger(top_out, output_force)
             top_elastic = larger(top_elastic, elastic)
-        follow_block(short, block, (top_in, top_out, top_elastic), out.log.peaks)
+        update_block_peaks(short, block, (top_in, top_out, top_elastic), out.log.peaks)
         if out.stop[0] != 0:
             taken = first + block - j
             break

@@ -12,14 +12,15 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.jit import by_slot, by_type_inlined, inline_numba, internal
-from ..contact_cubic import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END
+from ..contact_cubic import turns
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.energy_account import EnergyAccount
 from ..effects.preload import overlap
 from ..equations.motion import copy, motion
-from ..forces.crossings import end_overlaps, watch_crossings
-from ..forces.largest import Instant, Span, watch_event
+from ..forces.crossings import end_approaches, record_crossings
+from ..forces.largest import Instant, Span, update_forces_across_event
 from ..status import EVALUATIONS, EVENTS, STEPS
+from ..step_ends import DISPLACEMENT_ERROR, MOMENTUM_ERROR, OVERLAP, OVERLAP_END, RATE, RATE_END
 from .contact_events import (
     MOST_SPLITS,
     add_quadrature_errors,
@@ -44,8 +45,8 @@ class Rk4Split(NamedTuple):
 class Rk4Workspace(NamedTuple):
     """Workspace of one step: slopes k (4, M), a stage state and the step's end (M,), force arrays.
 
-    `ends` (6, N+1) are overlaps, rates and quadrature errors of a step that is split; contact_cubic.py names the rows.
-    `simd` is the workspace of steps with SIMD along the chain (long_chain.py), None where there are none.
+    `ends` (6, N+1) are overlaps, rates and quadrature errors of a step that is split; step_ends.py names the rows.
+    `simd` is the workspace of steps with SIMD along the chain (short_chain.py, long_chain.py), None without them.
     """
 
     k: np.ndarray
@@ -83,7 +84,10 @@ def tabulated_velocity(slots, drive, i):
 
 @internal
 def rk4(slots, ua, va, ub, vb, h, y, workspace):
-    """One RK4 step from y, whose slope is workspace.k[0], to workspace.end; (u, v)_a at mid-step, _b at its end."""
+    """One RK4 step of size h from y, whose slope is workspace.k[0], to workspace.end.
+
+    The driver's displacement and velocity are (ua, va) at mid-step and (ub, vb) at the end.
+    """
     k, stage, end, forces = workspace.k, workspace.stage, workspace.end, workspace.forces
     for i in range(y.size):
         stage[i] = y[i] + 0.5 * h * k[0, i]
@@ -102,21 +106,22 @@ def rk4(slots, ua, va, ub, vb, h, y, workspace):
 def may_change(slots, y, slope, end, end_slope):
     """Whether a contact may open or close within the step: its overlap has another sign at the end, or turns.
 
-    An overlap that moves towards zero at the start and away from it at the end may have crossed it in between. The same
-    test stands in five other places, in the form that each needs: short_chain_steps.py `run_short_chain`, long_chain.py
-    `comes_nearer`, contact_cubic.py `contact_root`, dop853/bracket.py `may_turn` and dop853_root/changes.py
-    `changes_in` with `may_touch`.
+    short_chain_steps.py and dop853_root/changes.py make the same test for all contacts at once, long_chain.py and
+    forces/crossings.py for turns of the two end contacts; `contact_root` (contact_cubic.py), `may_turn`
+    (dop853/bracket.py) and `may_touch` (dop853_root/changes.py) ask further how near to zero the overlap comes. A
+    batch looks for signs alone (batch/contact_correction.py): it corrects no touch within a step.
+    tests/kernels/test_event_tests.py compares them.
     """
     changed = 0
     for c in range(slots.chain.stiffness.size):
-        before, after = overlap(slots.preload, y, c) > 0.0, overlap(slots.preload, end, c) > 0.0
-        rising, risen = slope[c] - slope[c + 1] > 0.0, end_slope[c] - end_slope[c + 1] > 0.0
-        changed += (before != after) or (rising != before and risen == before)
-    return changed > 0
+        before, after = int(overlap(slots.preload, y, c) > 0.0), int(overlap(slots.preload, end, c) > 0.0)
+        rising, risen = int(slope[c] - slope[c + 1] > 0.0), int(end_slope[c] - end_slope[c + 1] > 0.0)
+        changed |= (before ^ after) | turns(before, rising, risen)
+    return changed != 0
 
 
 @internal
-def keep_overlaps(slots, y, slope, ends, overlaps, rates):
+def write_overlaps(slots, y, slope, ends, overlaps, rates):
     """Overlaps and their rates at one end of a step."""
     for c in range(slots.chain.stiffness.size):
         ends[overlaps, c] = overlap(slots.preload, y, c)
@@ -173,11 +178,11 @@ def span_of(drive, j):
 def _(method, trajectory, j, out):
     slots, drive, y, workspace = trajectory
     now = Instant(y, workspace.k[0])
-    before = end_overlaps(slots.dissipation, slots, now)
+    before = end_approaches(slots.dissipation, slots, now)
     ub, vb = whole_step(trajectory, j)
     copy(workspace.end, y)
     motion(slots, ub, vb, y, workspace.k[0], workspace.forces)
-    watch_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
+    record_crossings(slots.dissipation, slots, before, now, span_of(drive, j), out.log)
     out.counts[STEPS] += 1
     out.counts[EVALUATIONS] += 4
     return drive.h
@@ -187,15 +192,15 @@ def _(method, trajectory, j, out):
 def _(method, trajectory, j, out):
     slots, drive, y, workspace = trajectory
     ub, vb = whole_step(trajectory, j)
-    k, end, left = workspace.k, workspace.end, drive.h
+    k, end, since = workspace.k, workspace.end, drive.h
     motion(slots, ub, vb, end, k[3], workspace.forces)
     out.counts[STEPS] += 1
     out.counts[EVALUATIONS] += 4
     if may_change(slots, y, k[0], end, k[3]):
-        left = split(trajectory, j, ub, vb, out)
+        since = split(trajectory, j, ub, vb, out)
     for i in range(y.size):
         y[i], k[0, i] = end[i], k[3, i]
-    return left
+    return since
 
 
 @internal
@@ -208,9 +213,9 @@ def split(trajectory, j, u_end, v_end, out):
     ends, end, k, h, dtheta = workspace.ends, workspace.end, workspace.k, drive.h, drive.dtheta
     theta, done, last = j * dtheta, 0.0, slots.chain.stiffness.size - 1
     reset_corrections(ends)
-    keep_overlaps(slots, y, k[0], ends, OVERLAP, RATE)
+    write_overlaps(slots, y, k[0], ends, OVERLAP, RATE)
     for _ in range(MOST_SPLITS):
-        keep_overlaps(slots, end, k[3], ends, OVERLAP_END, RATE_END)
+        write_overlaps(slots, end, k[3], ends, OVERLAP_END, RATE_END)
         first, contact = first_event(ends, last + 1, h * (1.0 - done))
         if first > 1.0:
             break
@@ -222,7 +227,7 @@ def split(trajectory, j, u_end, v_end, out):
             rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),
                 u, v, h * part, y, workspace)
             motion(slots, u, v, end, k[3], workspace.forces)
-            keep_overlaps(slots, end, k[3], ends, OVERLAP, RATE)
+            write_overlaps(slots, end, k[3], ends, OVERLAP, RATE)
             out.counts[EVALUATIONS] += 4
             part = nearer_event(slots.dissipation, ends, contact, last, part, 1.0 - done, h)
             if part == stepped:
@@ -230,7 +235,7 @@ def split(trajectory, j, u_end, v_end, out):
         done += stepped
         copy(end, y)
         copy(k[3], k[0])
-        watch_event(slots, y, k[0], workspace.forces.e, h * stepped, contact, there, out.log)
+        update_forces_across_event(slots, y, k[0], workspace.forces.e, h * stepped, contact, there, out.log)
         add_quadrature_errors(slots.dissipation, slots.chain.stiffness[contact], ends, contact, h, done)
         middle = theta + dtheta * 0.5 * (1.0 + done)
         rk4(slots, driver_displacement(slots.driver, middle), driver_velocity(slots.driver, middle),

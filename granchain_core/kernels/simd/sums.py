@@ -8,6 +8,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from ..compiling.jit import FAST_MATH
+from .vector import require_rows
 
 
 def weighted_rows(weights, latest=-1):
@@ -21,6 +22,8 @@ def weighted_rows(weights, latest=-1):
 
     @intrinsic
     def total(typingctx, vector, array):
+        require_rows(array)
+
         def codegen(context, builder, sig, args):
             kind, sum_ = sig.return_type.ir, None
             rows = builder.bitcast(context.make_array(sig.args[1])(context, builder, args[1]).data, kind.as_pointer())
@@ -90,7 +93,7 @@ def lowest_bit(typingctx, mask):
 
 
 @intrinsic
-def rough_sixteenth(typingctx, value):
+def inverse_sixteenth_root(typingctx, value):
     """value^{−1/16} of a positive number to about 4 %, from its bits as an approximate logarithm."""
 
     def codegen(context, builder, sig, args):

@@ -12,7 +12,7 @@ import operator
 
 import numpy as np
 from llvmlite import ir
-from numba import types
+from numba import errors, types
 from numba.core.typing.templates import ConcreteTemplate, infer_global, signature
 from numba.extending import (
     intrinsic,
@@ -83,6 +83,21 @@ for _operation, _instruction in ((operator.add, "fadd"), (operator.sub, "fsub"),
     _binary(_operation, _instruction)
 
 
+@infer_global(operator.neg)
+class _Negated(ConcreteTemplate):
+    pass
+
+
+_Negated.cases = [signature(v, v) for v in VECTORS.values()]
+
+
+for _kind in VECTORS.values():
+
+    @lower_builtin(operator.neg, _kind)
+    def _negate(context, builder, sig, args):
+        return builder.fneg(args[0], flags=FAST_MATH)
+
+
 def aligned(rows: int, width: int = VECTOR_WIDTH) -> np.ndarray:
     """Zeros (rows, width) that begin on a cache line: a vector that lies across two lines costs two accesses."""
     spare = 8
@@ -101,6 +116,16 @@ def splat8(typingctx, value):
     return vector(types.float64), codegen
 
 
+def require_rows(array):
+    """Check, while a kernel is typed, that an array is C-ordered, of float64 and of two axes.
+
+    A vector read from any other array would be made of foreign memory. The width of a row is not known then.
+    """
+    fits = isinstance(array, types.Array) and array.ndim == 2 and array.layout == "C" and array.dtype == types.float64
+    if not fits:
+        raise errors.TypingError(f"vectors are rows of C-ordered arrays (rows, width) of float64, not of {array}.")
+
+
 def _row_pointer(context, builder, array_type, array, row, kind):
     """Pointer to a row of a C-ordered (rows, width) array."""
     data = context.make_array(array_type)(context, builder, array).data
@@ -114,6 +139,8 @@ def loader(width):
 
     @intrinsic
     def load_row(typingctx, array, row):
+        require_rows(array)
+
         def codegen(context, builder, sig, args):
             return builder.load(_row_pointer(context, builder, sig.args[0], *args, kind.ir), align=8)
 
@@ -130,6 +157,7 @@ load_batch = loader(BATCH_SIZE)
 @intrinsic
 def load_like(typingctx, value, array, row):
     """One row of an array as wide as the vector `value`."""
+    require_rows(array)
 
     def codegen(context, builder, sig, args):
         return builder.load(_row_pointer(context, builder, sig.args[1], *args[1:], sig.return_type.ir), align=8)
@@ -140,6 +168,7 @@ def load_like(typingctx, value, array, row):
 @intrinsic
 def store(typingctx, array, row, value):
     """Write a vector to row `row` of a (rows, width) array."""
+    require_rows(array)
 
     def codegen(context, builder, sig, args):
         builder.store(args[2], _row_pointer(context, builder, sig.args[0], args[0], args[1], sig.args[2].ir), align=8)

@@ -35,7 +35,7 @@ _UNEVEN_PART = 1e-2
 _STEADY_PART = 0.2
 #: [period n] Where the last changes are rounding, the decay is read from changes above rounding times this.
 _ABOVE_ROUNDING = 1e3
-#: [period n] A divisor q of n is the period if changes over q are at most this many bounds on the distance …
+#: [period n] A divisor q of n is the period if changes over q are at most this factor times the bound on the distance …
 _DISTANCES_OVER_DIVISOR = 10.0
 #: [period n] … or at most the required bound times this.
 _SETTLED_OVER_DIVISOR = 3.0
@@ -75,7 +75,7 @@ def largest_in(strobes, q):
 
 
 @internal
-def largest_of(strobes, scale):
+def write_scale(strobes, scale):
     """Largest displacement and velocity of a record into `scale` (2,); 1 where there is none."""
     for q in range(2):
         largest = largest_in(strobes, q)
@@ -145,12 +145,14 @@ def shortest(strobes, scale, n, distance, settled):
     """The shortest period that divides n and over which these states hardly change; `distance` bounds theirs to the
     orbit.
     """
-    run, nothing = strobes.shape[0] - 1, max(_DISTANCES_OVER_DIVISOR * distance, _SETTLED_OVER_DIVISOR * settled)
+    run, negligible = strobes.shape[0] - 1, max(_DISTANCES_OVER_DIVISOR * distance, _SETTLED_OVER_DIVISOR * settled)
     for q in range(1, n):
+        if n % q != 0:
+            continue
         largest = 0.0
-        for k in range(n if n % q == 0 else 0):
+        for k in range(n):
             largest = max(largest, change_between(strobes, scale, run - k, run - k - q))
-        if n % q == 0 and largest <= nothing:
+        if largest <= negligible:
             return q
     return n
 
@@ -175,10 +177,10 @@ def detect_period(strobes, longest, rounding, settled, slowest, scale, change):
     That period is the smallest whose distance bound change·decay/(1 − decay) is at most `settled`; changes below
     `rounding` count as none. `slowest` is a decay per drive period that is known to occur, whether these states show it
     or not.
-    `scale` (2,) and `change` (3·longest or more,) are workspaces.
+    `scale` (2,) and `change` (`window_of(longest)` or more,) are workspaces.
     """
     run = strobes.shape[0] - 1
-    largest_of(strobes, scale)
+    write_scale(strobes, scale)
     approaching, approached, approach_decay, approach_change = 0, 0, 0.0, 0.0
     for n in range(1, longest + 1):
         count = window_of(n)
@@ -234,7 +236,7 @@ def nearest_neighbours(strobes, order, scale, nearest):
     `order` are the states of the earlier half by the displacement of their first bead: the search goes from the state's
     own place in both directions, as long as this displacement alone does not differ by more than the distance found.
     """
-    largest_of(strobes, scale)
+    write_scale(strobes, scale)
     half = order.size
     for p in range(nearest.size):
         nearest[p], own = np.inf, strobes[half + p, 0, 0]
@@ -249,7 +251,7 @@ def nearest_neighbours(strobes, order, scale, nearest):
 @brief_kernel
 def record_changes(strobes, n, scale, out):
     """The last out.size changes over n periods of a record, oldest first."""
-    largest_of(strobes, scale)
+    write_scale(strobes, scale)
     changes_before(strobes, scale, n, strobes.shape[0] - 1, out)
 
 
@@ -268,7 +270,7 @@ def window_changes(strobes, window, scale, largest, out):
     The oldest window comes first. `scale` (2,) and `largest` (S, 2, N) are workspaces: S states at a time are compared,
     so that the loop over them is long enough for vectors.
     """
-    largest_of(strobes, scale)
+    write_scale(strobes, scale)
     flat, most, numbers = strobes.reshape(-1), largest.reshape(-1), strobes.shape[1] * strobes.shape[2]
     states, last, windows = largest.shape[0], strobes.shape[0] - 1, out.shape[1]
     for n in range(1, out.shape[0] + 1):

@@ -92,7 +92,7 @@ def test_an_extrapolation_that_is_undone_leaves_no_trace_in_the_record() -> None
     assert len(batch.strobes(MEMBER)) == 1 and batch.strobes(MEMBER)[0] == pytest.approx(2.0)
     for _ in range(12):
         state.periods[MEMBER] += 1
-        record.keep_member_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
+        record.append_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
     assert len(batch.strobes(MEMBER)) == 13
     record.undo_extrapolation.py_func(state, MEMBER)
     assert batch.strobes(MEMBER)[:, 0, 0] == pytest.approx(before, abs=0.0)
@@ -106,7 +106,7 @@ def test_a_full_record_drops_its_older_half_and_keeps_its_beginning_right() -> N
     record.move_member.py_func(state, MEMBER, np.full((2, 4), -1.0))
     for k in range(3):
         state.y[1, MEMBER] = -2.0 - k
-        record.keep_member_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
+        record.append_strobe.py_func(state.strobes, state.strobe_count, state.first_strobe, state.y, MEMBER)
     assert batch.strobes(MEMBER)[:, 0, 0].tolist() == [-1.0, -2.0, -3.0, -4.0]
 
 

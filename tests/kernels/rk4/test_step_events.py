@@ -8,19 +8,20 @@ import numpy as np
 import pytest
 
 from granchain_core.kernels import contact_cubic
-from granchain_core.kernels.contact_cubic import (
+from granchain_core.kernels.dop853 import run as dop853
+from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from granchain_core.kernels.effects.energy_account import EnergyAccount
+from granchain_core.kernels.rk4 import contact_events as events
+from granchain_core.kernels.rk4 import step as fixed_step
+from granchain_core.kernels.step_ends import (
     DISPLACEMENT_ERROR,
+    END_ROWS,
     MOMENTUM_ERROR,
     OVERLAP,
     OVERLAP_END,
     RATE,
     RATE_END,
 )
-from granchain_core.kernels.dop853 import run as dop853
-from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
-from granchain_core.kernels.effects.energy_account import EnergyAccount
-from granchain_core.kernels.rk4 import contact_events as events
-from granchain_core.kernels.rk4 import step as fixed_step
 
 
 def ends_of(*roots: float, sign: float = 1.0) -> tuple[float, float, float, float]:
@@ -53,7 +54,7 @@ def test_the_turn_is_where_the_slope_is_zero() -> None:
 
 
 def test_the_first_of_several_contacts_is_taken() -> None:
-    ends = np.zeros((contact_cubic.ENDS, 3))
+    ends = np.zeros((END_ROWS, 3))
     for c, root in enumerate((0.6, 0.25, 0.8)):
         ends[OVERLAP, c], ends[RATE, c], ends[OVERLAP_END, c], ends[RATE_END, c] = ends_of(root)
     ends[[RATE, RATE_END]] /= 0.5  # rates are in time, for a step of 0.5
@@ -80,7 +81,7 @@ def test_the_excess_of_simpsons_rule_over_a_kink(r: float) -> None:
     (LinearDashpot(0.3), 0.0, 1.25), (Tsuji(0.3), 0.8 * 0.3, 1.25), (KuwabaraKono(0.3), 2.0 / 3.0 * 0.3, 1.5)])
 def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None:  # type: ignore[no-untyped-def]
     """K v^{3/2} h^{5/2} and c v^p h^{p+1} times the excess over the closed side: behind an onset, before a release."""
-    ends, h = np.zeros((contact_cubic.ENDS, 2)), 0.2
+    ends, h = np.zeros((END_ROWS, 2)), 0.2
     ends[RATE, 1] = rate
     events.add_quadrature_errors.py_func(law, 1.4, ends, 1, h, 0.25)
     assert ends[MOMENTUM_ERROR, 1] == pytest.approx(1.4 * 0.7**1.5 * h**2.5 * excess(1.5, part), rel=1e-9)
@@ -88,30 +89,11 @@ def test_impulse_and_path_beside_an_event(rate, part, law, scale, power) -> None
     assert ends[OVERLAP, 1] * rate > 0.0 and not ends[[MOMENTUM_ERROR, DISPLACEMENT_ERROR], 0].any()
 
 
-@pytest.mark.parametrize(("before", "after", "rising", "risen", "seen"), [
-    (-1.0, -1.0, 1.0, -1.0, True), (1.0, 1.0, -1.0, 1.0, True), (-1.0, 1.0, 1.0, 1.0, True),
-    (-1.0, -1.0, -1.0, 1.0, False), (1.0, 1.0, 1.0, -1.0, False), (-1.0, -1.0, 1.0, 1.0, False),
-])
-def test_a_contact_that_turned_may_have_changed_in_between(before, after, rising, risen, seen) -> None:  # type: ignore[no-untyped-def]
-    """Overlap and rate at both ends of a step: towards zero first and away last is looked into.
-
-    The copies of this test for one contact agree, where the rates are large enough for the cubic to cross zero. The two
-    in vectors are compared with this one in tests/kernels/simd/test_simd.py and
-    tests/numerics/test_fixed_step_touches.py.
-    """
-    slots = SimpleNamespace(preload=None, chain=SimpleNamespace(stiffness=np.ones(1)))
-    state, slope = (lambda d: np.array([d, 0.0])), (lambda v: np.array([v, 0.0]))
-    assert fixed_step.may_change.py_func(slots, state(before), slope(rising), state(after), slope(risen)) == seen
-    assert (contact_cubic.contact_root.py_func(before, 5.0 * rising, after, 5.0 * risen) < 1.0) == seen
-    if before == after:
-        assert dop853.may_turn.py_func(before, 5.0 * rising, after, 5.0 * risen, -before) == seen
-
-
 def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None:
     """Contact c pushed its beads apart too much by ends[MOMENTUM_ERROR, c]; the driver did that of contact 0 at its
     speed.
     """
-    inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((contact_cubic.ENDS, 3))
+    inverse, ends = np.array([0.0, 1.0, 0.5, 0.0]), np.zeros((END_ROWS, 3))
     ends[MOMENTUM_ERROR], ends[DISPLACEMENT_ERROR] = (3.0, 5.0, 8.0), (0.1, 0.4, 0.9)
     slots = SimpleNamespace(chain=SimpleNamespace(inverse_mass=inverse), account=EnergyAccount(1))
     y = np.zeros(10)

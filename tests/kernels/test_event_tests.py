@@ -1,0 +1,98 @@
+"""The tests for a contact event inside a step, in every form that a kernel needs, agree with the cubic."""
+
+from __future__ import annotations
+
+import itertools
+from types import SimpleNamespace
+
+import numpy as np
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from granchain_core.kernels.contact_cubic import contact_root, hermite_value, turns
+from granchain_core.kernels.dop853.bracket import may_turn
+from granchain_core.kernels.dop853_root.changes import may_touch
+from granchain_core.kernels.rk4.long_chain import comes_nearer
+from granchain_core.kernels.rk4.step import may_change
+
+#: Overlaps and rates: nothing near zero, where rounding decides.
+_SIZE = st.floats(0.05, 5.0)
+_NUMBER = st.tuples(_SIZE, st.sampled_from([-1.0, 1.0])).map(lambda pair: pair[0] * pair[1])
+_STEP = st.tuples(_NUMBER, _NUMBER, _NUMBER, _NUMBER)
+_ALL_SIGNS = [tuple(float(sign) for sign in signs) for signs in itertools.product((-1, 1), repeat=4)]
+
+
+def may_change_of(d0: float, s0: float, d1: float, s1: float) -> bool:
+    """`may_change` for a single contact with these overlaps and rates at the ends of a step."""
+    slots = SimpleNamespace(preload=None, chain=SimpleNamespace(stiffness=np.ones(1)))
+    y, slope, end, end_slope = (np.array([value, 0.0]) for value in (d0, s0, d1, s1))
+    return bool(may_change.py_func(slots, y, slope, end, end_slope))
+
+
+def nearer_in_long_chain(overlap: float, rate: float) -> bool:
+    """`comes_nearer` for a chain of one contact."""
+    slots = SimpleNamespace(chain=SimpleNamespace(stiffness=np.ones(1)))
+    simd = SimpleNamespace(overlap=np.full((1, 8), overlap), velocity=np.full((1, 8), -rate))
+    first, _ = comes_nearer.py_func(simd, slots, 0.0)
+    return bool(first)
+
+
+def test_all_signs_at_the_ends_of_a_step() -> None:
+    """Towards zero first and away last is a possible event, as is another sign; nothing else is."""
+    seen = {signs for signs in _ALL_SIGNS if may_change_of(*signs)}
+    other_sign = {signs for signs in _ALL_SIGNS if signs[0] != signs[2]}
+    assert seen == other_sign | {(-1.0, 1.0, -1.0, -1.0), (1.0, -1.0, 1.0, 1.0)}
+
+
+def test_the_form_for_all_contacts_at_once_is_that_for_one() -> None:
+    """Contact c is bit c; contacts beyond the chain's last are masked by the callers."""
+    closed, rising, rising_after = (
+        sum(int(signs[place] > 0.0) << c for c, signs in enumerate(_ALL_SIGNS)) for place in (0, 1, 3))
+    together = turns(closed, rising, rising_after)
+    for c, (d0, s0, _, s1) in enumerate(_ALL_SIGNS):
+        assert together >> c & 1 == turns(int(d0 > 0.0), int(s0 > 0.0), int(s1 > 0.0))
+        assert bool(together >> c & 1) == may_change_of(d0, s0, d0, s1)
+
+
+def test_the_form_of_a_long_chain_looks_at_one_state_at_a_time() -> None:
+    """An overlap that came nearer at one step and goes away at the next has turned in between."""
+    for d0, s0, d1, s1 in _ALL_SIGNS:
+        if d0 == d1:
+            turned = nearer_in_long_chain(d0, s0) and not nearer_in_long_chain(d1, s1)
+            assert turned == may_change_of(d0, s0, d1, s1)
+
+
+@given(_STEP)
+def test_whatever_crosses_zero_is_looked_into(step: tuple[float, float, float, float]) -> None:
+    """No form misses a cubic that crosses zero: its values at 400 places say whether it does."""
+    d0, s0, d1, s1 = step
+    values = hermite_value(d0, s0, d1, s1, np.linspace(0.0, 1.0, 401))
+    crosses = bool((np.sign(values) != np.sign(d0)).any())
+    root = contact_root(d0, s0, d1, s1)
+    assume(crosses or root == 2.0)  # else it crosses between two of the places
+    assert (root < 2.0) == crosses
+    assert may_change_of(*step) or not crosses
+    if np.sign(d0) == np.sign(d1):
+        sign = -np.sign(d0)
+        assert may_touch(sign * d0, sign * s0, sign * d1, sign * s1) or not crosses
+
+
+@given(_STEP)
+def test_the_forms_that_ask_how_near_it_comes_look_into_nothing_else(step: tuple[float, float, float, float]) -> None:
+    """`may_turn` and `may_touch` are refinements of `turns`, which is a refinement of `may_change`."""
+    d0, s0, d1, s1 = step
+    assume(d0 * d1 > 0.0)
+    sign = -float(np.sign(d0))
+    refined = may_turn.py_func(d0, s0, d1, s1, sign) or may_touch(sign * d0, sign * s0, sign * d1, sign * s1)
+    assert turns(int(d0 > 0.0), int(s0 > 0.0), int(s1 > 0.0)) or not refined
+    assert may_change_of(*step) or not refined
+
+
+@given(_SIZE, _SIZE, st.floats(0.05, 0.95))
+def test_a_parabola_that_touches_is_never_ruled_out(curvature: float, height: float, place: float) -> None:
+    """The straight lines of `may_turn` along a parabola's slopes at both ends lie above its top."""
+    for sign in (-1.0, 1.0):
+        d0, s0 = height - curvature * place**2, 2.0 * curvature * place
+        d1, s1 = height - curvature * (1.0 - place) ** 2, -2.0 * curvature * (1.0 - place)
+        if d0 < 0.0 and d1 < 0.0:
+            assert may_turn.py_func(sign * d0, sign * s0, sign * d1, sign * s1, sign)
