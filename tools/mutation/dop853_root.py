@@ -29,7 +29,7 @@ DOP853_ROOT = (
            "dense output with a wrong row", k.ROOT),
     Mutant("dop853-root-release-unseen", _CHANGES, "crossed = crossed | own if at(step.end.clock, ROOT) < 0.0 else crossed & ~own",
            "crossed = crossed & ~own", "a contact that a step aims at never opens", k.ROOT_FORCES),
-    Mutant("dop853-root-touch-unseen", _CHANGES, "turned = (rising & ~risen & ~bits) | (~rising & risen & bits)",
+    Mutant("dop853-root-touch-unseen", _CHANGES, "turned = turns(bits, rising, risen)",
            "turned = bits & 0", "a touch inside a step is not seen", k.ROOT_TOUCH),
     Mutant("dop853-root-wall-stays-closed", _CHANGES, "every = (1 << contacts) - 1", "every = (1 << (contacts - 1)) - 1",
            "the wall's contact neither opens nor closes", k.ROOT),

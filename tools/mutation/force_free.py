@@ -9,7 +9,7 @@ _DOP853_RUN, _KINKS = "kernels/dop853/run.py", "kernels/dop853/force_kinks.py"
 _TENSION = "kernels/effects/tension.py"
 
 FORCE_FREE = (
-    Mutant("cut-kink-not-located", _DOP853_RUN, "        if kink < 1.0:", "        if kink < -1.0:",
+    Mutant("cut-kink-not-located", _DOP853_RUN, "        if outcome == KINK:", "        if outcome == KINK + 9:",
            "adaptive steps go across the instant at which a cut contact stops pushing", k.CUT_ENERGY),
     Mutant("force-free-of-tsuji", _KINKS, "stiffness * d * (r / power(law, d, r))", "stiffness * d * r",
            "the instant at which Tsuji's force ends is another one",

@@ -11,8 +11,8 @@ _BRACKET, _CUBIC = "kernels/dop853/bracket.py", "kernels/contact_cubic.py"
 _SAMPLING, _ENGINE = "kernels/rk4/run.py", "integrate/engine.py"
 
 MOTION = (
-    Mutant("motion-without-last-contact", _MOTION, "for c in range(bodies - 1):\n        d = closed_overlap(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
-           "for c in range(bodies - 2):\n        d = closed_overlap(forces.held, c, overlap(slots.preload, y, c))\n        e[c] =",
+    Mutant("motion-without-last-contact", _MOTION, "for c in range(bodies - 1):\n        d = closed_overlap(forces.frozen, c, overlap(slots.preload, y, c))\n        e[c] =",
+           "for c in range(bodies - 2):\n        d = closed_overlap(forces.frozen, c, overlap(slots.preload, y, c))\n        e[c] =",
            "the wall's contact is not summed", k.MOTION),
     Mutant("contact-force-elastic-only", _MOTION, "e[c] + damped)",
            "e[c])", "forces are reported without their damping", k.MOTION),
@@ -32,8 +32,8 @@ FIXED = (
     Mutant("rk4-half-step", _FIXED, "stage[i] = y[i] + 0.5 * h * k[1, i]", "stage[i] = y[i] + 0.5 * h * k[0, i]",
            "the third stage starts from the first slope", k.RK4_ORDER),
     Mutant("scalar-split-steps-over-touch", _FIXED,
-           "changed += (before != after) or (rising != before and risen == before)", "changed += before != after",
-           "a contact that closes and opens again inside a step is not seen", k.STEP_EVENTS),
+           "changed |= (before ^ after) | turns(before, rising, risen)", "changed |= before ^ after",
+           "a contact that closes and opens again inside a step is not seen", k.EVENT_TESTS),
     Mutant("scalar-give-back-sign", _FIXED, "y[bodies + i] += inverse_mass[i] * (ends[MOMENTUM_ERROR", "y[bodies + i] -= inverse_mass[i] * (ends[MOMENTUM_ERROR",
            "what Simpson's rule gives too much is given once more", k.SIMD_PLAIN),
     Mutant("scalar-split-phase", _FIXED, "theta + dtheta * (done + 0.5 * part), theta", "theta + dtheta * (done + part), theta",
@@ -101,7 +101,7 @@ ADAPTIVE = (
            "a long run is called chatter", k.MANY_PERIODS),
     Mutant("samples-at-step-ends", _DOP853_RUN, "min(1.0, (at - t) / h)", "1.0",
            "samples are taken where a step happens to end", k.ADAPTIVE_ORDER),
-    Mutant("dense-coefficient", _DOP853, "value = (value + dense[4, i]) * x", "value = (value + dense[4, i]) * (1.0 - x)",
+    Mutant("dense-coefficient", _DOP853, "value = (value + rows[4]) * x", "value = (value + rows[4]) * back",
            "the dense output is wrong inside a step", k.ADAPTIVE_ORDER),
     Mutant("dop853-stage-weight", _TABLEAU, "(5, 4): 0.12546768756682242", "(5, 4): 0.12546768766682242",
            "the tenth digit of a stage weight", k.TABLEAU),
@@ -124,7 +124,7 @@ CLOCK = (
     Mutant("elastic-peak-of-first-contact", _SAMPLING, "elastic_force(slots.chain.stiffness[last], d))",
            "elastic_force(slots.chain.stiffness[0], d))", "the elastic output force is that of a bead, not of the wall",
            k.SIMD_LONG),
-    Mutant("peak-between-samples", "kernels/forces/peaks.py", "x = 0.0 - first / second", "x = first / second",
+    Mutant("peak-between-samples", "kernels/forces/peaks.py", "x = -first / second", "x = first / second",
            "the top of a force is looked for on the wrong side", k.UNLIKE),
 )
 

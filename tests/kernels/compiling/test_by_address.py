@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numba
 import numpy as np
+import pytest
 
 from granchain_core import scene
 from granchain_core.integrate.batch import Batch
@@ -57,3 +58,24 @@ def test_all_structures_share_the_checks_of_a_batch() -> None:
     assert len(check_member.overloads) == 1 < len(run_batch.overloads)
     find_period(np.zeros((2, 2, 3)))
     assert len(detect_period.overloads) == 1, "a batch and a single chain use one version"
+
+
+@numba.njit(boundscheck=True)
+def reads_beyond(numbers, i):
+    """Read past the end of an array, with bounds checks as NUMBA_BOUNDSCHECK=1 asks for."""
+    return numbers.values[i] > 0.0
+
+
+def test_an_error_of_the_kernel_that_is_called_is_raised() -> None:
+    numbers = Numbers(np.ones(2), np.ones(2))
+    longer = Numbers(np.ones(2), np.ones(2))
+    address = address_of(reads_beyond, numbers, 0)
+    assert positive(longer, address) == 2
+    with pytest.raises(IndexError):
+        past_the_end(numbers, address)
+
+
+@numba.njit
+def past_the_end(numbers, kernel):
+    """Call a kernel for an element that is not there."""
+    return call_at(kernel, (numbers, numbers.values.size + 1))

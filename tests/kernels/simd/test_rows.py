@@ -1,0 +1,41 @@
+"""Vectors are rows of C-ordered arrays of float64: anything else is refused while a kernel is typed. And their minus."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numba.core.errors import TypingError
+
+from granchain_core.kernels.compiling.jit import kernel
+from granchain_core.kernels.simd.vector import aligned, load, store
+
+pytestmark = pytest.mark.quick
+
+
+@kernel
+def first_row(array, out):
+    """Copy the first row."""
+    store(out, 0, load(array, 0))
+
+
+@kernel
+def negative(array, out):
+    """−x of eight values."""
+    store(out, 0, -load(array, 0))
+
+
+@pytest.mark.parametrize("array", [
+    np.zeros((2, 16))[:, ::2], np.zeros((8, 2)).T, np.zeros((1, 8), dtype=np.float32), np.zeros(8), np.zeros((1, 1, 8)),
+], ids=["strided", "transposed", "float32", "one axis", "three axes"])
+def test_other_arrays_are_refused(array: np.ndarray) -> None:
+    with pytest.raises(TypingError, match="vectors are rows of C-ordered arrays"):
+        first_row(array, aligned(1))
+    with pytest.raises(TypingError, match="vectors are rows of C-ordered arrays"):
+        first_row(aligned(1), array)
+
+
+def test_minus_is_that_of_numbers() -> None:
+    row, out = aligned(1), aligned(1)
+    row[0] = 1.5, -2.0, 0.0, np.nan, np.inf, -np.inf, 1e-310, 3.0
+    negative(row, out)
+    assert np.array_equal(out[0], -row[0], equal_nan=True)
