@@ -37,8 +37,11 @@ _FEWEST_ORBITS = 2
 
 
 def can_share_batch(scene: Scene) -> bool:
-    """Whether a batch can run this scene, with every effect it has (the tension cut needs velocities before forces)."""
-    return not unknown_slots(scale_chain(scene).slots, "batch")
+    """Whether a batch can run this scene: its driver moves, and batches know every effect it has.
+
+    They do not know the tension cut, which needs velocities before forces.
+    """
+    return scene.is_driven and not unknown_slots(scale_chain(scene).slots, "batch")
 
 
 def is_uniform(scaled: ScaledChain) -> bool:
@@ -100,9 +103,12 @@ class Batch:
             earliest: int = 0) -> None:
         """Make a scene a member, from the scaled state y at phase 0, with `refine` times the fixed-step method's steps.
 
-        It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked.
+        It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked. Raises
+        `ValueError` for a chain whose driver is at rest: in all lanes the driver's displacement is sin θ.
         """
         slots, members, state = scaled.slots, self.members, self.state
+        if slots.driver.amplitude != 1.0:
+            raise ValueError("a batch drives all its members; this chain's driver is at rest")
         steps = math.ceil(refine * scaled.steps_per_period())
         members.wall[0, member] = slots.chain.stiffness[-1]
         if members.unequal is not None:
