@@ -26,6 +26,7 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core import event
 
 from .compile_lock import CompileLock
 from .sources import FOLDER, constants_hash, hash_of_code, sources_hash, wording_hash
@@ -295,15 +296,22 @@ class KernelCache(_FunctionCache):
         self._locks: dict[Path, CompileLock] = {}
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """A compiled version from disk; None where it has to be compiled, and then no other process compiles it."""
+        """A compiled version from disk; None where it has to be compiled, and then no other process compiles it.
+
+        The lock is then kept until `save_overload`, or until the compiler fails (`_ReleaseAfterFailure`).
+        """
         found = self._load(sig, target_context)
         if found is None:
             path = self._path(sig, target_context.codegen())
             lock = self._locks.setdefault(path, CompileLock(path))
-            if lock.acquire():
+            try:
+                lock.acquire()
                 found = self._load(sig, target_context)
+            except BaseException:
+                self.release(path)
+                raise
             if found is not None:
-                self._locks.pop(path).release()
+                self.release(path)
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -314,9 +322,18 @@ class KernelCache(_FunctionCache):
             say_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that "
                      "are not there are compiled for this process only.")
         finally:
-            lock = self._locks.pop(self._path(sig, data.codegen), None)
-            if lock is not None:
-                lock.release()
+            self.release(self._path(sig, data.codegen))
+
+    def release(self, path: Path) -> None:
+        """Let other processes compile the version that is stored at `path`."""
+        lock = self._locks.pop(path, None)
+        if lock is not None:
+            lock.release()
+
+    def release_all(self) -> None:
+        """Let other processes compile every version."""
+        for path in list(self._locks):
+            self.release(path)
 
     def _load(self, sig: Any, target_context: Any) -> Any:
         """A compiled version from disk, or None.
@@ -337,6 +354,26 @@ class KernelCache(_FunctionCache):
         """Where a version is, or would be."""
         found: Path = self._cache_file.path(self._index_key(sig, codegen))
         return found
+
+
+class _ReleaseAfterFailure(event.Listener):
+    """Releases the locks of a function that the compiler has given up: a mistake in its types, or an interruption.
+
+    Nothing is saved then. One thread compiles at a time, so these are the locks of the version that failed.
+    """
+
+    def on_start(self, event: Any) -> None:
+        """The lock is held already."""
+
+    def on_end(self, event: Any) -> None:
+        """A version that is compiled is among the function's versions by now, and is saved next."""
+        function = event.data["dispatcher"]
+        kept = getattr(function, "_cache", None)
+        if isinstance(kept, KernelCache) and tuple(event.data["args"]) not in function.overloads:
+            kept.release_all()
+
+
+event.register("numba:compile", _ReleaseAfterFailure())
 
 
 def keep_on_disk(compiled: Any) -> None:
