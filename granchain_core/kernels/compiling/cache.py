@@ -55,6 +55,9 @@ MARK = "compiled-"
 _DIGEST = 32
 #: Folders of other versions are removed when they have not been used for this long [s].
 _MONTH = 30 * 86400.0
+#: Rights of the folder of kernels and of its files, less those that the umask takes away: whatever it leaves to the
+#: group, only this user writes.
+_FOLDER_RIGHTS, _FILE_RIGHTS = 0o755, 0o644
 #: Names of the folders of all versions.
 _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
 
@@ -64,19 +67,21 @@ _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
 def cache_folder() -> Path | None:
     """The folder of the compiled kernels; None, with one message, where nothing can be kept.
 
-    It is in $GRANCHAIN_CACHE, else in the user's cache. Where that cannot be written, kernels that are there already
-    are used if they are this user's or the administrator's; else a folder in the temporary directory is, if nobody else
-    can write to it.
+    It is in $GRANCHAIN_CACHE, else in the user's cache, if only this user or the administrator can write to it. Where it
+    cannot be written, kernels that are there already are used; else a folder in the temporary directory is, if it is
+    this user's alone.
     """
     base, problem = _chosen_base(), "there is no home folder"
     if base is not None:
         name = _version_in(base)
         try:
-            (base / name).mkdir(parents=True, exist_ok=True)
+            (base / name).mkdir(mode=_FOLDER_RIGHTS, parents=True, exist_ok=True)
             with tempfile.TemporaryFile(dir=base / name):
                 pass
-            _note_use(base, base / name)
-            return base / name
+            if _is_trusted(base / name):
+                _note_use(base, base / name)
+                return base / name
+            problem = f"others may write to {base / name}"
         except OSError as denied:
             problem = f"{base}: {denied.strerror or denied}"
             if _holds_kernels(base / name) and _is_trusted(base / name):
@@ -119,8 +124,8 @@ def _holds_kernels(folder: Path) -> bool:
 
 def _is_trusted(folder: Path) -> bool:
     """Whether only this user or the administrator can have written a folder: its files are unpickled and run."""
-    found = folder.stat()
-    return not hasattr(os, "getuid") or (found.st_uid in (0, os.getuid()) and not found.st_mode & stat.S_IWOTH)
+    found, others = folder.stat(), stat.S_IWGRP | stat.S_IWOTH
+    return not hasattr(os, "getuid") or (found.st_uid in (0, os.getuid()) and not found.st_mode & others)
 
 
 def _temporary_folder(problem: str) -> Path | None:
@@ -196,8 +201,9 @@ class _Files:
         path = self.path(key)
         unfinished = path.with_suffix(f".{uuid.uuid4().hex[:16]}.tmp")
         try:
-            # with the usual permissions: an image's kernels are compiled by one user and used by another
-            unfinished.write_bytes(hashlib.sha256(content).digest() + content)
+            # an image's kernels are compiled by one user and used by another
+            with open(unfinished, "xb", opener=lambda name, flags: os.open(name, flags, _FILE_RIGHTS)) as file:
+                file.write(hashlib.sha256(content).digest() + content)
             unfinished.replace(path)
         finally:
             with contextlib.suppress(OSError):

@@ -160,7 +160,7 @@ def test_a_full_disk_is_said_once_and_the_kernel_runs(filled: Path, tmp_path: Pa
     assert len(messages) == 1 and "cannot be kept" in messages[0] and "File too large" in messages[0]
 
 
-def test_every_flipped_bit_is_seen(filled: Path, tmp_path: Path) -> None:
+def test_flipped_bits_throughout_the_file_are_seen(filled: Path, tmp_path: Path) -> None:
     """The checksum is compared before anything is unpickled."""
     for path in shutil.copytree(filled, tmp_path / "cache").rglob("*.nbc"):
         content = path.read_bytes()
@@ -197,14 +197,35 @@ def test_processes_that_compile_at_once_lose_nothing_of_each_other(tmp_path: Pat
     assert one.load("a") is None
 
 
-def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
-    """An image is warmed by root and run by somebody else: files have the rights that the user's umask leaves."""
-    files, before = cache._Files(str(tmp_path), "f", "stamp"), os.umask(0o022)
+def mode_with(umask: int, folder: Path) -> int:
+    """The rights of a file of the cache."""
+    files, before = cache._Files(str(folder), "f", "stamp"), os.umask(umask)
     try:
         files.save("one", "code of one")
     finally:
         os.umask(before)
-    assert files.path("one").stat().st_mode & 0o777 == 0o644
+    return files.path("one").stat().st_mode & 0o777
+
+
+def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
+    """An image is warmed by root and run by somebody else: files have the rights that the user's umask leaves."""
+    assert mode_with(0o022, tmp_path) == 0o644
+
+
+@pytest.mark.parametrize(("umask", "rights"), [(0o002, 0o755), (0o000, 0o755), (0o077, 0o700)])
+def test_nobody_else_can_write_what_is_compiled_whatever_the_umask_leaves(umask: int, rights: int, tmp_path: Path) -> None:
+    """Neither the folder, nor those in it, nor the files."""
+    assert mode_with(umask, tmp_path) == rights & 0o666
+    before = os.umask(umask)
+    try:
+        answer, messages = used(tmp_path / "chosen")
+    finally:
+        os.umask(before)
+    assert answer["right"] and messages == []
+    folder = Path(answer["folder"])
+    assert folder.parent == tmp_path / "chosen"
+    assert {path.stat().st_mode & 0o777 for path in (folder, *folder.iterdir()) if path.is_dir()} == {rights}
+    assert {path.stat().st_mode & 0o777 for path in folder.rglob("*.nbc")} == {rights & 0o666}
 
 
 @pytest.fixture
@@ -259,9 +280,10 @@ def test_a_temporary_folder_of_another_owner_is_not_used(denied: Path, tmp_path:
     assert used(denied, FOLDER)[0]["folder"] == "None"
 
 
-@pytest.mark.parametrize("whose", ["ours", "anybody may write", "another user's"])
-def test_kernels_in_a_folder_that_cannot_be_written_are_run_if_nobody_else_wrote_them(
-        whose: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
+@pytest.mark.parametrize("whose", ["ours", "anybody may write", "the group may write", "another user's"])
+def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
+        whose: str, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its files are unpickled; a checksum in a file says nothing of who has written it."""
     if whose == "another user's" and os.getuid() != 0:
         pytest.skip("only root can give a folder away")
@@ -272,11 +294,12 @@ def test_kernels_in_a_folder_that_cannot_be_written_are_run_if_nobody_else_wrote
     folder = tmp_path / f"kernels-{cache.sources_hash()}"
     folder.mkdir()
     (folder / "one.nbc").write_bytes(b"")
-    folder.chmod(0o777 if whose == "anybody may write" else 0o755)
+    folder.chmod({"anybody may write": 0o757, "the group may write": 0o775}.get(whose, 0o755))
     if whose == "another user's":
         os.chown(folder, 12345, 12345)
     monkeypatch.setenv("GRANCHAIN_CACHE", str(tmp_path))
-    monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
     monkeypatch.setattr(cache, "_temporary_folder", lambda problem: Path(problem))
     chosen = cache.cache_folder()
     assert (chosen == folder) is (whose == "ours")
