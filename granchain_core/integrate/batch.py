@@ -94,7 +94,8 @@ class Batch:
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
             last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2),
-            change=change_workspace(LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
+            change=change_workspace(LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
+            triangle=np.zeros((ORBITS, ORBITS)),
             stages=(_rows(rows), _rows(rows), _rows(rows)),
         )
         for member in range(BATCH_SIZE):

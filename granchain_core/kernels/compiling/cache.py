@@ -67,8 +67,8 @@ _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
 def cache_folder() -> Path | None:
     """The folder of the compiled kernels; None, with one message, where nothing can be kept.
 
-    It is in $GRANCHAIN_CACHE, else in the user's cache, if only this user or the administrator can write to it. Where it
-    cannot be written, kernels that are there already are used; else a folder in the temporary directory is, if it is
+    It is in $GRANCHAIN_CACHE, else in the user's cache, if only this user or the administrator can write to it. Where
+    it cannot be written, kernels that are there already are used; else a folder in the temporary directory is, if it is
     this user's alone.
     """
     base, problem = _chosen_base(), "there is no home folder"
