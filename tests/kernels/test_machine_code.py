@@ -30,7 +30,7 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch_size import VARIABLE
-from granchain_core.kernels.compiling.cache import CACHE_FOLDER
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 from granchain_core.kernels.compiling.sources import hash_of_code
 from granchain_core.stop import Stop
 

@@ -12,6 +12,8 @@ import os
 import time
 from pathlib import Path
 
+from .cache_folder import FILE_RIGHTS, FOLDER_RIGHTS
+
 try:
     import fcntl
 except ImportError:  # not a POSIX system
@@ -45,8 +47,8 @@ class CompileLock:
             return
         ends = time.monotonic() + patience
         try:
-            self._path.parent.mkdir(mode=0o755, parents=True, exist_ok=True)
-            file = os.open(self._path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o644)
+            self._path.parent.mkdir(mode=FOLDER_RIGHTS, parents=True, exist_ok=True)
+            file = os.open(self._path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, FILE_RIGHTS)
         except OSError:
             return
         try:

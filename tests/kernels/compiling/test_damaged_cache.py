@@ -19,14 +19,14 @@ from missing_attribute import hide
 from numba.core import caching
 from numba.core.dispatcher import Dispatcher
 
-from granchain_core.kernels.compiling import cache
+from granchain_core.kernels.compiling import cache, cache_folder
 
 ROOT = Path(__file__).resolve().parents[3]
 #: Runs one small kernel, and prints where it is kept, whether its result is right, and how often Numba loaded it.
 PROGRAM = """
 import json
 import numpy as np
-from granchain_core.kernels.compiling.cache import CACHE_FOLDER
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 from granchain_core.kernels.forces.peaks import PEAKS, reset_peaks
 peaks = np.ones(PEAKS)
 reset_peaks(peaks)
@@ -34,7 +34,7 @@ right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
 print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(reset_peaks.stats.cache_hits.values())}))
 """
 #: Says which folder is chosen, and compiles nothing.
-FOLDER = "import json\nfrom granchain_core.kernels.compiling.cache import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
+FOLDER = "import json\nfrom granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
 #: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as
 #: well.
 _FULL = "import resource, signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
@@ -107,7 +107,7 @@ def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypa
         return 2 * x
 
     before = object.__getattribute__(twice, "_cache")
-    cache.say_once.cache_clear()
+    cache_folder.say_once.cache_clear()
     if name:
         take_away(name, monkeypatch)
     cache.keep_on_disk(twice)
@@ -134,13 +134,13 @@ def flipped(content: bytes) -> bytes:
 
 @pytest.mark.parametrize("damage", [lambda _: b"", halved, flipped, lambda _: b"x"], ids=["empty", "halved", "flipped", "short"])
 def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, filled: Path, tmp_path: Path) -> None:
-    cache_folder = shutil.copytree(filled, tmp_path / "cache")
-    (file,) = cache_folder.rglob("*.nbc")
+    kept = shutil.copytree(filled, tmp_path / "cache")
+    (file,) = kept.rglob("*.nbc")
     whole = file.read_bytes()
     file.write_bytes(damage(whole))
-    mark = next(cache_folder.glob("kernels-*")) / "compiled-all"
+    mark = next(kept.glob("kernels-*")) / "compiled-all"
     mark.touch()
-    answer, messages = used(cache_folder)
+    answer, messages = used(kept)
     assert answer["right"] and answer["loaded"] == 0
     assert len(messages) == 1 and "Damaged kernels" in messages[0] and "compiled again" in messages[0]
     assert cache.whole(file) == file.read_bytes()[32:] and len(file.read_bytes()) > len(whole) // 2
@@ -256,15 +256,15 @@ def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denie
         ours.write_text("")
     else:
         ours.mkdir(mode=0o700)
-        inside = ours / f"kernels-{cache.sources_hash()}"
+        inside = ours / f"kernels-{cache_folder.sources_hash()}"
         inside.mkdir(mode=0o700)
         {"open to all": ours, "readable by all": ours, "open inside": inside}[planted].chmod(
             0o755 if planted == "readable by all" else 0o777)
     monkeypatch.setenv("GRANCHAIN_CACHE", str(denied))
     monkeypatch.setattr(tempfile, "tempdir", None)  # Python remembers where it was
     said: list[str] = []
-    monkeypatch.setattr(cache, "say_once", said.append)
-    assert cache.cache_folder() is None
+    monkeypatch.setattr(cache_folder, "say_once", said.append)
+    assert cache_folder.cache_folder() is None
     assert len(said) == 1 and "not a folder of ours with mode 700" in said[0]
     if planted == "open to all":
         answer, messages = used(denied)
@@ -291,7 +291,7 @@ def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
     def denied(**_: Any) -> None:
         raise PermissionError(13, "Permission denied")
 
-    folder = tmp_path / f"kernels-{cache.sources_hash()}"
+    folder = tmp_path / f"kernels-{cache_folder.sources_hash()}"
     folder.mkdir()
     (folder / "one.nbc").write_bytes(b"")
     folder.chmod({"anybody may write": 0o757, "the group may write": 0o775}.get(whose, 0o755))
@@ -300,8 +300,8 @@ def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
     monkeypatch.setenv("GRANCHAIN_CACHE", str(tmp_path))
     if not writable:
         monkeypatch.setattr(tempfile, "TemporaryFile", denied)
-    monkeypatch.setattr(cache, "_temporary_folder", lambda problem: Path(problem))
-    chosen = cache.cache_folder()
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    chosen = cache_folder.cache_folder()
     assert (chosen == folder) is (whose == "ours")
 
 
@@ -312,7 +312,7 @@ def test_without_the_compiler_nothing_is_imported(tmp_path: Path) -> None:
 
 
 def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path: Path) -> None:
-    own, old, young = (tmp_path / f"kernels-{name}" for name in (cache.sources_hash(), "0" * 12, "1" * 12))
+    own, old, young = (tmp_path / f"kernels-{name}" for name in (cache_folder.sources_hash(), "0" * 12, "1" * 12))
     foreign = tmp_path / "kernels-of-mine"
     for folder, days in ((own, 40), (old, 31), (young, 29), (foreign, 400)):
         folder.mkdir()
