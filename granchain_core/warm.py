@@ -23,7 +23,7 @@ from .accuracy.work_precision import compile_methods
 from .child_processes import pool, starting
 from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting, following_setting
 from .integrate.batch import Batch, can_share_batch, is_uniform
-from .kernels.compiling.cache import CACHE_FOLDER, MARK
+from .kernels.compiling.cache_folder import CACHE_FOLDER, MARK
 from .kernels.rk4.short_chain import CHAIN_WIDTHS
 from .observe.pair import Pair
 from .orbits.branch.axis import KnobAxis

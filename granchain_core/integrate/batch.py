@@ -21,7 +21,7 @@ from ..kernels.forces.peaks import PEAKS
 from ..kernels.simd.vector import aligned
 from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
-from ..kernels.strobes.periodicity import LONGEST_PERIOD
+from ..kernels.strobes.periodicity import LONGEST_PERIOD, window_of
 from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
 from ..stop import Stop
@@ -37,14 +37,22 @@ _FEWEST_ORBITS = 2
 
 
 def can_share_batch(scene: Scene) -> bool:
-    """Whether a batch can run this scene, with every effect it has (the tension cut needs velocities before forces)."""
-    return not unknown_slots(scale_chain(scene).slots, "batch")
+    """Whether a batch can run this scene: its driver moves, and batches know every effect it has.
+
+    They do not know the tension cut, which needs velocities before forces.
+    """
+    return scene.is_driven and not unknown_slots(scale_chain(scene).slots, "batch")
 
 
 def is_uniform(scaled: ScaledChain) -> bool:
     """Whether all beads, and all contacts but the wall's, are alike."""
     chain = scaled.slots.chain
     return bool((chain.inverse_mass[1:-1] == 1.0).all() and (chain.stiffness[:-1] == 1.0).all())
+
+
+def change_workspace(longest: int) -> np.ndarray:
+    """The workspace of `detect_period` (kernels/strobes/periodicity.py) for periods up to `longest`."""
+    return np.zeros(window_of(longest))
 
 
 def _rows(rows: int) -> np.ndarray:
@@ -85,8 +93,9 @@ class Batch:
             state_before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
-            last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2), change=np.zeros(3 * LONGEST_PERIOD),
-            limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)), triangle=np.zeros((ORBITS, ORBITS)),
+            last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2),
+            change=change_workspace(LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
+            triangle=np.zeros((ORBITS, ORBITS)),
             stages=(_rows(rows), _rows(rows), _rows(rows)),
         )
         for member in range(BATCH_SIZE):
@@ -100,9 +109,12 @@ class Batch:
             earliest: int = 0) -> None:
         """Make a scene a member, from the scaled state y at phase 0, with `refine` times the fixed-step method's steps.
 
-        It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked.
+        It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked. Raises
+        `ValueError` for a chain whose driver is at rest: in all lanes the driver's displacement is sin θ.
         """
         slots, members, state = scaled.slots, self.members, self.state
+        if slots.driver.amplitude != 1.0:
+            raise ValueError("a batch drives all its members; this chain's driver is at rest")
         steps = math.ceil(refine * scaled.steps_per_period())
         members.wall[0, member] = slots.chain.stiffness[-1]
         if members.unequal is not None:
@@ -145,8 +157,10 @@ class Batch:
         """Make a scene a member, with a shadow in another lane: a trajectory that begins at y + offset.
 
         After each period the shadow is brought back to `distance`, the length of `offset`. The member is due after
-        `periods` periods, at most STROBES_KEPT of them.
+        `periods` periods. Raises `ValueError` for more than STROBES_KEPT of them, for whose growth there is no place.
         """
+        if periods > STROBES_KEPT:
+            raise ValueError(f"a pair runs for at most {STROBES_KEPT} periods, not for {periods}")
         self.put(member, scaled, y, 1, periods, NEVER)
         self.put(shadow, scaled, y + offset, 1, NEVER, NEVER)
         state = self.state

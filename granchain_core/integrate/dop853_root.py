@@ -11,13 +11,12 @@ from ..kernels.dop853.step import ALL_STAGES
 from ..kernels.dop853_root.chain import STATE_ROWS, Dop853RootWorkspace, Stages
 from ..kernels.dop853_root.run import run_dop853_root
 from ..kernels.forces.largest import new_log
-from ..kernels.rk4.short_chain import CHAIN_WIDTHS
 from ..kernels.samples import KernelIO, Samples
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..scaling import ScaledChain
 from ..stop import Stop
 from .adaptive import Dop853Stepper
-from .fixed import short_chain_workspace
+from .fixed import SHORT_CHAIN, chain_width, short_chain_workspace
 from .stepper import CallStart, empty_samples
 
 
@@ -55,11 +54,11 @@ class Dop853RootStepper(Dop853Stepper):
 def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:
     """The workspace of a chain that fits into one vector and has effects that these kernels know. Raises `BadInput`.
     """
-    width = next((lanes for lanes in CHAIN_WIDTHS if scaled.bodies <= lanes), 0)
+    width = chain_width(scaled)
     unknown = unknown_slots(scaled.slots, "dop853_root")
     if not width or unknown or scaled.slots.driver is None:
         named = f" It does not know: {', '.join(unknown)}." if unknown else ""
-        raise BadInput(f"The method dop853-root takes chains of up to {max(CHAIN_WIDTHS) - 2} beads with a driver "
+        raise BadInput(f"The method dop853-root takes chains of up to {SHORT_CHAIN} beads with a driver "
                        "that is harmonic or at rest, without tension cut and energy account; use dop853 for this "
                        f"one.{named}")
 

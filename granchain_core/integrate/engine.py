@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput
+from ..errors import BadInput, Cancelled
 from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
 from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
 from ..kernels.samples import KernelIO, Samples, first_not_finite
@@ -32,6 +32,9 @@ class Engine:
 
     `samples` is the number of recorded samples a period. `stop` ends a call from another thread. `scaled` may be
     given where more than the scene's own chain moves. What depends on the method is in `stepper`.
+
+    A call that ends with `Cancelled` leaves the chain where the call began; the largest forces and the counts keep what
+    it had seen.
     """
 
     def __init__(self, scene: Scene, setting: Setting, samples: int = 1, account: bool = False,
@@ -123,10 +126,14 @@ class Engine:
         stepper, periods = self.stepper, count / self.samples
         samples = empty_samples(stepper.scaled, count + 1)
         out = self._output(round(_MOST_CLOSINGS * (1.0 + periods) * stepper.scaled.bodies))
-        status, rows = stepper.samples(self.y, self.grid_index, samples, out)
+        try:
+            status, rows = stepper.samples(self.y, self.grid_index, samples, out)
+            if status != DONE:
+                self.raise_for(status, max(0, rows - 1) / self.samples, self._before)
+        except Cancelled:
+            self._go_back()
+            raise
         self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid
-        if status != DONE:
-            self.raise_for(status, max(0, rows - 1) / self.samples, self._before)
         self.elapsed += periods
         return samples
 
@@ -142,9 +149,13 @@ class Engine:
         self._remember()
         stepper = self.stepper
         strobes, maxima = np.zeros((count + 1, 2, stepper.scaled.bodies)), np.full((count, 3), np.nan)
-        status, done = stepper.periods(self.y, strobes, maxima, watch, self._output())
-        if status != DONE:
-            self.raise_for(status, done, self._before)
+        try:
+            status, done = stepper.periods(self.y, strobes, maxima, watch, self._output())
+            if status != DONE:
+                self.raise_for(status, done, self._before)
+        except Cancelled:
+            self._go_back()
+            raise
         self.elapsed += count
         return strobes[:, :, 1:-1], maxima
 
@@ -218,6 +229,13 @@ class Engine:
         if bead:
             raise self._failure(NOT_FINITE, 0.0, bead, stepper.step_at(self.grid_index)).error
         self._before: CallStart = self.y.copy(), stepper.slope.copy(), self.grid_index
+
+    def _go_back(self) -> None:
+        """Return to where the last call began."""
+        before, slope, self.grid_index = self._before
+        self.y[:] = before
+        self.evaluate()  # also the flags of force-free contacts, which belong to the last step
+        self.y[:], self.stepper.slope[:] = before, slope
 
     def _failure(self, status: int, done: float, bead: int, step: int | None) -> Failure:
         return Failure(status, self.elapsed + done, bead, step, self.counts.by_name, self.scaled.scene,

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
+from ..kernels.effects.driver import driver_displacement, driver_velocity
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
 from ..kernels.naive import naive_motion
@@ -33,6 +34,8 @@ from ..stop import Stop
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
 from .stepper import CallStart, empty_samples
 
+#: Most beads of a chain whose bodies, with driver and wall, fit into one vector.
+SHORT_CHAIN = max(CHAIN_WIDTHS) - 2
 #: Steps in a period up to which the driver's motion is tabulated.
 _LARGEST_TABLE = 200_000
 #: Tables that are kept: a branch of orbits makes ten chains in turn with the same number of steps.
@@ -85,7 +88,7 @@ class FixedStep:
         scaled, slots = self.scaled, self.scaled.slots
         if not self._simd or unknown_slots(slots, "rk4") or slots.driver is None:
             return None
-        width = next((lanes for lanes in CHAIN_WIDTHS if scaled.bodies <= lanes), 0)
+        width = chain_width(scaled)
         return short_chain_workspace(scaled, width) if width else _long_chain(scaled)
 
     @property
@@ -193,8 +196,8 @@ class FixedStepInVelocity(FixedStep):
     def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Put the slope in step with y; velocities are part of it."""
         slots = self.scaled.slots
-        velocity = slots.driver.amplitude * slots.driver.beta * np.cos(theta)
-        naive_motion(slots, slots.driver.amplitude * np.sin(theta), velocity, y, self.work.k[0], self.work.forces)
+        displacement, velocity = driver_displacement(slots.driver, theta), driver_velocity(slots.driver, theta)
+        naive_motion(slots, displacement, velocity, y, self.work.k[0], self.work.forces)
 
 
 @functools.lru_cache(maxsize=_TABLES_KEPT)
@@ -203,6 +206,11 @@ def _half_steps(grid: int) -> tuple[np.ndarray, np.ndarray]:
     # the table is faster, but that of a period of many steps would not fit into memory
     theta = np.pi * np.arange(2 * grid + 1 if grid <= _LARGEST_TABLE else 0) / grid
     return np.sin(theta), np.cos(theta)
+
+
+def chain_width(scaled: ScaledChain) -> int:
+    """Numbers in the vector that a chain's bodies fit into, 0 where there is none."""
+    return next((lanes for lanes in CHAIN_WIDTHS if scaled.bodies <= lanes), 0)
 
 
 def short_chain_workspace(scaled: ScaledChain, width: int) -> ShortChain:

@@ -11,12 +11,11 @@ import numpy as np
 
 from ..input_checks import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
-from ..kernels.rk4.short_chain import CHAIN_WIDTHS
 from ..kernels.rk4.step import Rk4, Rk4Split
 from ..scaling import ScaledChain
 from .adaptive import Dop853Stepper
 from .dop853_root import Dop853RootStepper
-from .fixed import FixedStep, FixedStepInVelocity
+from .fixed import SHORT_CHAIN, FixedStep, FixedStepInVelocity
 from .stepper import Stepper
 
 #: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.
@@ -24,8 +23,6 @@ FIXED_STEP = "rk4-split"
 #: Error control with located events: the method of the finest accuracy.
 ADAPTIVE = "dop853"
 
-#: Most beads of a chain whose bodies, with driver and wall, fit into one vector.
-SHORT_CHAIN = max(CHAIN_WIDTHS) - 2
 #: Above this relative error the fixed-step method is cheaper than dop853 (`granchain accuracy sec2` measures it).
 FIXED_STEP_IS_CHEAPER = 1e-10
 #: The fixed-step method's usual relative error at the default step; it falls with the fourth power of the step.
@@ -281,10 +278,10 @@ def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.nd
 
     All in scaled units.
 
-    The quadrature error after an onset is subtracted at the end of the split step and of the next two steps. If
-    another contact closes in between, its momentum is off by a part of K v^{3/2} h^{5/2} (contact_events.py), hence its
-    rate v, relatively, by a part of K √v h^{5/2}/m. The sign changes with the step size, so the difference of two
-    computations does not bound it.
+    At the end of a step that was split at an onset its quadrature error and those of the next two steps are subtracted,
+    the latter before they arise. If another contact closes in between, its momentum is off by a part of
+    K v^{3/2} h^{5/2} (contact_events.py), hence its rate v, relatively, by a part of K √v h^{5/2}/m. The sign changes
+    with the step size, so the difference of two computations does not bound it.
     """
     least = np.zeros(3)
     if setting.method == FIXED_STEP and scaled.slots.dissipation is not None:

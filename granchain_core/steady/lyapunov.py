@@ -19,6 +19,8 @@ from ..scaling import ScaledChain
 #: [chaotic, quasi-periodic] Distance of the neighbouring trajectory, in drive amplitudes. It is far above rounding and
 #: far below the kinks of the contacts.
 _DISTANCE = 1e-8
+#: [no threshold] Stands for a distance of zero, which has no logarithm: far below any, and no subnormal number.
+_NO_DISTANCE = 1e-300
 
 
 def put_with_shadow(batch: Batch, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, periods: int,
@@ -93,18 +95,18 @@ def growth_along(engine: Engine, periods: int,
     direction, and needs some periods to turn into the leading one. In each period the usual kernel runs both; then the
     distance between them is measured, and the neighbour is put back to the first distance.
     """
-    row, count = 2 * engine.scaled.bodies, periods
+    row = 2 * engine.scaled.bodies
     shadow = Engine(engine.scaled.scene, engine.setting, engine.samples, stop=engine.stop)
     shadow.start(engine.state)
     offset = _offset(engine.scaled.bodies) if offset is None else offset
-    growth, strobes = np.zeros(count), np.zeros((count, 2, engine.scaled.beads))
-    for period in range(count):
+    growth, strobes = np.zeros(periods), np.zeros((periods, 2, engine.scaled.beads))
+    for period in range(periods):
         shadow.y[:row] = engine.y[:row] + offset
         shadow.evaluate()
         strobes[period] = engine.periods(1)[0][1]
         shadow.periods(1)
         offset = shadow.y[:row] - engine.y[:row]
-        distance = max(float(np.linalg.norm(offset)), 1e-300)
+        distance = max(float(np.linalg.norm(offset)), _NO_DISTANCE)
         growth[period] = np.log(distance / _DISTANCE)
         offset *= _DISTANCE / distance
     return growth, strobes, offset

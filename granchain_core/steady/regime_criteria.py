@@ -12,6 +12,7 @@ import math
 import numpy as np
 
 from ..integrate import Setting
+from ..integrate.batch import change_workspace
 from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
 from ..regime import Regime
@@ -65,9 +66,10 @@ def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, round
     Changes below `rounding` are the method's own and count as none. Those that are lost in it may still be those of a
     slow approach: the distance is no better known than rounding·r/(1 − r) with the decay r.
     """
-    periods_run, workspace = len(strobes) - 1, np.zeros(max(periodicity.LEAST_WINDOW, 3 * longest))
+    periods_run = len(strobes) - 1
     period, decay, distance, *_ = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding,
-                                                            SETTLED_DISTANCE, 0.0, np.zeros(2), workspace)
+                                                            SETTLED_DISTANCE, 0.0, np.zeros(2),
+                                                            change_workspace(longest))
     if period == 0:
         return Regime.unsettled(periods_run)
     if 0.0 < decay < 1.0:

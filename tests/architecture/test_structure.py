@@ -44,7 +44,8 @@ def lines_of_docstrings(tree: ast.Module) -> int:
 
 def test_the_cache_is_named_by_the_sources_of_all_kernels() -> None:
     """What changes that hash is tested in tests/kernels/compiling/test_sources.py."""
-    from granchain_core.kernels.compiling.cache import CACHE_FOLDER, sources_hash
+    from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
+    from granchain_core.kernels.compiling.sources import sources_hash
 
     assert CACHE_FOLDER is not None and sources_hash() in CACHE_FOLDER.name
 

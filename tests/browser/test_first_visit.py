@@ -11,7 +11,7 @@ from knobs import COMPILED, Visit, field, settled
 from playwright.sync_api import Browser, expect
 from server import dashboard
 
-from granchain_core.kernels.compiling.cache import CACHE_FOLDER, MARK
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER, MARK
 
 SAYS_LATE_THAT_IT_IS_READY = """
 const before = WebSocket.prototype.send;

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from documents import ROOT, blocks, edited
 
-from granchain_core.kernels.compiling.cache import CACHE_FOLDER
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 
 _PARTS = ("granchain_core", "app", "assets", "tests/chains.py", "tests/conftest.py", "pyproject.toml", "README.md", "docs/model.md",
           "tests/numerics/test_orders.py", "docs/command-line.md",

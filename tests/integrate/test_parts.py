@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import Cancelled, Scene, Stop, scene
-from granchain_core.integrate import Engine, fixed, fixed_step_setting
+from granchain_core.integrate import METHODS, Engine, Setting, fixed, fixed_step_setting
 
 SHORT = scene("sec2")
 LONG = scene("sec2").evolve(N=200)
@@ -75,3 +75,30 @@ def test_a_long_chain_ends_a_part_after_the_flag_is_set() -> None:
         engine.periods(2)  # of 856 steps, in parts of 52
     assert stop.pauses == 4
     assert engine.counts.steps <= 5 * fixed.steps_in_part(engine.scaled.bodies)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("call", ["record", "periods"])
+def test_a_cancelled_call_leaves_the_chain_where_the_call_began(method: str, call: str) -> None:
+    """The flag is set during the call, some steps on; the engine then goes on as one that was not cancelled."""
+    class Second(Counting):
+        __slots__ = ()
+
+        def pause(self) -> None:
+            super().pause()
+            self.flag[0] = self.pauses == 2  # the first pause is before the call of the kernel
+
+    stop = Second()
+    stop.pauses = 2
+    first = 0 if call == "periods" else 3
+    cancelled, other = (Engine(scene("sec2"), Setting(method, tolerance=1e-8), 8, stop=one) for one in (stop, Stop()))
+    for engine in (cancelled, other):
+        engine.record(8 + first)
+    before, _ = cancelled.state, other.state  # to read it puts the driver in its place
+    here = cancelled.y.copy()
+    stop.pauses = 1
+    with pytest.raises(Cancelled):
+        getattr(cancelled, call)(4)
+    assert np.array_equal(cancelled.y, here) and cancelled.elapsed == other.elapsed
+    assert cancelled.state.phase == before.phase and np.array_equal(cancelled.state.velocity, before.velocity)
+    assert np.array_equal(getattr(cancelled, call)(4)[0], getattr(other, call)(4)[0])

@@ -4,6 +4,10 @@ What is counted is code for a processor whose registers hold a whole vector of e
 processor wherever the test runs, and not run. With narrower registers the compiler has too few of them for a step and
 computes some values twice instead of storing them; which ones differs from one source to the next, and the
 instructions then count its choices, not the effects.
+
+The counts are those of one LLVM. Another version may choose otherwise, and the exact ones then need a second look. They
+are kept in the folder of compiled kernels: nothing is compiled again until kernels, the program that counts or the
+compiler change. Long chains and dop853-root are not looked at; the functions of effects that they call are the same.
 """
 
 from __future__ import annotations
@@ -26,7 +30,7 @@ from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch_size import VARIABLE
-from granchain_core.kernels.compiling.cache import CACHE_FOLDER
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 from granchain_core.kernels.compiling.sources import hash_of_code
 from granchain_core.stop import Stop
 

@@ -11,6 +11,7 @@ from thrown_bead import thrown_by_a_touch
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.kernels.dop853 import run as dop853
+from granchain_core.kernels.dop853.tableau import STAGES
 
 
 def grazing(depth: float, method: str, tolerance: float = 1e-9):
@@ -81,11 +82,11 @@ def test_adaptive_steps_end_on_the_events():
             end = engine.stepper.work.end
             landed.append(abs(end[contact] - end[contact + 1]) / engine.stepper.work.scale[0])
         engine.y[:] = engine.stepper.work.end
-        engine.stepper.work.k[0] = engine.stepper.work.k[12]
+        engine.stepper.work.k[0] = engine.stepper.work.k[STAGES]
         t += h
         if t >= engine.scaled.period * (1 - 1e-12):
             break
     assert len(landed) > 5
     # the search for the end just past an event aims at 1e-15 and stops at four times that (dop853/run.py); some events
     # are too slow for Newton
-    assert np.median(landed) < 1e-11
+    assert np.quantile(landed, 0.9) < 4e-15 and max(landed) < 1e-11

@@ -18,8 +18,8 @@ from granchain_core.scaling import scale_chain
 def test_a_touch_inside_a_step_throws_the_bead(depth: float, vectors: bool) -> None:
     """The driver's top is `depth` beyond a bead at rest for a part of a step: two events, and hardly a push.
 
-    It throws the bead with 1e-9 or less of the drive's speed. What is given back beside an event supposes that the
-    overlap goes on to grow, so of so brief a touch more is taken than was given: also 1e-9 at most.
+    It throws the bead with 1e-9 or less of the drive's speed. The correction beside an event supposes that the overlap
+    goes on to grow; for so brief a touch it exceeds the impulse itself, by at most 1e-9.
     """
     chain = scene("sec2").evolve(N=1, f=500.0, D=100.0)
     finer = (Setting("rk4-split", refine=1.0 + 0.01 * i) for i in range(100))

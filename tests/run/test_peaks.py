@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import functools
 
+import numpy as np
 import pytest
 
-from granchain_core import run, scene
+from granchain_core import State, run, scene
 
 pytestmark = pytest.mark.quick
 
@@ -50,3 +51,20 @@ def test_nothing_recorded_exceeds_the_reported_maximum():
     assert result.input_force.max() <= result.max_input_force
     assert result.output_force.max() <= result.max_output_force
     assert result.output_force_elastic.max() <= result.max_output_force_elastic * (1 + 1e-12)  # computed from SI values
+
+
+def test_largest_forces_are_those_of_the_recorded_periods() -> None:
+    """A chain that is hit hard at first: the one period that is discarded has larger forces than those asked for."""
+    hit = State(np.zeros(3), np.array([1.0, 0.0, 0.0]))
+    chain = scene("sec2").evolve(N=3, accuracy=1e-3)
+    whole = run(chain, periods=0, record=1, samples=256, start=hit)
+    later = run(chain, periods=1, record=2, samples=256, start=hit)
+    assert whole.max_output_force > 2.0 * later.output_force.max()
+    assert later.max_output_force == pytest.approx(later.output_force.max(), rel=0.02)
+
+
+def test_the_largest_elastic_force_is_the_walls() -> None:
+    """A rigid wall's contact is stiffer than one between beads; its samples come near the largest value, from below."""
+    found = run(scene("sec2").evolve(N=3, wall="rigid", accuracy=1e-4), periods=2, record=3, samples=256)
+    assert found.output_force_elastic.max() <= found.max_output_force_elastic * (1.0 + 1e-12)
+    assert found.output_force_elastic.max() == pytest.approx(found.max_output_force_elastic, rel=1e-3)

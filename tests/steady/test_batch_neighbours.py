@@ -9,6 +9,7 @@ import pytest
 
 from granchain_core import Scene, scene
 from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.kernels.batch.record import STROBES_KEPT
 from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.scaling import scale_chain
 from granchain_core.steady.batch.engine import batch_results
@@ -74,6 +75,16 @@ def test_a_pair_that_is_not_finite_leaves_the_others_theirs(wrong: int, lost: st
     assert finite == {wrong: lost == "shadow", 2 - wrong: True}
     assert np.isfinite(growth[2 - wrong]).all() and len(growth[2 - wrong]) == 4
     assert np.isnan(growth[wrong]).all() and len(growth[wrong]) == 1  # it is given back at once
+
+
+def test_a_pair_runs_for_as_many_periods_as_there_are_places_for() -> None:
+    chain = scene("sec2")
+    scaled, batch = scale_chain(chain), Batch(chain, Stop())
+    rest = np.zeros(2 * scaled.bodies)
+    with pytest.raises(ValueError, match=f"at most {STROBES_KEPT} periods, not for {STROBES_KEPT + 1}"):
+        batch.put_pair(0, 1, scaled, rest, scaled.embed(np.full(2 * scaled.beads, 1e-9)), 1e-9, STROBES_KEPT + 1)
+    assert batch.state.return_at[0] == NEVER  # the lane is still empty
+    batch.put_pair(0, 1, scaled, rest, scaled.embed(np.full(2 * scaled.beads, 1e-9)), 1e-9, STROBES_KEPT)
 
 
 def test_the_lanes_of_a_pair_are_free_for_any_scene_afterwards() -> None:

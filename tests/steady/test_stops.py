@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import threading
-import time
 
 import numpy as np
 import pytest
+from waiting import until
 
 from granchain_core import CurvePoint, iter_curve, scene
 from granchain_core.errors import Cancelled
@@ -24,19 +24,18 @@ def test_a_stop_ends_a_carried_point_that_would_run_for_ever(start: str, monkeyp
     It is given up, without a result.
     """
     monkeypatch.setattr(advance, "MOST_SETTLING_STEPS", 10**15)
-    stop, begun, points = Stop(), threading.Event(), list[CurvePoint]()
+    stop, called, points = Stop(), list[tuple[Engine, np.ndarray]](), list[CurvePoint]()
     real = Engine.periods
 
     def periods(engine: Engine, count: int, watch: bool = True) -> tuple[np.ndarray, np.ndarray]:
-        begun.set()
+        called.append((engine, engine.y.copy()))
         return real(engine, count, watch)
 
     monkeypatch.setattr(Engine, "periods", periods)
     slow = scene("sec2").evolve(N=11)
     work = threading.Thread(target=lambda: points.extend(iter_curve(slow, [0.1, 0.11], start, stop)), daemon=True)
     work.start()
-    begun.wait()
-    time.sleep(0.1)  # the kernel is inside its first period
+    until(lambda: called and (called[-1][0].y != called[-1][1]).any())  # the kernel is inside its first period
     stop.set()
     work.join(60.0)
     assert not work.is_alive()

@@ -1,4 +1,4 @@
-"""The folder of compiled kernels, and what happens where it is damaged, full or not ours.
+"""The files of compiled kernels, and what happens where they are damaged or cannot be written.
 
 Numba reads its files with `pickle` and runs the machine code in them, whatever a disk or a crash has made of them. So
 every file here begins with the SHA-256 of the rest, which is compared before the rest is used: a file that is not whole
@@ -13,22 +13,18 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
-import logging
 import os
 import pickle
-import re
-import shutil
-import stat
-import tempfile
-import time
 import uuid
 from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core import event
 
+from .cache_folder import CACHE_FOLDER, FILE_RIGHTS, MARK, say_once
 from .compile_lock import CompileLock
-from .sources import FOLDER, constants_hash, hash_of_code, sources_hash, wording_hash
+from .sources import FOLDER, constants_hash, hash_of_code
 
 _FunctionCache: Any
 _Impl: Any
@@ -46,133 +42,8 @@ else:
     _IMPORT_PROBLEM = ""
 #: Private attributes of `FunctionCache` that `KernelCache` uses or replaces.
 _NEEDED = ("_load_overload", "_index_key", "_guard_against_spurious_io_errors", "_impl_class")
-#: Where messages for the user go: to stderr, unless the program keeps a log.
-_LOG = logging.getLogger("granchain")
-#: How the names of the files begin by which warm.py marks what is compiled.
-MARK = "compiled-"
 #: Bytes of a checksum.
 _DIGEST = 32
-#: Folders of other versions are removed when they have not been used for this long [s].
-_MONTH = 30 * 86400.0
-#: Names of the folders of all versions.
-_VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
-
-# --- the folder ---------------------------------------------------------------------------------------------
-
-
-def cache_folder() -> Path | None:
-    """The folder of the compiled kernels; None, with one message, where nothing can be kept.
-
-    It is in $GRANCHAIN_CACHE, else in the user's cache. Where that cannot be written, kernels that are there already
-    are used if they are this user's or the administrator's; else a folder in the temporary directory is, if nobody else
-    can write to it.
-    """
-    base, problem = _chosen_base(), "there is no home folder"
-    if base is not None:
-        name = _version_in(base)
-        try:
-            (base / name).mkdir(parents=True, exist_ok=True)
-            with tempfile.TemporaryFile(dir=base / name):
-                pass
-            _note_use(base, base / name)
-            return base / name
-        except OSError as denied:
-            problem = f"{base}: {denied.strerror or denied}"
-            if _holds_kernels(base / name) and _is_trusted(base / name):
-                return base / name
-    return _temporary_folder(problem)
-
-
-def _version_in(base: Path) -> str:
-    """Name of the folder of these sources: the one in `base` that knows their wording, else by parsing them."""
-    wording = _wording_file()
-    with contextlib.suppress(OSError):
-        for folder in base.iterdir():
-            if _VERSIONS.fullmatch(folder.name) and (folder / wording).exists():
-                return folder.name
-    return f"kernels-{sources_hash()}"
-
-
-@functools.cache
-def _wording_file() -> str:
-    """Name of the empty file by which a folder knows a wording of its sources."""
-    return f"sources-{wording_hash()}"
-
-
-def _chosen_base() -> Path | None:
-    chosen = os.environ.get("GRANCHAIN_CACHE")
-    if chosen:
-        return Path(chosen)
-    try:
-        return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "granchain"
-    except RuntimeError:  # a user whom the system does not know
-        return None
-
-
-def _holds_kernels(folder: Path) -> bool:
-    try:
-        return any(folder.rglob("*.nbc"))
-    except OSError:
-        return False
-
-
-def _is_trusted(folder: Path) -> bool:
-    """Whether only this user or the administrator can have written a folder: its files are unpickled and run."""
-    found = folder.stat()
-    return not hasattr(os, "getuid") or (found.st_uid in (0, os.getuid()) and not found.st_mode & stat.S_IWOTH)
-
-
-def _temporary_folder(problem: str) -> Path | None:
-    """A folder in the temporary directory, which others write to as well: only one that is ours alone is used."""
-    if hasattr(os, "getuid"):
-        base = Path(tempfile.gettempdir()) / f"granchain-{os.getuid()}"
-        try:
-            if _is_ours(base):
-                folder = base / _version_in(base)
-                if _is_ours(folder):
-                    _note_use(base, folder)
-                    return folder
-            else:
-                folder = base
-            problem = f"{problem}, and {folder} is not a folder of ours with mode 700"
-        except OSError as denied:
-            problem = f"{problem}, and {base}: {denied.strerror or denied}"
-    say_once(f"Compiled kernels cannot be kept ({problem}); they are compiled for this process only.")
-    return None
-
-
-def _is_ours(folder: Path) -> bool:
-    """Make the folder, or find it there: no link, with this user as owner and no rights for anybody else."""
-    with contextlib.suppress(FileExistsError):
-        folder.mkdir(mode=0o700)
-    found = folder.lstat()
-    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and stat.S_IMODE(found.st_mode) == 0o700
-
-
-def _note_use(base: Path, used: Path) -> None:
-    """Note that a folder is used and by which wording, and remove folders that have not been used for a month."""
-    (used / _wording_file()).touch()
-    os.utime(used)
-    for folder in base.iterdir():
-        if _VERSIONS.fullmatch(folder.name) and folder != used:
-            with contextlib.suppress(OSError):  # another process may remove it as well
-                found = folder.lstat()
-                if stat.S_ISDIR(found.st_mode) and time.time() - found.st_mtime > _MONTH:
-                    shutil.rmtree(folder, ignore_errors=True)
-
-
-@functools.cache
-def say_once(sentence: str) -> None:
-    """Tell the user something once in the life of this process."""
-    _LOG.warning(sentence)
-
-
-if numba.config.DISABLE_JIT:
-    raise RuntimeError("NUMBA_DISABLE_JIT is set, but kernels must be compiled; unset it (`py_func` can be debugged).")
-CACHE_FOLDER = cache_folder()
-
-
-# --- its files ----------------------------------------------------------------------------------------------
 
 
 class _Files:
@@ -195,8 +66,9 @@ class _Files:
         path = self.path(key)
         unfinished = path.with_suffix(f".{uuid.uuid4().hex[:16]}.tmp")
         try:
-            # with the usual permissions: an image's kernels are compiled by one user and used by another
-            unfinished.write_bytes(hashlib.sha256(content).digest() + content)
+            # an image's kernels are compiled by one user and used by another
+            with open(unfinished, "xb", opener=lambda name, flags: os.open(name, flags, FILE_RIGHTS)) as file:
+                file.write(hashlib.sha256(content).digest() + content)
             unfinished.replace(path)
         finally:
             with contextlib.suppress(OSError):
@@ -295,15 +167,22 @@ class KernelCache(_FunctionCache):
         self._locks: dict[Path, CompileLock] = {}
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """A compiled version from disk; None where it has to be compiled, and then no other process compiles it."""
+        """A compiled version from disk; None where it has to be compiled, and then no other process compiles it.
+
+        The lock is then kept until `save_overload`, or until the compiler fails (`_ReleaseAfterFailure`).
+        """
         found = self._load(sig, target_context)
         if found is None:
             path = self._path(sig, target_context.codegen())
             lock = self._locks.setdefault(path, CompileLock(path))
-            if lock.acquire():
+            try:
+                lock.acquire()
                 found = self._load(sig, target_context)
+            except BaseException:
+                self.release(path)
+                raise
             if found is not None:
-                self._locks.pop(path).release()
+                self.release(path)
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -314,9 +193,18 @@ class KernelCache(_FunctionCache):
             say_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that "
                      "are not there are compiled for this process only.")
         finally:
-            lock = self._locks.pop(self._path(sig, data.codegen), None)
-            if lock is not None:
-                lock.release()
+            self.release(self._path(sig, data.codegen))
+
+    def release(self, path: Path) -> None:
+        """Let other processes compile the version that is stored at `path`."""
+        lock = self._locks.pop(path, None)
+        if lock is not None:
+            lock.release()
+
+    def release_all(self) -> None:
+        """Let other processes compile every version."""
+        for path in list(self._locks):
+            self.release(path)
 
     def _load(self, sig: Any, target_context: Any) -> Any:
         """A compiled version from disk, or None.
@@ -337,6 +225,26 @@ class KernelCache(_FunctionCache):
         """Where a version is, or would be."""
         found: Path = self._cache_file.path(self._index_key(sig, codegen))
         return found
+
+
+class _ReleaseAfterFailure(event.Listener):
+    """Releases the locks of a function that the compiler has given up: a mistake in its types, or an interruption.
+
+    Nothing is saved then. One thread compiles at a time, so these are the locks of the version that failed.
+    """
+
+    def on_start(self, event: Any) -> None:
+        """The lock is held already."""
+
+    def on_end(self, event: Any) -> None:
+        """A version that is compiled is among the function's versions by now, and is saved next."""
+        function = event.data["dispatcher"]
+        kept = getattr(function, "_cache", None)
+        if isinstance(kept, KernelCache) and tuple(event.data["args"]) not in function.overloads:
+            kept.release_all()
+
+
+event.register("numba:compile", _ReleaseAfterFailure())
 
 
 def keep_on_disk(compiled: Any) -> None:

@@ -12,6 +12,8 @@ import os
 import time
 from pathlib import Path
 
+from .cache_folder import FILE_RIGHTS, FOLDER_RIGHTS
+
 try:
     import fcntl
 except ImportError:  # not a POSIX system
@@ -31,35 +33,47 @@ class CompileLock:
         self._path = path.with_suffix(".lock")
         self._file: int | None = None
 
-    def acquire(self, patience: float = PATIENCE) -> bool:
-        """Wait for the lock; returns whether another process held it, so that the kernel may be there now."""
-        if fcntl is None:
-            return False
-        ends, waited = time.monotonic() + patience, False
+    @property
+    def held(self) -> bool:
+        """Whether this process has the lock."""
+        return self._file is not None
+
+    def acquire(self, patience: float = PATIENCE) -> None:
+        """Wait for the lock, no longer than `patience` [s]; look for the kernel then, whether the lock is held or not.
+
+        Another process may have compiled it meanwhile, without a wait as well: between the last look and this call.
+        """
+        if fcntl is None or self.held:
+            return
+        ends = time.monotonic() + patience
         try:
-            self._path.parent.mkdir(parents=True, exist_ok=True)
-            file = os.open(self._path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, 0o644)
+            self._path.parent.mkdir(mode=FOLDER_RIGHTS, parents=True, exist_ok=True)
+            file = os.open(self._path, os.O_CREAT | os.O_RDWR | os.O_CLOEXEC, FILE_RIGHTS)
         except OSError:
-            return False
-        while True:
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                self._file = file
-                return waited
-            except BlockingIOError:
-                waited = True
-                if time.monotonic() > ends:
-                    break
-                time.sleep(_INTERVAL)
-            except OSError:
-                break
-        os.close(file)
-        return waited
+            return
+        try:
+            while time.monotonic() <= ends:
+                try:
+                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                except BlockingIOError:
+                    time.sleep(_INTERVAL)
+                else:
+                    self._file = file
+                    return
+        except OSError:  # no locks there
+            pass
+        finally:
+            if not self.held:
+                os.close(file)
 
     def release(self) -> None:
-        """Release the lock; call it after the kernel is written."""
+        """Release the lock; call it after the kernel is written.
+
+        Processes that wait have the same file open, so they need no name to go on and look for the kernel. One that
+        comes later makes a new file, and so two processes may hold the lock of one kernel. Both then find the kernel,
+        which was written before; if it could not be written, both compile it.
+        """
         if self._file is not None:
-            # processes that wait have the same file open, so they need no name to go on and look for the kernel
             with contextlib.suppress(OSError):
                 self._path.unlink(missing_ok=True)
             os.close(self._file)

@@ -19,7 +19,7 @@ import numba
 from ..batch_size import BATCH_SIZE, processor
 
 #: Sources that decide where compiled code is stored but do not change it.
-_KEEPERS = ("compiling/cache.py", "compiling/compile_lock.py", "compiling/entry.py", "compiling/sources.py")
+_KEEPERS = tuple(f"compiling/{name}.py" for name in ("cache", "cache_folder", "compile_lock", "entry", "sources"))
 #: Settings of Numba (environment variables with NUMBA_ before them) that change machine code and are not among the
 #: names of its own cache: optimisation level, bounds checks, debug information, vectorisers, AVX.
 _SETTINGS = ("OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX")

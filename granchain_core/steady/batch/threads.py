@@ -1,6 +1,6 @@
 """Independent work on all cores: threads take items from one iterator and yield results.
 
-Kernels run without the interpreter's lock, so threads are enough, and a result needs no copy.
+Kernels run without the interpreter's lock, except brief ones, so threads are enough, and a result needs no copy.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
     """What `work` yields from `items`, in one thread for each core, in the order found.
 
     `stop` is read between results and ends the iteration, as closing the generator does; `ended`, which the kernels of
-    `work` poll, is then set. `pause` is called before an item is drawn and may wait. An exception of a thread is raised
-    here.
+    `work` poll, is then set. `pause` is called before an item is drawn and may wait. Whatever exception ends a thread
+    is raised here.
     """
     shared: _Shared[Item] = _Shared(items, pause)
     found: queue.SimpleQueue[Any] = queue.SimpleQueue()
@@ -63,7 +63,7 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
                 if stop:
                     return
                 item = found.get()
-                if isinstance(item, Exception):
+                if isinstance(item, BaseException):
                     raise item
                 if item is None:
                     count -= 1
@@ -78,14 +78,15 @@ def on_all_cores(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iter
 
 
 def _share(work: Callable[[Iterator[Item]], Iterable[Result]], items: Iterator[Item],
-           found: queue.SimpleQueue[Any], ended: threading.Event) -> None:
-    """One thread's share; ends with None, or with the problem that ended it, and sets `ended`."""
+           found: queue.SimpleQueue[Any], a_thread_ended: threading.Event) -> None:
+    """One thread's share into `found`: its results, the exception that ended it, if any, and None."""
     try:
         for result in work(items):
             found.put(result)
     except Cancelled:
         pass
-    except Exception as problem:  # raised again by the thread that reads the queue
+    except BaseException as problem:  # raised again by the thread that reads the queue
         found.put(problem)
-    found.put(None)
-    ended.set()
+    finally:
+        found.put(None)
+        a_thread_ended.set()

@@ -146,10 +146,10 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: S
     Coarse steps and few periods: no errors are stated, and motions that are not periodic by then are unsettled. Empty
     for scenes that a batch cannot run. Raises `BadInput` and `Cancelled`.
     """
+    scenes = checked_frequencies(scene, frequencies)
     if not can_share_batch(scene):
         return []
-    scenes = iter(checked_frequencies(scene, frequencies))
-    return [CurvePoint.of(result) for result in batch_results(scenes, stop, draft=True)]
+    return [CurvePoint.of(result) for result in batch_results(iter(scenes), stop, draft=True)]
 
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",

@@ -16,7 +16,7 @@ from ...errors import NumbersFailed
 from ...integrate import Engine, fixed_step_setting, following_setting
 from ...scene import Scene
 from ...stop import Stop
-from ..returns import sizes
+from ..returns import relative_change, sizes
 
 #: [no threshold] Steps in place of one default step: multipliers then differ from those of a tangent flow by about
 #: 1e-6.
@@ -109,9 +109,8 @@ def fixed_point(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPo
 
 
 def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint | None:
-    scale = sizes(x)
-    change = stroboscopic_map(x) - x
-    residual, matrix, here = float(np.abs(change / scale).max()), stroboscopic_map.derivative(x), True
+    start, change = x, stroboscopic_map(x) - x
+    residual, matrix, here = relative_change(change, start), stroboscopic_map.derivative(x), True
     for _ in range(_MOST_ITERATIONS):
         if residual <= _FIXED_POINT_RESIDUAL:
             break
@@ -119,14 +118,14 @@ def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint 
         for halving in range(_HALVINGS):
             trial = x + step / 2**halving
             after = stroboscopic_map(trial) - trial
-            if float(np.abs(after / scale).max()) < residual:
+            if relative_change(after, start) < residual:
                 break
         else:
             if here:
                 break
             matrix, here = stroboscopic_map.derivative(x), True
             continue
-        gained = float(np.abs(after / scale).max()) / residual
+        gained = relative_change(after, start) / residual
         x, change, residual, here = trial, after, gained * residual, False
         if gained > _RENEWAL_PART and residual > _FIXED_POINT_RESIDUAL:
             matrix, here = stroboscopic_map.derivative(x), True

@@ -19,7 +19,7 @@ from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
 from ...stop import Stop
 from ..regime_criteria import changes
-from ..returns import shorter_periods, sizes
+from ..returns import relative_change, shorter_periods
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
 #: [period n] A chain alone: an unconfirmed claim needs multipliers up to this many beads. Up to there the derivative of
@@ -92,7 +92,7 @@ class NearbyOrbit:
     @property
     def distance_of_motion(self) -> float:
         """How far the motion is from the orbit, relative to the largest displacement and w."""
-        return float(np.abs((self.x - self.point.x) / sizes(self.point.x)).max())
+        return relative_change(self.x - self.point.x, self.point.x)
 
     @property
     def orbit_error(self) -> float:
@@ -112,7 +112,7 @@ class NearbyOrbit:
             if not after <= left * before:
                 return False
             offset = offset * _DISTANCE_FACTOR
-            if float(np.abs(offset / sizes(self.point.x)).max()) < _SMALLEST_DISTANCE:
+            if relative_change(offset, self.point.x) < _SMALLEST_DISTANCE:
                 return True
 
     def _largest_lengths(self, rows: np.ndarray, offset: np.ndarray, orbits: int) -> tuple[float, float]:
@@ -135,7 +135,7 @@ class NearbyOrbit:
         if not np.abs(parts).max() > 0.0:  # on the orbit itself: any direction will do
             parts = np.ones(len(parts), dtype=complex)
         leaving = np.real(right[:, grows] @ parts)
-        length = float(np.abs(leaving / sizes(self.point.x)).max())
+        length = relative_change(leaving, self.point.x)
         return None if length >= _ENLARGED_LENGTH else self.point.x + leaving * (_ENLARGED_LENGTH / length)
 
 

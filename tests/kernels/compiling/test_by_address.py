@@ -50,7 +50,7 @@ def test_the_kernel_sees_its_arguments_and_its_answer_comes_back() -> None:
 
 
 def test_all_structures_share_the_checks_of_a_batch() -> None:
-    """Inlined, they take four fifths of the time to compile a batch, in every structure anew."""
+    """Inlined, they would be compiled in every structure anew (docs/compiling.md)."""
     for shown in (scene("sec2"), scene("sec2").evolve(k=1e5), scene("sec2").evolve(dissipation="tsuji")):
         batch = Batch(shown, Stop())
         batch.put(0, batch.example, np.zeros(2 * (shown.N + 2)), 1, return_at=1)

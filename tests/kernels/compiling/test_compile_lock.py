@@ -7,11 +7,14 @@ import signal
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
+import numba
 import pytest
+from numba.core.errors import TypingError
 
-from granchain_core.kernels.compiling import compile_lock
+from granchain_core.kernels.compiling import cache, compile_lock
 from granchain_core.kernels.compiling.compile_lock import CompileLock
 
 #: Compiles one small kernel and prints from where it came: numbers loaded, and compiled.
@@ -31,18 +34,104 @@ def test_processes_that_want_one_kernel_compile_it_once(tmp_path: Path) -> None:
     assert not list(tmp_path.rglob("*.lock"))
 
 
-def test_who_waits_is_told_that_another_was_there(tmp_path: Path) -> None:
-    first, second, told = CompileLock(tmp_path / "f.nbc"), CompileLock(tmp_path / "f.nbc"), []
-    assert first.acquire() is False
-    waiting = threading.Thread(target=lambda: told.append(second.acquire()))
+def test_who_waits_gets_the_lock_next_and_who_has_no_patience_goes_without(tmp_path: Path) -> None:
+    first, second, third = (CompileLock(tmp_path / "f.nbc") for _ in range(3))
+    first.acquire()
+    assert first.held
+    waiting = threading.Thread(target=second.acquire)
     waiting.start()
-    assert CompileLock(tmp_path / "f.nbc").acquire(patience=0.2) is True  # patience ends; it compiles by itself
-    assert told == []
+    third.acquire(patience=0.2)  # patience ends; it compiles by itself
+    assert not third.held and not second.held
     first.release()
     waiting.join(60.0)
-    assert told == [True]
+    assert second.held and not first.held
     second.release()
-    assert CompileLock(tmp_path / "g.nbc").acquire() is False
+
+
+def test_an_interrupted_wait_leaves_no_file_open(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def interrupted(_: float) -> None:
+        raise KeyboardInterrupt
+
+    first, second = CompileLock(tmp_path / "f.nbc"), CompileLock(tmp_path / "f.nbc")
+    first.acquire()
+    monkeypatch.setattr(compile_lock.time, "sleep", interrupted)
+    before = len(os.listdir("/dev/fd"))
+    with pytest.raises(KeyboardInterrupt):
+        second.acquire()
+    assert len(os.listdir("/dev/fd")) == before and not second.held
+    first.release()
+
+
+@pytest.fixture
+def locks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[], list[CompileLock]]:
+    """A cache in an empty folder; the locks that are held there."""
+    made: list[CompileLock] = []
+
+    def lock(path: Path) -> CompileLock:
+        made.append(CompileLock(path))
+        return made[-1]
+
+    monkeypatch.setattr(cache, "CACHE_FOLDER", tmp_path)
+    monkeypatch.setattr(cache, "CompileLock", lock)
+    return lambda: [one for one in made if one.held]
+
+
+def test_a_compilation_that_fails_releases_its_lock(locks: Callable[[], list[CompileLock]]) -> None:
+    """The next attempt fails as soon as the first: it does not wait for a lock of its own process."""
+    @numba.njit
+    def unknown(x):
+        return x.unknown
+
+    cache.keep_on_disk(unknown)
+    for _ in range(2):
+        with pytest.raises(TypingError):
+            unknown(1.0)
+        assert locks() == []
+
+
+@pytest.mark.parametrize("where", ["compile", "look", "write"])
+def test_an_interrupted_compilation_releases_its_lock(where: str, locks: Callable[[], list[CompileLock]],
+                                                      monkeypatch: pytest.MonkeyPatch) -> None:
+    @numba.njit
+    def twice(x):
+        return 2 * x
+
+    held = []
+
+    def interrupted(*words: object) -> None:
+        held.append(len(locks()))
+        if where != "look" or held[-1]:  # the second look, with the lock
+            raise KeyboardInterrupt
+
+    cache.keep_on_disk(twice)
+    owner, name = {"compile": (twice._compiler, "compile"), "look": (twice._cache, "_load"),
+                   "write": (cache._Files, "save")}[where]
+    monkeypatch.setattr(owner, name, interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        twice(1.0)
+    assert held[-1] == 1 and locks() == []
+
+
+def test_a_kernel_that_another_process_has_just_compiled_is_not_compiled_again(
+        locks: Callable[[], list[CompileLock]], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between the first look and the lock, for which there is no wait then."""
+    def twice(x):
+        return 2 * x
+
+    mine, others = numba.njit(twice), numba.njit(twice)
+    for one in (mine, others):
+        cache.keep_on_disk(one)
+    real = CompileLock.acquire
+
+    def acquire(lock: CompileLock) -> None:
+        monkeypatch.setattr(CompileLock, "acquire", real)
+        others(1.0)
+        real(lock)
+
+    monkeypatch.setattr(CompileLock, "acquire", acquire)
+    assert mine(1.0) == 2.0
+    assert sum(mine.stats.cache_hits.values()) == 1 and sum(mine.stats.cache_misses.values()) == 0
+    assert locks() == []
 
 
 def test_a_process_that_is_killed_locks_nobody_out(tmp_path: Path) -> None:
@@ -53,19 +142,23 @@ def test_a_process_that_is_killed_locks_nobody_out(tmp_path: Path) -> None:
         stdout=subprocess.PIPE, text=True)
     assert held.stdout is not None and held.stdout.readline() == "held\n"
     lock = CompileLock(tmp_path / "f.nbc")
-    assert lock.acquire(patience=0.2) is True and lock._file is None
+    lock.acquire(patience=0.2)
+    assert not lock.held
     held.send_signal(signal.SIGKILL)
     held.wait(60.0)
     lock.acquire()
-    assert lock._file is not None
+    assert lock.held
     lock.release()
 
 
 def test_where_there_are_no_locks_everyone_compiles(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
-    assert CompileLock(tmp_path / "file" / "f.nbc").acquire() is False  # no folder can be made there
+    lock = CompileLock(tmp_path / "file" / "f.nbc")  # no folder can be made there
+    lock.acquire()
+    assert not lock.held
     monkeypatch.setattr(compile_lock, "fcntl", None)
     lock = CompileLock(tmp_path / "f.nbc")
-    assert lock.acquire() is False
+    lock.acquire()
+    assert not lock.held
     lock.release()
     assert not list(tmp_path.glob("*.lock"))

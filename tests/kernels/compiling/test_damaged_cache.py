@@ -19,14 +19,14 @@ from missing_attribute import hide
 from numba.core import caching
 from numba.core.dispatcher import Dispatcher
 
-from granchain_core.kernels.compiling import cache
+from granchain_core.kernels.compiling import cache, cache_folder
 
 ROOT = Path(__file__).resolve().parents[3]
 #: Runs one small kernel, and prints where it is kept, whether its result is right, and how often Numba loaded it.
 PROGRAM = """
 import json
 import numpy as np
-from granchain_core.kernels.compiling.cache import CACHE_FOLDER
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 from granchain_core.kernels.forces.peaks import PEAKS, reset_peaks
 peaks = np.ones(PEAKS)
 reset_peaks(peaks)
@@ -34,7 +34,7 @@ right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
 print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(reset_peaks.stats.cache_hits.values())}))
 """
 #: Says which folder is chosen, and compiles nothing.
-FOLDER = "import json\nfrom granchain_core.kernels.compiling.cache import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
+FOLDER = "import json\nfrom granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
 #: A full disk, which only root could make, is imitated by a limit of 0 bytes on files: writing raises `OSError` as
 #: well.
 _FULL = "import resource, signal\nsignal.signal(signal.SIGXFSZ, signal.SIG_IGN)\nresource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))\n"
@@ -107,7 +107,7 @@ def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypa
         return 2 * x
 
     before = object.__getattribute__(twice, "_cache")
-    cache.say_once.cache_clear()
+    cache_folder.say_once.cache_clear()
     if name:
         take_away(name, monkeypatch)
     cache.keep_on_disk(twice)
@@ -134,13 +134,13 @@ def flipped(content: bytes) -> bytes:
 
 @pytest.mark.parametrize("damage", [lambda _: b"", halved, flipped, lambda _: b"x"], ids=["empty", "halved", "flipped", "short"])
 def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage, filled: Path, tmp_path: Path) -> None:
-    cache_folder = shutil.copytree(filled, tmp_path / "cache")
-    (file,) = cache_folder.rglob("*.nbc")
+    kept = shutil.copytree(filled, tmp_path / "cache")
+    (file,) = kept.rglob("*.nbc")
     whole = file.read_bytes()
     file.write_bytes(damage(whole))
-    mark = next(cache_folder.glob("kernels-*")) / "compiled-all"
+    mark = next(kept.glob("kernels-*")) / "compiled-all"
     mark.touch()
-    answer, messages = used(cache_folder)
+    answer, messages = used(kept)
     assert answer["right"] and answer["loaded"] == 0
     assert len(messages) == 1 and "Damaged kernels" in messages[0] and "compiled again" in messages[0]
     assert cache.whole(file) == file.read_bytes()[32:] and len(file.read_bytes()) > len(whole) // 2
@@ -160,7 +160,7 @@ def test_a_full_disk_is_said_once_and_the_kernel_runs(filled: Path, tmp_path: Pa
     assert len(messages) == 1 and "cannot be kept" in messages[0] and "File too large" in messages[0]
 
 
-def test_every_flipped_bit_is_seen(filled: Path, tmp_path: Path) -> None:
+def test_flipped_bits_throughout_the_file_are_seen(filled: Path, tmp_path: Path) -> None:
     """The checksum is compared before anything is unpickled."""
     for path in shutil.copytree(filled, tmp_path / "cache").rglob("*.nbc"):
         content = path.read_bytes()
@@ -197,14 +197,35 @@ def test_processes_that_compile_at_once_lose_nothing_of_each_other(tmp_path: Pat
     assert one.load("a") is None
 
 
-def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
-    """An image is warmed by root and run by somebody else: files have the rights that the user's umask leaves."""
-    files, before = cache._Files(str(tmp_path), "f", "stamp"), os.umask(0o022)
+def mode_with(umask: int, folder: Path) -> int:
+    """The rights of a file of the cache."""
+    files, before = cache._Files(str(folder), "f", "stamp"), os.umask(umask)
     try:
         files.save("one", "code of one")
     finally:
         os.umask(before)
-    assert files.path("one").stat().st_mode & 0o777 == 0o644
+    return files.path("one").stat().st_mode & 0o777
+
+
+def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
+    """An image is warmed by root and run by somebody else: files have the rights that the user's umask leaves."""
+    assert mode_with(0o022, tmp_path) == 0o644
+
+
+@pytest.mark.parametrize(("umask", "rights"), [(0o002, 0o755), (0o000, 0o755), (0o077, 0o700)])
+def test_nobody_else_can_write_what_is_compiled_whatever_the_umask_leaves(umask: int, rights: int, tmp_path: Path) -> None:
+    """Neither the folder, nor those in it, nor the files."""
+    assert mode_with(umask, tmp_path) == rights & 0o666
+    before = os.umask(umask)
+    try:
+        answer, messages = used(tmp_path / "chosen")
+    finally:
+        os.umask(before)
+    assert answer["right"] and messages == []
+    folder = Path(answer["folder"])
+    assert folder.parent == tmp_path / "chosen"
+    assert {path.stat().st_mode & 0o777 for path in (folder, *folder.iterdir()) if path.is_dir()} == {rights}
+    assert {path.stat().st_mode & 0o777 for path in folder.rglob("*.nbc")} == {rights & 0o666}
 
 
 @pytest.fixture
@@ -235,15 +256,15 @@ def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denie
         ours.write_text("")
     else:
         ours.mkdir(mode=0o700)
-        inside = ours / f"kernels-{cache.sources_hash()}"
+        inside = ours / f"kernels-{cache_folder.sources_hash()}"
         inside.mkdir(mode=0o700)
         {"open to all": ours, "readable by all": ours, "open inside": inside}[planted].chmod(
             0o755 if planted == "readable by all" else 0o777)
     monkeypatch.setenv("GRANCHAIN_CACHE", str(denied))
     monkeypatch.setattr(tempfile, "tempdir", None)  # Python remembers where it was
     said: list[str] = []
-    monkeypatch.setattr(cache, "say_once", said.append)
-    assert cache.cache_folder() is None
+    monkeypatch.setattr(cache_folder, "say_once", said.append)
+    assert cache_folder.cache_folder() is None
     assert len(said) == 1 and "not a folder of ours with mode 700" in said[0]
     if planted == "open to all":
         answer, messages = used(denied)
@@ -259,9 +280,10 @@ def test_a_temporary_folder_of_another_owner_is_not_used(denied: Path, tmp_path:
     assert used(denied, FOLDER)[0]["folder"] == "None"
 
 
-@pytest.mark.parametrize("whose", ["ours", "anybody may write", "another user's"])
-def test_kernels_in_a_folder_that_cannot_be_written_are_run_if_nobody_else_wrote_them(
-        whose: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
+@pytest.mark.parametrize("whose", ["ours", "anybody may write", "the group may write", "another user's"])
+def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
+        whose: str, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its files are unpickled; a checksum in a file says nothing of who has written it."""
     if whose == "another user's" and os.getuid() != 0:
         pytest.skip("only root can give a folder away")
@@ -269,16 +291,17 @@ def test_kernels_in_a_folder_that_cannot_be_written_are_run_if_nobody_else_wrote
     def denied(**_: Any) -> None:
         raise PermissionError(13, "Permission denied")
 
-    folder = tmp_path / f"kernels-{cache.sources_hash()}"
+    folder = tmp_path / f"kernels-{cache_folder.sources_hash()}"
     folder.mkdir()
     (folder / "one.nbc").write_bytes(b"")
-    folder.chmod(0o777 if whose == "anybody may write" else 0o755)
+    folder.chmod({"anybody may write": 0o757, "the group may write": 0o775}.get(whose, 0o755))
     if whose == "another user's":
         os.chown(folder, 12345, 12345)
     monkeypatch.setenv("GRANCHAIN_CACHE", str(tmp_path))
-    monkeypatch.setattr(tempfile, "TemporaryFile", denied)
-    monkeypatch.setattr(cache, "_temporary_folder", lambda problem: Path(problem))
-    chosen = cache.cache_folder()
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    chosen = cache_folder.cache_folder()
     assert (chosen == folder) is (whose == "ours")
 
 
@@ -289,7 +312,7 @@ def test_without_the_compiler_nothing_is_imported(tmp_path: Path) -> None:
 
 
 def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path: Path) -> None:
-    own, old, young = (tmp_path / f"kernels-{name}" for name in (cache.sources_hash(), "0" * 12, "1" * 12))
+    own, old, young = (tmp_path / f"kernels-{name}" for name in (cache_folder.sources_hash(), "0" * 12, "1" * 12))
     foreign = tmp_path / "kernels-of-mine"
     for folder, days in ((own, 40), (old, 31), (young, 29), (foreign, 400)):
         folder.mkdir()

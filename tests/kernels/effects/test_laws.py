@@ -48,22 +48,22 @@ def test_a_law_without_power_or_exponent_is_named_when_it_is_registered() -> Non
 
 @pytest.mark.parametrize(("a", "power", "sentence"), [
     (0.3, lambda law, d, r: d**0.3, "has the exponent 0.3"), (0.5, lambda law, d, r: d, "`power` is not δ\\^0.5")])
-def test_a_law_that_contradicts_itself_is_named(a, power, sentence) -> None:  # type: ignore[no-untyped-def]
+def test_a_law_that_contradicts_itself_is_named(a, power, sentence, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     class Contradiction(NamedTuple):
         coefficient: float
 
-    loss.exponent.of(Contradiction)(lambda law: a)
-    loss.power.of(Contradiction)(power)
+    monkeypatch.setitem(loss.exponent.implementations, Contradiction, lambda law: a)
+    monkeypatch.setitem(loss.power.implementations, Contradiction, power)
     with pytest.raises(TypeError, match=f"Contradiction.*{sentence}"):
         loss.checked(Contradiction)
 
 
-def test_a_law_needs_its_coefficient_and_to_be_there_when_it_is_named() -> None:
+def test_a_law_needs_its_coefficient_and_to_be_there_when_it_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     class Bare(NamedTuple):
         strength: float
 
-    loss.exponent.of(Bare)(lambda law: 0.5)
-    loss.power.of(Bare)(lambda law, d, r: r)
+    monkeypatch.setitem(loss.exponent.implementations, Bare, lambda law: 0.5)
+    monkeypatch.setitem(loss.power.implementations, Bare, lambda law, d, r: r)
     with pytest.raises(TypeError, match=r"Bare has the fields .*needs `coefficient`"):
         loss.checked(Bare)
     with pytest.raises(TypeError, match="damping law 'bare': Bare has no `exponent` and no `power`"):

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from granchain_core.integrate.batch import change_workspace
 from granchain_core.kernels.strobes.extrapolation import ORBITS, reduced_rank
+from granchain_core.kernels.strobes.periodicity import LONGEST_PERIOD, window_of
 from granchain_core.steady import regime_criteria
 
 
@@ -25,12 +27,18 @@ def test_the_distance_bound_holds_for_a_linear_map(rate: float) -> None:
         states = strobes([rate], [1.0], count)
         found = regime_criteria.find_period(states)
         if found.name == "periodic":
-            true = np.abs(states[-1] - strobes([rate], [0.0], 0)[0]).max()
-            largest = np.abs(states).max()
-            assert true < 20 * regime_criteria.SETTLED_DISTANCE * largest  # states are scaled row by row, within a factor of ten
-            assert found.period == 1
+            scale = np.abs(states).max(axis=(0, 2))  # of displacement and of velocity
+            true = (np.abs(states[-1] - strobes([rate], [0.0], 0)[0]).max(axis=1) / scale).max()
+            assert found.distance is not None and found.period == 1
+            assert true <= found.distance <= regime_criteria.SETTLED_DISTANCE
             return
     pytest.fail("never settled")
+
+
+@pytest.mark.parametrize("longest", [1, 2, 3, LONGEST_PERIOD, regime_criteria.LONGEST_LOCKED_PERIOD])
+def test_the_workspace_holds_the_changes_of_every_period(longest: int) -> None:
+    assert change_workspace(longest).size == max(window_of(n) for n in range(1, longest + 1))
+    assert regime_criteria.find_period(strobes([0.3], [1.0], 60), longest).period == 1
 
 
 def test_a_slow_approach_is_not_called_settled_by_a_small_change() -> None:

@@ -14,7 +14,8 @@ import numpy as np
 from numba import njit
 from scipy.integrate._ivp import dop853_coefficients as table
 
-from granchain_core.kernels.compiling.cache import CACHE_FOLDER, KernelCache
+from granchain_core.kernels.compiling.cache import KernelCache
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 
 #: What acts in a contact: nothing, the law, or nothing though it touches (tension cut).
 OPEN, NET_FORCE, SLACK = 0, 1, 2
