@@ -20,7 +20,16 @@ from granchain_core.pieces import FIXED_STEP_KERNELS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
 
-from .common import chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
+from .common import (
+    accuracy_unused,
+    chosen_scene,
+    finite_or_null,
+    in_background,
+    say,
+    say_if,
+    show_json,
+    unbroken,
+)
 from .compiling import compiling_beside
 from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
@@ -60,6 +69,7 @@ def do(arguments: argparse.Namespace) -> None:
     grid = Grid(chosen, axis_from("--x", arguments.x), axis_from("--y", arguments.y),
                 chosen_amplitude(arguments, chosen))
     say_if(kept_along(grid.scene, grid.x.knob, grid.y.knob))
+    say_if(accuracy_unused(grid.scene, "cells"))
     check_writable(arguments.out)
     check_picture(arguments.picture)
     if arguments.picture:

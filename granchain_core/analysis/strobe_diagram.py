@@ -97,6 +97,11 @@ class StrobeDiagram(Labelled):
     start: str
     points: list[StrobePoint] = field(default_factory=list)
 
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """The knob."""
+        return (self.knob,)
+
     def cloud(self, bead: int, velocity: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """All points of bead 1..N, (M,) each: the knob's values, and displacements [m] or velocities [m/s]."""
         bead = whole_number("bead", bead, 1, self.scene.N)

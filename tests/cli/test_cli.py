@@ -32,6 +32,17 @@ def test_run_prints_one_json_object_and_explains_on_stderr(capsys: pytest.Captur
     assert "absent, with no code and no array: tension cut, foundation, preload" in err
 
 
+@pytest.mark.parametrize(("words", "said"), [
+    (["curve", "sec2", "--from", "2000", "--to", "2010", "--points", "1"], "points that a batch computes"),
+    (["map", "sec2", "--x", "f=2000:2010:2", "--y", "A0=5e-7:6e-7:2"], "cells that a batch computes")])
+def test_an_accuracy_that_a_batch_does_not_use_is_said(words: list[str], said: str, tmp_path: Path,
+                                                       capsys: pytest.CaptureFixture[str]) -> None:
+    for changed in ([], ["accuracy=1e-8"]):
+        out = tmp_path / f"a{len(changed)}.h5"
+        assert main([*words, "--set", "N=2", *(word for one in changed for word in ("--set", one)), "--out", str(out)]) == 0
+        assert (f"accuracy = 1e-08 does not change {said}" in capsys.readouterr().err) == bool(changed)
+
+
 def test_curve_prints_what_it_writes_into_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "curve.h5"
     words = ["curve", "sec2", "--from", "300", "--to", "400", "--points", "3", "--json", "--out", str(file)]

@@ -70,6 +70,11 @@ class Branch(Labelled):
         return self.axis.scene
 
     @property
+    def varied(self) -> tuple[str, ...]:
+        """The knob, and the drive amplitude where it follows the frequency."""
+        return (self.axis.knob,) if self.axis.amplitude is None else (self.axis.knob, "A0")
+
+    @property
     def points(self) -> list[BranchPoint]:
         """All orbits in their order along the branch, from the end of the second arm to that of the first."""
         first = self.arms[0].points
@@ -104,7 +109,7 @@ class Branch(Labelled):
 
     def summary(self) -> list[str]:
         """How many orbits, where it ended, and the special points."""
-        ends = [f"{arm.ended}: {arm.reason}" if arm.reason else arm.ended for arm in self.arms if arm.ended]
+        ends = [arm.reason or arm.ended for arm in self.arms if arm.ended]
         kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.text(one.knob)}"
                  + (f", {one.criticality_words()}" if one.normal_form and one.kind != "fold" else "")
                  for one in self.special if one.kind != "grazing"]
