@@ -5,8 +5,8 @@
 
 This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
 function of the same name; `curve` is `resonance_curve`, `map` is `diagram`, `strobes` is `strobe_diagram`, `lyapunov`
-is `lyapunov_spectrum`, `rotation` is `rotation_number` and `accuracy` is `work_precision`. `settle`, `orbit` and
-`branch` are also known by their longer names `settled`, `periodic_orbit` and `continue_branch`.
+is `lyapunov_spectrum`, `rotation` is `rotation_number` and `accuracy` is `work_precision`. docs/python.md lists older
+names.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ _MODULES = {
     "analysis.bands": ("bands",),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
-#: Short names and what they stand for.
+#: Public names of functions that the modules call by their older names: there `orbit` and `branch` are variables.
 _SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [

@@ -67,8 +67,7 @@ class Pulse(Labelled):
     force : numpy.ndarray, shape (N - 1,)
         That force [N]. A dimer chain's pulse can have two maxima in a contact; this is the larger one.
     speed_beads_s : numpy.ndarray, shape (N - 1,)
-        Speed of the contacts' first maximum from the previous contact to the next one [beads/s]; NaN at both ends. Its
-        older name is `speed`.
+        Speed of the contacts' first maximum from the previous contact to the next one [beads/s]; NaN at both ends.
     width : numpy.ndarray, shape (N - 1,)
         Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN at
         both ends.

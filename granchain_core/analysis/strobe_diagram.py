@@ -253,6 +253,6 @@ def _refined(settling: SettlingRun) -> tuple[Engine, np.ndarray, float | None] |
     before, strobes = (engine.periods(regime.period, watch=False)[0][1:] for engine in (coarse, finer))
     largest = np.abs(strobes).max(axis=(0, 2), keepdims=True)
     change = float((np.abs(strobes - before) / np.where(largest > 0.0, largest, 1.0)).max())
-    integration = max(IRREGULAR * change, typical_error(finer.setting)) / (1.0 - regime.contraction)
+    integration = max(IRREGULAR * change, typical_error(finer.setting)) / (1.0 - regime.assumed_contraction)
     error = integration + distance
     return (finer, strobes, error) if error <= _APART else None

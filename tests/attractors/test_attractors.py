@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, Scene, resonance_curve, scene, settled
+from granchain_core import BadInput, Scene, resonance_curve, scene, settle
 from granchain_core.attractors import Attractor, attractors, listing
 from granchain_core.attractors.attractor import Origin
 from granchain_core.attractors.attractors import _locks, share
@@ -59,7 +59,7 @@ def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
     # the fixed-step and the adaptive method know nothing of batches: they start from the state that is listed
     for one in (named(many, "rest"), named(many, "down")):
         origin = next(o for o in one.origins if o.name.startswith("random"))
-        alone = settled(one.scene, origin.state)
+        alone = settle(one.scene, origin.state)
         assert alone.regime.period == one.regime.period
         assert alone.run.max_output_force == pytest.approx(one.max_output_force, rel=2e-4)  # its stated error
 

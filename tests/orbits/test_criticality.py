@@ -12,7 +12,7 @@ import pytest
 
 from app.cli.branch import branch_json, normal_form_words
 from app.pictures.branches import criticality_words
-from granchain_core import BadInput, scene, settled
+from granchain_core import BadInput, scene, settle
 from granchain_core.hdf5 import seal
 from granchain_core.orbits import Branch, Continuation, SpecialPoint, continue_branch, switch_to_doubled
 from granchain_core.orbits.branch.between import Between
@@ -88,7 +88,7 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     chain = doubled.axis.scene_at(between.knob)
     once = continue_branch(scene("sec2"), "f", between.knob, 262.0, 1).points[0]
     assert once.stable
-    assert settled(chain, doubled.state(between)).regime.period == 2 and settled(chain, doubling.state(once)).regime.period == 1
+    assert settle(chain, doubled.state(between)).regime.period == 2 and settle(chain, doubling.state(once)).regime.period == 1
 
 
 def test_a_coefficient_agrees_with_that_of_smaller_amplitudes_within_its_error(doubling: Branch) -> None:

@@ -211,7 +211,7 @@ def test_an_error_of_the_map_moves_its_fixed_point_by_more(monkeypatch: pytest.M
     monkeypatch.setattr(recording, "refined_orbit", lambda *words: (engine, 0.0))
     stated = []
     for decay in (0.1, 0.9):
-        monkeypatch.setattr(regime_criteria.Regime, "contraction", decay)
+        monkeypatch.setattr(regime_criteria.Regime, "assumed_contraction", decay)
         stated.append(recording.recorded_orbit(settling, 16, 0.0, "rest").run.displacement_error)
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
@@ -234,7 +234,7 @@ def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatc
     """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
     settling, seen = run_until_settled(scene("sec2"), None, None), []
     real = refine_orbit.changes
-    monkeypatch.setattr(regime_criteria.Regime, "contraction", 0.99)
+    monkeypatch.setattr(regime_criteria.Regime, "assumed_contraction", 0.99)
     monkeypatch.setattr(refine_orbit, "changes", lambda *words: seen.append(real(*words)) or seen[-1])
     _, bound = refine_orbit.refined_orbit(settling, 1e-6)
     assert bound <= 0.3e-6
@@ -264,7 +264,7 @@ def test_a_motion_that_settles_alternating_has_the_period_of_its_orbit() -> None
 def test_the_contraction_of_a_bound_is_capped() -> None:
     """The multiplier, at most 1 − 1e-6; without one the decay, at most 0.999; 0.5 where none was seen."""
     def contraction(decay: float | None, multiplier: float | None) -> float:
-        return Regime("periodic", 1, decay, None, 1, multiplier=multiplier).contraction
+        return Regime("periodic", 1, decay, None, 1, multiplier=multiplier).assumed_contraction
 
     assert contraction(0.2, 0.9) == 0.9 and contraction(None, 1.0) == 1.0 - 1e-6
     assert contraction(0.2, None) == 0.2 and contraction(1.0, None) == 0.999

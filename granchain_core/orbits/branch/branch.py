@@ -207,8 +207,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
                     start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
                     on_point: Callable[[Arm], None] | None = None, stop: Stop | None = None,
                     amplitude: Amplitude | None = None) -> Branch:
-    """Continue a periodic orbit over one knob by pseudo-arclength; `branch` and `continue_branch` are the same
-    function.
+    """Continue a periodic orbit over one knob by pseudo-arclength.
 
     An arm ends when the knob reaches `end` or returns to `start`, when the branch closes on itself or merges with one
     of half the period, or when it cannot be continued; `branch.arms[0].reason` says which (docs/branches.md).
