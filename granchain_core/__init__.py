@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .attractors import Attractor, Attractors, attractors
+    from .bifurcation_curves import BifurcationCurve, bifurcation_curves
     from .fit import Fit, fit
     from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
@@ -74,13 +75,14 @@ _MODULE_OF = {name: module for module, names in _MODULES.items() for name in nam
 _SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
-    "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve",
-    "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit",
-    "OverBudget", "Pulse", "Regime", "RotationNumber", "Run", "Runs", "Scene", "Settled", "Signal", "Spectrum", "State",
-    "Stop", "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors", "bands", "basins", "branch",
-    "continue_branch", "diagram", "drive", "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit",
-    "periodic_orbit", "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save", "scene", "scene_names",
-    "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
+    "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "BifurcationCurve", "Branch", "Cancelled",
+    "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed",
+    "Observation", "Orbit", "OverBudget", "Pulse", "Regime", "RotationNumber", "Run", "Runs", "Scene", "Settled",
+    "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors",
+    "bands", "basins", "bifurcation_curves", "branch", "continue_branch", "diagram", "drive", "fit", "iter_curve",
+    "load", "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "pulse", "resonance_curve", "rotation_number",
+    "run", "run_many", "save", "scene", "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram",
+    "transfer", "work_precision",
 ]
 
 
