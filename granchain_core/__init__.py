@@ -5,8 +5,8 @@
 
 This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
 function of the same name; `curve` is `resonance_curve`, `map` is `diagram`, `strobes` is `strobe_diagram`, `lyapunov`
-is `lyapunov_spectrum`, `rotation` is `rotation_number` and `accuracy` is `work_precision`. `settle`, `orbit` and
-`branch` are also known by their longer names `settled`, `periodic_orbit` and `continue_branch`.
+is `lyapunov_spectrum`, `rotation` is `rotation_number` and `accuracy` is `work_precision`. docs/python.md lists older
+names.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .analysis.spectrum import Spectrum, Transfer, spectrum, transfer
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .attractors import Attractor, Attractors, attractors
+    from .bifurcation_curves import BifurcationCurve, bifurcation_curves
     from .fit import Fit, fit
     from .observe import Observation, observe
     from .orbits import Branch, Orbit, continue_branch, periodic_orbit
@@ -70,17 +71,18 @@ _MODULES = {
     "analysis.bands": ("bands",),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
-#: Short names and what they stand for.
+#: Public names of functions that the modules call by their older names: there `orbit` and `branch` are variables.
 _SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 __all__ = [
-    "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "Branch", "Cancelled", "Cost", "Curve",
-    "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed", "Observation", "Orbit",
-    "OverBudget", "Pulse", "Regime", "RotationNumber", "Run", "Runs", "Scene", "Settled", "Signal", "Spectrum", "State",
-    "Stop", "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors", "bands", "basins", "branch",
-    "continue_branch", "diagram", "drive", "fit", "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit",
-    "periodic_orbit", "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save", "scene", "scene_names",
-    "settle", "settled", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
+    "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "BifurcationCurve", "Branch", "Cancelled",
+    "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed",
+    "Observation", "Orbit", "OverBudget", "Pulse", "Regime", "RotationNumber", "Run", "Runs", "Scene", "Settled",
+    "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors",
+    "bands", "basins", "bifurcation_curves", "branch", "continue_branch", "diagram", "drive", "fit", "iter_curve",
+    "load", "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "pulse", "resonance_curve", "rotation_number",
+    "run", "run_many", "save", "scene", "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram",
+    "transfer", "work_precision",
 ]
 
 

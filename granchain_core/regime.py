@@ -9,7 +9,7 @@ from dataclasses import dataclass
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Those of steady states that never repeat; their errors are not stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
-#: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.contraction`).
+#: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6
 #: [all] Without |μ| it is taken to shrink by the observed decay, at most this.
 SLOWEST_TRUSTED_DECAY = 0.999
@@ -89,22 +89,28 @@ class Regime:
     def undriven(cls, periods_run: int) -> Regime:
         """A transient: the motion from its start without a drive, after `periods_run` times 1/f.
 
-        Its name is "unsettled", which files and JSON have had for it from the beginning; `driven` tells it apart.
+        Its name is "unsettled": files and the command line's JSON have one of `NAMES`, a list that scripts rely on.
+        `driven`, which both have too, tells it from a driven motion that has not settled.
         """
         return cls(name="unsettled", period=None, decay=None, distance=None, periods_run=periods_run, driven=False)
 
     @property
-    def contraction(self) -> float:
-        """Factor by which a distance shrinks per orbit: |μ|, else the observed decay, else `DECAY_NOT_SEEN`."""
+    def assumed_contraction(self) -> float:
+        """Factor by which a distance is taken to shrink per orbit: |μ|, else `decay`, else `DECAY_NOT_SEEN`."""
         if self.multiplier is not None:
             return min(1.0 - LEAST_BELOW_1, self.multiplier)
         return min(SLOWEST_TRUSTED_DECAY, self.decay or DECAY_NOT_SEEN)
 
     @property
-    def evidence(self) -> str:
-        """|μ| where it was computed, else the contraction that was seen; empty where neither is known.
+    def contraction(self) -> float:
+        """The older name of `assumed_contraction`."""
+        return self.assumed_contraction
 
-        A batch that followed a motion to its orbit without multipliers assumed a contraction: that is no evidence.
+    @property
+    def evidence(self) -> str:
+        """|μ| where it was computed, else the decay; empty where neither is known.
+
+        A batch that extrapolated a motion to its orbit without multipliers assumed a contraction: that is no evidence.
         """
         shown = self.period or self.approaches or 1
         if self.multiplier is not None:
@@ -118,8 +124,9 @@ class Regime:
         """The regime in words for the dashboard."""
         evidence = f" ({self.evidence})" if self.evidence else ""
         if self.name == "periodic":
-            how = "followed to its orbit after" if self.followed else "settled within"
-            return f"period {self.period}, {how} {self.periods_run} periods{evidence}"
+            if self.followed:
+                return f"period {self.period}, orbit found after {self.periods_run} periods of approach{evidence}"
+            return f"period {self.period}, settled within {self.periods_run} periods{evidence}"
         if not self.driven:
             return "not driven: the motion from its start"
         if self.name == "unsettled":

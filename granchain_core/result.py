@@ -71,7 +71,7 @@ class Cost:
 
 @dataclass(frozen=True, eq=False)
 class Jumps:
-    """Forces that jump from 0 because a contact with a linear dashpot closes in motion.
+    """Forces that jump from 0 because a contact with a linear dashpot closes in motion. Openings are not among them.
 
     Methods that do not locate events keep those of the first and last contact only.
 

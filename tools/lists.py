@@ -1,9 +1,15 @@
-"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes (README.md)."""
+"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes and commands that
+draw (README.md).
+"""
 
 from __future__ import annotations
 
+import argparse
 import math
+import textwrap
+from importlib import import_module
 
+from app.cli.commands import COMMANDS
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
 from granchain_core.quantities import QUANTITIES, Quantity
@@ -42,3 +48,16 @@ def table_of_scenes() -> str:
     """The table of README.md: every scene with its title, in teaching order."""
     rows = [f"| `{name}` | {scene(name).title} |" for name in scene_names()]
     return "\n".join(["| scene | what it is |", "|---|---|", *rows])
+
+
+def commands_with_pictures() -> str:
+    """The list of README.md: every command that has the option --picture, in the order of `granchain --help`."""
+    drawing = [f"`{name}`" for name in COMMANDS if "--picture" in _help(name)]
+    return "\n".join(textwrap.wrap(f"{', '.join(drawing[:-1])} and {drawing[-1]}.", 120))
+
+
+def _help(command: str) -> str:
+    """What `granchain COMMAND --help` says of its options."""
+    parser = argparse.ArgumentParser()
+    import_module(f"app.cli.{command}").add_options(parser)
+    return parser.format_help()

@@ -60,6 +60,14 @@ def say_if(sentence: str) -> None:
         say(sentence)
 
 
+def accuracy_unused(scene: Scene, what: str) -> str:
+    """A sentence where the user has set `accuracy`, which does not change what a batch computes."""
+    if "accuracy" not in scene.differences() or scene.cuts_tension:
+        return ""
+    return (f"accuracy = {scene.accuracy:g} does not change {what} that a batch computes with fixed steps; each has "
+            "its error.")
+
+
 def show_json(data: dict[str, Any]) -> None:
     """Print the one JSON object of a command."""
     print(json.dumps(data, allow_nan=False))

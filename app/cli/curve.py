@@ -12,7 +12,18 @@ import numpy as np
 from granchain_core import BadInput
 from granchain_core.pieces import CHECK_KERNELS, FIXED_STEP_KERNELS
 
-from .common import check_points, chosen_scene, finite_or_null, in_background, say, show_json, show_percent, unbroken
+from .common import (
+    accuracy_unused,
+    check_points,
+    chosen_scene,
+    finite_or_null,
+    in_background,
+    say,
+    say_if,
+    show_json,
+    show_percent,
+    unbroken,
+)
 from .compiling import compiling_beside
 from .data_options import add_amplitude, chosen_amplitude, with_answers
 from .keeping import add_resume, finished, keeping
@@ -166,3 +177,5 @@ def _show_curve(swept: Any) -> None:
         print(f"{p.frequency:12.6g}  {p.max_output_force:18.6g}  {outward}  {p.max_output_force_elastic:9.6g}  "
               f"{elastic}  {p.max_input_force:17.6g}  {inward}  {regime}")
     say(f"{len(swept.points)} points in {swept.wall_s:.2f} s")
+    if swept.start == "rest":
+        say_if(accuracy_unused(swept.scene, "points"))

@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 
 from granchain_core import BadInput, Cancelled
+from granchain_core.bifurcation_curves import BifurcationCurve, bifurcation_curves
+from granchain_core.orbits.stroboscopic_map import refuse_cut
 from granchain_core.parameter_map import Axis, Diagram, Grid, iter_diagram
 from granchain_core.parameter_map.blocks import Blocks
 from granchain_core.parameter_map.cells import CELL_REGIMES, ERRORS, cell_of
@@ -20,7 +22,16 @@ from granchain_core.pieces import FIXED_STEP_KERNELS
 from granchain_core.quantities import QUANTITIES
 from granchain_core.stop import Stop
 
-from .common import chosen_scene, finite_or_null, in_background, say, say_if, show_json, unbroken
+from .common import (
+    accuracy_unused,
+    chosen_scene,
+    finite_or_null,
+    in_background,
+    say,
+    say_if,
+    show_json,
+    unbroken,
+)
 from .compiling import compiling_beside
 from .data_options import add_amplitude, chosen_amplitude
 from .foundation import kept_along
@@ -41,6 +52,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_scheduler(parser)
     parser.add_argument("--out", required=True, metavar="FILE", help="write an HDF5 file")
     add_resume(parser, "map")
+    parser.add_argument("--bifurcations", action="store_true",
+                        help="also find folds, period doublings and Neimark–Sacker points between neighbouring cells "
+                             "of the middle row, and continue them through the others")
     add_json(parser)
     add_picture(parser)
 
@@ -60,13 +74,17 @@ def do(arguments: argparse.Namespace) -> None:
     grid = Grid(chosen, axis_from("--x", arguments.x), axis_from("--y", arguments.y),
                 chosen_amplitude(arguments, chosen))
     say_if(kept_along(grid.scene, grid.x.knob, grid.y.knob))
+    say_if(accuracy_unused(grid.scene, "cells"))
     check_writable(arguments.out)
     check_picture(arguments.picture)
     if arguments.picture:
         _refuse_too_many(grid)
+    if arguments.bifurcations:
+        refuse_cut(grid.scene)
     found, computed = _found(arguments, grid)
-    write_picture(arguments.picture, f"A map of {grid.scene.name}", found)
-    _tell(found, computed, arguments)
+    curves = in_background(lambda stop: bifurcation_curves(found, stop=stop)) if arguments.bifurcations else []
+    write_picture(arguments.picture, f"A map of {grid.scene.name}", found, curves=curves)
+    _tell(found, curves, computed, arguments)
 
 
 def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
@@ -96,7 +114,6 @@ def _refuse_too_many(grid: Grid) -> None:
     if grid.size > MOST_DRAWN:
         raise BadInput(f"--picture draws up to {MOST_DRAWN} cells and this map has {grid.size}; take fewer points on "
                        "an axis, or leave --picture out.")
-
 
 
 def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[Diagram, int]:
@@ -131,7 +148,7 @@ def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[n
         yield np.atleast_1d(cell_of(result))
 
 
-def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
+def _tell(found: Diagram, curves: list[BifurcationCurve], computed: int, arguments: argparse.Namespace) -> None:
     counts = {name: int((found.cells["regime"] == code).sum()) for code, name in enumerate(CELL_REGIMES)}
     inward, worst, elastic = (_largest(found.cells[name]) for name in ERRORS)
     if arguments.json:
@@ -139,7 +156,8 @@ def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
         show_json({
             "scene": grid.scene.name, "x": grid.x.knob, "y": grid.y.knob, "cells": grid.size, "computed": computed,
             "regimes": counts, "largest_error_estimate": finite_or_null(worst),
-            "wall_s": found.wall_s, "file": str(arguments.out)})
+            "wall_s": found.wall_s, "file": str(arguments.out),
+            **({"bifurcations": [_curve_json(one) for one in curves]} if arguments.bifurcations else {})})
         return
     for axis in (found.grid.x, found.grid.y):
         quantity = QUANTITIES[axis.knob]
@@ -148,6 +166,15 @@ def _tell(found: Diagram, computed: int, arguments: argparse.Namespace) -> None:
     print(", ".join(f"{count} {name}" for name, count in counts.items() if count))
     print(f"largest relative errors of a periodic cell: output force {worst:.1e}, input force {inward:.1e}, elastic "
           f"output force {elastic:.1e}; {computed} cells computed in {found.wall_s:.1f} s; written to {arguments.out}")
+    if arguments.bifurcations:
+        print("\n".join(one.sentence(found.grid.x.knob, found.grid.y.knob) for one in curves)
+              or "no bifurcation between neighbouring cells of the middle row")
+
+
+def _curve_json(curve: BifurcationCurve) -> dict[str, Any]:
+    return {"kind": curve.kind, "period": curve.period, "x": [point.x for point in curve.points],
+            "y": [point.y for point in curve.points],
+            "multiplier": [[point.multiplier.real, point.multiplier.imag] for point in curve.points]}
 
 
 def _largest(errors: np.ndarray) -> float:

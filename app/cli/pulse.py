@@ -44,10 +44,11 @@ def do(arguments: argparse.Namespace) -> None:
 
 
 def _json(found: Pulse) -> dict[str, Any]:
-    speed, metres, width = ([finite_or_null(float(x)) for x in values]
-                            for values in (found.speed, found.speed_in_metres, found.width))
+    beads, metres, width = ([finite_or_null(float(x)) for x in values]
+                            for values in (found.speed_beads_s, found.speed_m_s, found.width))
     return {"contact": found.contact.tolist(), "time": found.time.tolist(), "force": found.force.tolist(),
-            "speed_beads": speed, "speed": metres, "width": width, "velocity": found.velocity.tolist(),
+            "speed_beads_s": beads, "speed_m_s": metres, "speed_beads": beads, "speed": metres, "width": width,
+            "velocity": found.velocity.tolist(),
             "error_estimate": found.run.displacement_error, "sampling_error": found.sampling_error,
             "sampling_error_time": found.sampling_error_time,
             "sampling_error_speed": finite_or_null(found.sampling_error_speed),
@@ -63,10 +64,12 @@ def _show(found: Pulse) -> None:
     print("contact     time_s     force_N  speed_m_s  speed_beads_s  solitary_wave  continuum  width_beads")
     for i, contact in enumerate(found.contact):
         force = float(found.force[i])
-        row = (found.speed_in_metres[i], 9, 6), (found.speed[i], 13, 6), (solitary_speed(chosen, force), 13, 6), \
+        row = (found.speed_m_s[i], 9, 6), (found.speed_beads_s[i], 13, 6), (solitary_speed(chosen, force), 13, 6), \
             (solitary_speed(chosen, force, CONTINUUM), 9, 6), (found.width[i], 11, 4)
         shown = "  ".join(f"{'–' if math.isnan(x) else f'{x:.{digits}g}':>{wide}}" for x, wide, digits in row)
         print(f"{contact:7}  {found.time[i]:9.4e}  {force:10.6g}  {shown}")
-    print(f"relative error of displacements {found.run.displacement_error:.1e}, of the forces by sampling "
-          f"{found.sampling_error:.1e}; "
+    by_sampling = {"forces": found.sampling_error, "speeds": found.sampling_error_speed,
+                   "widths": found.sampling_error_width}
+    print(f"relative error of displacements {found.run.displacement_error:.1e}; by sampling of "
+          f"{', '.join(f'{name} {error:.1e}' for name, error in by_sampling.items() if not math.isnan(error))}; "
           f"{energy_in_words(found.run.energy_residual)}")

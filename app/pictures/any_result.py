@@ -13,6 +13,7 @@ from granchain_core import (
     Attractors,
     BadInput,
     Basins,
+    BifurcationCurve,
     Branch,
     Curve,
     Diagram,
@@ -85,11 +86,13 @@ def _branch(found: Branch, theme: Theme, now: float | None = None) -> LayoutDOM:
     return branches([found], theme, now)
 
 
-def both_maps(found: Diagram, theme: Theme, shown: str = "both") -> LayoutDOM:
+def both_maps(found: Diagram, theme: Theme, shown: str = "both",
+              curves: Sequence[BifurcationCurve] = ()) -> LayoutDOM:
     """The map of forces above the map of regimes; `shown` is "force" or "regime" for one of them."""
     if shown != "both":
-        return diagram(found, theme, shown)
-    return column(*(diagram(found, theme, one) for one in ("force", "regime")), sizing_mode="stretch_both")
+        return diagram(found, theme, shown, curves=curves)
+    both = (diagram(found, theme, one, curves=curves) for one in ("force", "regime"))
+    return column(*both, sizing_mode="stretch_both")
 
 
 def measured_accuracy(found: WorkPrecision, theme: Theme, asked: float | None = None) -> LayoutDOM:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from bokeh.palettes import Inferno256
 from bokeh.plotting import figure
 from bokeh.transform import factor_cmap, transform
 
+from granchain_core.bifurcation_curves import BifurcationCurve
 from granchain_core.parameter_map import Axis, Diagram, Grid
 from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
 from granchain_core.regime import exponent_words
@@ -38,18 +40,20 @@ from .themed import apply_theme, frame, themed
 CATEGORIES = (*REGIME_MARKS, "failed")
 COLOURS = [REGIME_MARKS[name][1] if name in REGIME_MARKS else BROWN for name in CATEGORIES]
 _HATCHES = (" ", "/", "-", "|", "+", "\\", "x", ".", "o")
+_DASHES = {"fold": "solid", "period_doubling": "dashed", "neimark_sacker": "dotted"}
 #: Most cells that a browser shows smoothly.
 MOST_DRAWN_CELLS = 40_000
 _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip", "spacing",
          "number", "own_right", "own_top")
 
 
-def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None) -> figure:
+def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
+            curves: Sequence[BifurcationCurve] = ()) -> figure:
     """All computed cells of a diagram over its two knobs; `shown` is "force" or "regime".
 
-    `now` is a pair of values [SI] with a mark. The source "cells" has a row for each cell, those of coarse nets first:
-    they stand for the cells around them until these are there. `cell_rows`, `scale_models` and `shown_models` give
-    what changes later.
+    `now` is a pair of values [SI] with a mark, `curves` are its bifurcation curves. The source "cells" has a row for
+    each cell, those of coarse nets first: they stand for the cells around them until these are there. `cell_rows`,
+    `scale_models` and `shown_models` give what changes later.
     """
     grid = found.grid
     across, up = _scales(grid)
@@ -77,6 +81,7 @@ def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float
                            items=items), "above")
     plot.add_tools(HoverTool(renderers=[force, regime], tooltips=[("", "@tooltip")], limit=1, sort_by="spacing"),
                    TapTool(name="tap", renderers=[force, regime], mode="replace"))
+    _draw_curves(plot, grid, curves)
     _marks(plot, now_row(grid, *now) if now else now_row(grid))
     for name, properties in {**shown_models(shown), **scale_models(computed)}.items():
         plot.select_one({"name": name}).update(**properties)
@@ -108,6 +113,20 @@ def shown_models(shown: str) -> dict[str, dict[str, Any]]:
     force = shown == "force"
     return {**{name: {"visible": force} for name in ("force", "own force", "bar")},
             **{name: {"visible": not force} for name in ("regime", "regimes", *(f"all {one}" for one in CATEGORIES))}}
+
+
+def _draw_curves(plot: figure, grid: Grid, curves: Sequence[BifurcationCurve]) -> None:
+    """Bifurcation curves, black on white, so that they are seen on every colour; the dash says of which kind."""
+    across, up = _scales(grid)
+    for curve in curves:
+        source = ColumnDataSource({
+            "x": [point.x / across.factor for point in curve.points],
+            "y": [point.y / up.factor for point in curve.points],
+            "tooltip": [curve.sentence(grid.x.knob, grid.y.knob)] * len(curve.points)}, name="bifurcation curve")
+        plot.line("x", "y", source=source, line_color="#ffffff", line_width=5)
+        line = plot.line("x", "y", source=source, line_color="#000000", line_width=2, line_dash=_DASHES[curve.kind])
+        ends = plot.scatter("x", "y", source=source, size=5, fill_color="#000000", line_color="#ffffff")
+        plot.add_tools(HoverTool(renderers=[line, ends], tooltips=[("", "@tooltip")], line_policy="nearest"))
 
 
 def _marks(plot: figure, now: dict[str, Any]) -> None:

@@ -33,7 +33,7 @@ def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
         return method_for(scene.accuracy, scene.cuts_tension)
     if picture.preview or picture.regime.name != "periodic":
         return Setting(picture.run.cost.method)
-    return orbit_setting(scene, scene.accuracy, picture.regime.contraction).finer()
+    return orbit_setting(scene, scene.accuracy, picture.regime.assumed_contraction).finer()
 
 
 def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:

@@ -162,7 +162,7 @@ def differences(step: StoryStep, shown: Run) -> list[str]:
         first = pulse(run(step.scene, periods=0, record=1, samples=_PULSE_SAMPLES))
         middle = len(first.contact) // 2
         numbers += [("pulse's force", "N", expected.pulse, float(first.force[middle])),
-                    ("pulse's speed", "m/s", expected.speed, float(first.speed_in_metres[middle]))]
+                    ("pulse's speed", "m/s", expected.speed, float(first.speed_m_s[middle]))]
     allowed = IRREGULAR_TOLERANCE if regime in NEVER_REPEATING else TOLERANCE
     return found + [f"the {name} is {computed:.4g} {unit}, not {number:.4g} {unit}."
                     for name, unit, number, computed in numbers if abs(computed - number) > allowed * computed]

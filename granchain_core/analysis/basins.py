@@ -136,7 +136,7 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
     place = np.full(len(origins), -1)
     for i, attractor in enumerate(listed):
         place[[int(origin.name) for origin in attractor.origins]] = i
-        attractor.share = len(attractor.origins) / len(origins)
+        attractor.share, attractor.share_of = len(attractor.origins) / len(origins), "starts of the plane"
     return Basins(scene, (x[0], xs), (y[0], ys), listed, place.reshape(len(ys), len(xs)))
 
 

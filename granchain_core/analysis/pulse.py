@@ -2,8 +2,8 @@
 
 A chain of equal beads without precompression carries a solitary wave whose shape does not depend on its strength. With
 K = m = 1 and the distance of two beads as the unit of length its speed is V = c F^{1/6} for the largest force F, in
-Nesterenko's continuum c = 2/√5 (J. Appl. Mech. Tech. Phys. 24, 733, 1983), for the discrete chain c = 0.9055158. The
-discrete constant follows from the travelling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
+Nesterenko's continuum c = 2/√5 (J. Appl. Mech. Tech. Phys. 24, 733, 1983), for the discrete chain
+`SOLITARY_BY_FORCE`. It follows from the travelling wave (English and Pego, Proc. Am. Math. Soc. 133, 1763, 2005):
 V² δ(ξ) = ∫ Λ(ξ − s) δ(s)^{3/2} ds with Λ(s) = max(0, 1 − |s|), δ being the overlap; tests solve that equation.
 """
 
@@ -18,12 +18,11 @@ from ..errors import BadInput
 from ..result import Run, require_run
 from ..scene import Scene
 from ..scene.description import hertz_stiffness
+from ..scene.hertz import SOLITARY_BY_FORCE
 from ..tables import Column, Labelled, Table, axis, bead_axis, provenance
 from ..tables.provenance import Attribute
 
-#: Speed of the discrete chain's solitary wave [beads per time] over F^{1/6}, K = m = 1.
-DISCRETE = 0.9055158
-#: The same of the continuum.
+#: Speed of the continuum's solitary wave [beads per time] over F^{1/6}, K = m = 1.
 CONTINUUM = 2.0 / math.sqrt(5.0)
 #: Part of a pulse's first maximum in a contact below which the pulse has passed.
 _PART = 0.02
@@ -41,7 +40,7 @@ _OF_THE_CHANGE = 2.0 / 3.0
 _OF_THE_CHANGE_OF_WIDTH = 2.0
 
 
-def solitary_speed(scene: Scene, force: float, constant: float = DISCRETE) -> float:
+def solitary_speed(scene: Scene, force: float, constant: float = SOLITARY_BY_FORCE) -> float:
     """Speed of a solitary wave with this largest force [N], c K^{1/3} F^{1/6} / √m [beads/s].
 
     NaN for dimers, tapered and precompressed chains, which carry other waves. A striker and an impurity are single
@@ -67,7 +66,7 @@ class Pulse(Labelled):
         Time at which the contact's force is largest while the pulse passes [s].
     force : numpy.ndarray, shape (N - 1,)
         That force [N]. A dimer chain's pulse can have two maxima in a contact; this is the larger one.
-    speed : numpy.ndarray, shape (N - 1,)
+    speed_beads_s : numpy.ndarray, shape (N - 1,)
         Speed of the contacts' first maximum from the previous contact to the next one [beads/s]; NaN at both ends.
     width : numpy.ndarray, shape (N - 1,)
         Time for which the force is above half of its maximum, times the speed: the width at half height [beads]; NaN at
@@ -86,7 +85,7 @@ class Pulse(Labelled):
     --------
     >>> from granchain_core import pulse, run, scene
     >>> found = pulse(run(scene("impact"), periods=0, record=1, samples=2000))
-    >>> print(f"{found.force[14]:.2f} N, {found.speed[14]:.0f} beads/s, {found.width[14]:.2f} beads")
+    >>> print(f"{found.force[14]:.2f} N, {found.speed_beads_s[14]:.0f} beads/s, {found.width[14]:.2f} beads")
     3.00 N, 13686 beads/s, 1.41 beads
     """
 
@@ -94,7 +93,7 @@ class Pulse(Labelled):
     contact: np.ndarray
     time: np.ndarray
     force: np.ndarray
-    speed: np.ndarray
+    speed_beads_s: np.ndarray
     width: np.ndarray
     velocity: np.ndarray
     sampling_error: float
@@ -103,10 +102,20 @@ class Pulse(Labelled):
     sampling_error_width: float
 
     @property
-    def speed_in_metres(self) -> np.ndarray:
+    def speed_m_s(self) -> np.ndarray:
         """The speed [m/s], with the distance of the beads on both sides of each contact."""
         radii = np.array([bead.radius for bead in self.run.scene.beads])
-        return self.speed * (radii[:-1] + radii[1:])
+        return self.speed_beads_s * (radii[:-1] + radii[1:])
+
+    @property
+    def speed(self) -> np.ndarray:
+        """The older name of `speed_beads_s`."""
+        return self.speed_beads_s
+
+    @property
+    def speed_in_metres(self) -> np.ndarray:
+        """The older name of `speed_m_s`."""
+        return self.speed_m_s
 
     @property
     def scene(self) -> Scene:
@@ -120,8 +129,11 @@ class Pulse(Labelled):
         columns = {
             "time": Column(self.time, at, "s", "when the contact's force is largest while the pulse passes"),
             "force": Column(self.force, at, "N", "largest force of the pulse"),
-            "speed": Column(self.speed, at, "1/s", "speed of the first maximum in beads per second, NaN at both ends"),
-            "speed_in_metres": Column(self.speed_in_metres, at, "m/s", "speed of the first maximum, NaN at both ends"),
+            "speed_beads_s": Column(self.speed_beads_s, at, "1/s",
+                                    "speed of the first maximum in beads per second, NaN at both ends"),
+            "speed_m_s": Column(self.speed_m_s, at, "m/s", "speed of the first maximum, NaN at both ends"),
+            "speed": Column(self.speed_beads_s, at, "1/s", "older name of speed_beads_s"),
+            "speed_in_metres": Column(self.speed_m_s, at, "m/s", "older name of speed_m_s"),
             "width": Column(self.width, at, "1", "width at half height in beads, NaN at both ends")}
         fastest = {"velocity": Column(self.velocity, ("bead",), "m/s", "largest velocity until the pulse has passed")}
         return Table("pulse", along, columns), Table("beads", bead_axis(self.scene.N), fastest)
@@ -135,7 +147,7 @@ class Pulse(Labelled):
     def summary(self) -> list[str]:
         """Force, speed and width in the middle of the chain."""
         i = len(self.contact) // 2
-        return [f"contact {self.contact[i]}: {self.force[i]:.4g} N, {self.speed[i]:.5g} beads/s, "
+        return [f"contact {self.contact[i]}: {self.force[i]:.4g} N, {self.speed_beads_s[i]:.5g} beads/s, "
                 f"{self.width[i]:.3g} beads wide at half height"]
 
 

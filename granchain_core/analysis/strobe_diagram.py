@@ -97,6 +97,11 @@ class StrobeDiagram(Labelled):
     start: str
     points: list[StrobePoint] = field(default_factory=list)
 
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """The knob."""
+        return (self.knob,)
+
     def cloud(self, bead: int, velocity: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """All points of bead 1..N, (M,) each: the knob's values, and displacements [m] or velocities [m/s]."""
         bead = whole_number("bead", bead, 1, self.scene.N)
@@ -248,6 +253,6 @@ def _refined(settling: SettlingRun) -> tuple[Engine, np.ndarray, float | None] |
     before, strobes = (engine.periods(regime.period, watch=False)[0][1:] for engine in (coarse, finer))
     largest = np.abs(strobes).max(axis=(0, 2), keepdims=True)
     change = float((np.abs(strobes - before) / np.where(largest > 0.0, largest, 1.0)).max())
-    integration = max(IRREGULAR * change, typical_error(finer.setting)) / (1.0 - regime.contraction)
+    integration = max(IRREGULAR * change, typical_error(finer.setting)) / (1.0 - regime.assumed_contraction)
     error = integration + distance
     return (finer, strobes, error) if error <= _APART else None

@@ -64,8 +64,10 @@ class Attractor:
     origins : list of Origin
         The starts that end here: "rest", "up", "down", "random 17".
     share, share_error : float or None
-        Fraction of the random states that end here, and its standard error; None where none was drawn. In `basins`, the
-        fraction of the plane's starts, without an error.
+        Fraction of the starts named in `share_of` that end here, and its standard error where these are random; None
+        where there is none.
+    share_of : str
+        "random states" of `attractors`, or "starts of the plane" of `basins`.
 
     Examples
     --------
@@ -86,6 +88,7 @@ class Attractor:
     origins: list[Origin] = field(default_factory=list)
     share: float | None = None
     share_error: float | None = None
+    share_of: str = "random states"
 
     @property
     def error_estimate(self) -> float | None:
@@ -94,7 +97,7 @@ class Attractor:
 
     @property
     def share_words(self) -> str:
-        """Its share with the standard error in per cent, "–" where no random state was drawn."""
+        """Its share with the standard error in per cent, "–" where there is none."""
         if self.share is None:
             return "–"
         error = "" if self.share_error is None else f" ± {100.0 * self.share_error:.0f}"
@@ -174,6 +177,8 @@ def attractors_table(scene: Scene, found: Sequence[Attractor]) -> Table:
                         "fraction of the random states, or of a plane's starts, that end here"),
         "share_error": Column(np.array([or_nan(one.share_error) for one in found]), along, "1",
                               "standard error of the share"),
+        "share_of": Column(np.array([one.share_of for one in found], dtype=object), along, "",
+                           "which starts the share is a fraction of"),
         "starts": Column(starts, along, "", "starts that end here"),
         **state_columns(states[:, 0], states[:, 1], ("attractor", "bead"))})
 
@@ -181,7 +186,7 @@ def attractors_table(scene: Scene, found: Sequence[Attractor]) -> Table:
 def listing(attractors_found: Sequence[Attractor]) -> Iterator[str]:
     """The attractors in words, one line each."""
     for one in attractors_found:
-        share = "" if one.share is None else f"{one.share_words} of random states; "
+        share = "" if one.share is None else f"{one.share_words} of {one.share_of}; "
         yield f"{one.regime.sentence}; {one.max_output_force:.4g} N, {share}{len(one.origins)} starts"
 
 

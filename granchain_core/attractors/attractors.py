@@ -36,7 +36,8 @@ _SWEEP_POINTS = 8
 _PASS_PERIODS = 150
 #: Distance from the frequency asked for at which a sweep begins, relative to it.
 _SWEEP_RANGE = 0.08
-#: Size of the box of random states, in units of the largest displacements and velocities of the motion from rest.
+#: Size of the box of random states, in units of the largest displacement and velocity that any bead has at phase 0 in
+#: the first `_PASS_PERIODS` of the motion from rest.
 _BOX_SIZE = 1.5
 #: Displacement from an unstable orbit, relative to the motion.
 _DEPARTURE = 1e-2
@@ -55,8 +56,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
                progress: Callable[[float], None] | None = None) -> Attractors:
     """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
-    Random states are uniform in a box of displacements and velocities, 1.5 times the largest of the motion from rest,
-    and at least A0 and 2π f A0; the shares refer to this box (docs/diagram.md).
+    Random states are uniform in a box, and their shares refer to it (docs/diagram.md, "All attractors of one setting").
 
     Parameters
     ----------

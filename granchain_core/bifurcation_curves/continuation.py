@@ -12,6 +12,10 @@ arclength s, on which Newton's method solves map(state, x) = state bordered by t
 need no special treatment; the root of the condition along s is found by secants. From one y to the next the curve is
 extrapolated, with steps that are halved where that fails.
 
+Newton's method here (`_Branch.solve`) is not that of orbits/branch. The condition needs the exact derivative at every
+point, and a secant search has a handful of them; orbits/branch follows hundreds of orbits and saves derivatives, by
+maps of lower accuracy that would be no use for the condition.
+
 Source: Kuznetsov 2004, chapter 10.
 """
 

@@ -15,7 +15,9 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..orbits import Orbit, periodic_orbit
+from ..orbits.stroboscopic_map import refuse_cut
 from ..parameter_map.cells import CELL_REGIMES, Diagram
+from ..quantities import QUANTITIES
 from ..stop import Stop
 from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
 
@@ -29,11 +31,37 @@ _CELLS_APART = 0.5
 
 @dataclass(frozen=True, eq=False)
 class BifurcationCurve:
-    """A bifurcation curve: where orbits of `period` drive periods meet a bifurcation of one `kind`, in ascending y."""
+    """A bifurcation curve in the plane of a map's two knobs.
+
+    Attributes
+    ----------
+    kind : str
+        "fold", "period_doubling" or "neimark_sacker".
+    period : int
+        Period of the orbits on it in drive periods; those of twice the period begin at a period doubling.
+    points : list of BifurcationPoint
+        In ascending y: `x` and `y`, the knobs in SI, `multiplier`, the critical one, and `state`, the orbit's scaled
+        displacements and w at phase 0.
+
+    Examples
+    --------
+    >>> from granchain_core import bifurcation_curves, diagram, scene
+    >>> found = diagram(scene("sec2").evolve(N=3), ("f", [1860.0, 1900.0]), ("A0", [4.5e-7, 5e-7]))
+    >>> [(curve.kind, curve.period, len(curve.points)) for curve in bifurcation_curves(found)]
+    [('period_doubling', 1, 2)]
+    """
 
     kind: str
     period: int
     points: list[BifurcationPoint]
+
+    def sentence(self, x: str, y: str) -> str:
+        """The curve in words; `x` and `y` are the names of the knobs."""
+        ends = []
+        for knob, values in ((x, [point.x for point in self.points]), (y, [point.y for point in self.points])):
+            unit = QUANTITIES[knob].unit
+            ends.append(f"{knob} {min(values):.7g} to {max(values):.7g}{'' if unit in ('', '1') else ' ' + unit}")
+        return f"{self.kind.replace('_', ' ')} of period {self.period}: {', '.join(ends)}, {len(self.points)} points"
 
 
 @dataclass(frozen=True)
@@ -47,14 +75,49 @@ class _Pair:
 
 
 def bifurcation_curves(found: Diagram, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
-               stop: Stop | None = None,
-               on_curve: Callable[[BifurcationCurve], None] | None = None) -> list[BifurcationCurve]:
-    """Bifurcation curves from some rows of a diagram (the middle one), at `values` of y (those of its rows).
+                       stop: Stop | None = None,
+                       on_curve: Callable[[BifurcationCurve], None] | None = None) -> list[BifurcationCurve]:
+    """The bifurcation curves in a map: folds, period doublings and Neimark–Sacker points over its two knobs.
 
-    Curves that cannot be followed are left out: a pair of cells from rest may be two attractors with no bifurcation
-    between them. `on_curve` is called with each curve. Raises `BadInput` and `Cancelled`.
+    Between neighbouring cells of a row that are not alike the bifurcation is found, and then continued in y. Curves
+    that cannot be followed are left out: two neighbours from rest may be on two attractors with no bifurcation between
+    them (docs/diagram.md, "Bifurcation curves").
+
+    Parameters
+    ----------
+    found : Diagram
+        The map.
+    rows : iterable of int, optional
+        The rows in which neighbours are compared, from 0; the middle one if not given.
+    values : iterable of float, optional
+        The values of y at which the curves have points, in SI; those of the map's rows if not given.
+    stop : Stop, optional
+        Ends the computation when another thread sets it.
+    on_curve : callable, optional
+        Called with each curve when it is finished.
+
+    Returns
+    -------
+    list of BifurcationCurve
+        In the order in which they were found.
+
+    Raises
+    ------
+    BadInput
+        A row that is not in the map, or a scene that cuts tension.
+    Cancelled
+        `stop` was set.
+
+    Examples
+    --------
+    >>> from granchain_core import bifurcation_curves, diagram, scene
+    >>> found = diagram(scene("sec2").evolve(N=3), ("f", [1860.0, 1900.0]), ("A0", [4.5e-7, 5e-7]))
+    >>> curve, = bifurcation_curves(found)
+    >>> [f"{point.x:.1f} Hz, {point.multiplier.real:.3f}" for point in curve.points]
+    ['1842.5 Hz, -1.000', '1882.4 Hz, -1.000']
     """
     grid = found.grid
+    refuse_cut(grid.scene)
     chosen = [grid.shape[0] // 2] if rows is None else list(rows)
     if any(not 0 <= row < grid.shape[0] for row in chosen):
         raise BadInput(f"rows are numbers from 0 to {grid.shape[0] - 1}.")

@@ -21,7 +21,7 @@ from .intervals import LEVEL, BetterMinimum, Profile, limit, profile
 from .parameters import Free, with_values
 from .search import STEP, Problem, Target, descended, searched
 from .tables import data_table, landscape_table, parameter_table, profile_table
-from .targets import Evaluation, FeatureTarget
+from .targets import Evaluation, FeatureTarget, SeriesTarget
 
 #: Probability of a χ² as large, if the model were true, below which the verdict is that it cannot.
 CANNOT = 0.01
@@ -103,6 +103,12 @@ class Fit(Labelled):
     scale: float = 1.0
     wall_s: float = 0.0
     correlation: np.ndarray | None = None
+
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """The frequency, unless a series at the scene's own was fitted, and the drive amplitude where it follows."""
+        own = isinstance(self.target, SeriesTarget) and self.target.frequency is None
+        return (() if own else ("f",)) + (() if self.amplitude is None else ("A0",))
 
     def tables(self) -> tuple[Table, ...]:
         """`parameters` with their intervals, `data` with the model, `profiles`, and the `landscape` of the misfit."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..kernels.effects.dissipation import LinearDashpot
-from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE
+from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE, SOLITARY_BY_FORCE, SOLITARY_BY_VELOCITY
 from . import touches
 from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time
@@ -140,7 +140,7 @@ def free_pulse(beads: int, inverse_mass: list[float], time: float = 20.0) -> flo
 
 
 def solitary(beads: int) -> tuple[float, float]:
-    """Errors of the solitary wave's speed against 0.9055158 F^{1/6} and 0.9074701 v^{1/5}, half way down the chain."""
+    """Errors of the solitary wave's speed against its laws c F^{1/6} and c' v^{1/5}, half way down the chain."""
     bench = Bench(beads, float(beads), 64 * beads, ends=(0.0, 1.0), tolerance=1e-11)
     bench.throw(np.eye(beads)[0])
     kept = bench.record()
@@ -149,7 +149,8 @@ def solitary(beads: int) -> tuple[float, float]:
     speed = (second - first) / (maxima[1][0] - maxima[0][0])
     force = 0.5 * (maxima[0][1] + maxima[1][1])
     velocity = _top(bench.time, kept.velocity[:, (first + second) // 2])[1]
-    return abs(speed / (0.9055158 * force ** (1 / 6)) - 1.0), abs(speed / (0.9074701 * velocity**0.2) - 1.0)
+    return (abs(speed / (SOLITARY_BY_FORCE * force ** (1 / 6)) - 1.0),
+            abs(speed / (SOLITARY_BY_VELOCITY * velocity**0.2) - 1.0))
 
 
 def _top(time: np.ndarray, values: np.ndarray) -> tuple[float, float]:

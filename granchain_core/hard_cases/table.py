@@ -85,6 +85,6 @@ CASES: tuple[Case, ...] = (
     Case("solitary wave, Hertz collision, cradle, a bead on a chain",
          "The pulse is five beads long and comes out of contacts of zero stiffness.",
          "SciPy's defaults round the pulse and slow it; Euler's last bead leaves faster than the first came in.",
-         "Hertz's collision; V = 0.9055158 F^{1/6}; conservation laws; SciPy restarted at every contact event",
+         "Hertz's collision; the wave's speed c F^{1/6}; conservation laws; SciPy restarted at every contact event",
          contacts.collisions, contacts.collisions_picture),
 )

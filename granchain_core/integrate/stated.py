@@ -13,8 +13,9 @@ from .safety_factors import IRREGULAR, REGULAR, RUN_FORCES, RUN_FORCES_THAT_JUMP
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
 #: the rounding usually seen, which few random scenes exceed.
 _ROUNDING_FACTOR = 32.0
-#: If the typical error of the steps is above this, rounding contributes nothing to the difference.
-_LARGEST_SMOOTH_ERROR = 1e-10
+#: The growth of errors is taken from differences of computations whose coarser one has a typical error above this.
+#: Below it the difference may be rounding, and its ratio to the typical error says nothing of growth.
+_ROUNDING_NEGLIGIBLE_ABOVE = 1e-10
 #: Stated relative error above which the result is worth nothing.
 _LARGEST_USEFUL_ERROR = 0.05
 #: What is stated then, relative to the largest displacement: two motions that have parted differ by at most twice it.
@@ -46,9 +47,9 @@ def relative_changes(now: np.ndarray, before: np.ndarray) -> np.ndarray:
     return np.divide(change, now, out=np.where(change > 0.0, np.inf, 0.0), where=now > 0.0)
 
 
-def force_differences(now: np.ndarray, before: np.ndarray, jumps: bool) -> np.ndarray:
-    """Relative changes (3,) of a run's largest forces, with the factor of caution; `jumps`: whether forces jump."""
-    return (RUN_FORCES_THAT_JUMP if jumps else RUN_FORCES) * relative_changes(now, before)
+def force_differences(now: np.ndarray, before: np.ndarray, forces_jump: bool) -> np.ndarray:
+    """Relative changes (3,) of a run's largest forces, with the factor of caution for forces that jump or do not."""
+    return (RUN_FORCES_THAT_JUMP if forces_jump else RUN_FORCES) * relative_changes(now, before)
 
 
 def or_whole_motion(stated: np.ndarray) -> np.ndarray:
@@ -68,7 +69,8 @@ class Computations:
       - the difference of the last two, times a factor;
       - the previous difference, reduced by the method's order, or with error control by the ratio of the tolerances;
       - the typical error of a method with such steps;
-      - the rounding of the steps, times the largest growth of errors that any of the computations showed;
+      - the rounding of the steps, times the largest growth of errors that any of the computations showed; no growth is
+        taken from a computation whose typical error is 1e-10 or less, and without any the term is 0;
       - for the largest forces, the error at jumps (`jump_errors`).
     The first quantity determines how errors grow.
     """
@@ -108,7 +110,7 @@ class Computations:
 
     def _see_growth(self, coarser: Setting, difference: float) -> None:
         typical = typical_error(coarser)
-        if typical > _LARGEST_SMOOTH_ERROR:
+        if typical > _ROUNDING_NEGLIGIBLE_ABOVE:
             self.growth = max(self.growth, difference / typical)
 
     def _falls(self, coarser: Setting, finer: Setting) -> float:

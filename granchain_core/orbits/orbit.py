@@ -93,7 +93,7 @@ class Orbit(Labelled):
 
     @property
     def changes(self) -> np.ndarray:
-        """The former name of `contact_events`."""
+        """The older name of `contact_events`."""
         return self.contact_events
 
     @functools.cached_property
@@ -192,7 +192,7 @@ class Orbit(Labelled):
 
 def periodic_orbit(scene: Scene, period: int | None = None, start: State | None = None, observer: bool = False,
                    stop: Stop | None = None) -> Orbit:
-    """A periodic orbit, stable or not, by Newton's method; `orbit` and `periodic_orbit` are the same function.
+    """A periodic orbit, stable or not, by Newton's method.
 
     Its Floquet multipliers are the eigenvalues of the map's derivative, computed with the orbit (docs/orbits.md).
 

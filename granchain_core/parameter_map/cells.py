@@ -98,6 +98,12 @@ class Diagram(Labelled):
         """The chain."""
         return self.grid.scene
 
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """Both knobs, and the drive amplitude where it follows the frequency."""
+        both = (self.grid.x.knob, self.grid.y.knob)
+        return both if self.grid.amplitude is None else (*both, "A0")
+
     def column(self, name: str) -> np.ndarray:
         """One entry of all cells as an array (y, x)."""
         return self.cells[name].reshape(self.grid.shape)

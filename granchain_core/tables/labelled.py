@@ -43,9 +43,14 @@ class Labelled:
         """What is worth reading first, in short sentences with units and errors."""
         raise NotImplementedError
 
+    @property
+    def varied(self) -> tuple[str, ...]:
+        """The knobs that the result varies; their values in the scene were not used."""
+        return ()
+
     def heading(self) -> str:
-        """What it is, and of which scene."""
-        return f"{type(self).__name__} of {scene_in_words(self.scene)}"
+        """What it is, and of which scene, without the knobs that it varies."""
+        return f"{type(self).__name__} of {scene_in_words(self.scene, self.varied)}"
 
     def to_xarray(self, table: str = "") -> xarray.Dataset:
         """A table as a dataset of xarray, the main one if none is named.

@@ -25,11 +25,21 @@ def as_html(heading: str, sentences: Sequence[str], tables: Sequence[Table]) -> 
             f"<details><summary>names and units</summary>{held}</details></div>")
 
 
-def scene_in_words(scene: Scene) -> str:
-    """A scene, and the knobs that are not those of its preset."""
-    changed = [f"{name} = {value:g}{_unit(name)}" if isinstance(value, float | int) else f"{name} = {value}"
-               for name, value in {"f": scene.f, **scene.differences()}.items()]
-    return f"{scene.name}: {', '.join(changed)}"
+def scene_in_words(scene: Scene, varied: Sequence[str] = ()) -> str:
+    """A scene, its frequency and the knobs that are not those of its preset, all without those that are `varied`.
+
+    Without a drive f is no frequency of the motion, and 1/f is the unit of the recorded time.
+    """
+    knobs = {name: value for name, value in {"f": scene.f, **scene.differences()}.items() if name not in varied}
+    if "k" in varied or "kappa" in varied:  # one quantity with two names
+        knobs.pop("k", None)
+    changed = [_knob(name, value) if name != "f" or scene.is_driven else f"time 1/f = {1.0 / value:.4g} s"
+               for name, value in knobs.items()]
+    return f"{scene.name}: {', '.join(changed)}" if changed else scene.name
+
+
+def _knob(name: str, value: float | str) -> str:
+    return f"{name} = {value:g}{_unit(name)}" if isinstance(value, float | int) else f"{name} = {value}"
 
 
 def _unit(knob: str) -> str:

@@ -14,7 +14,7 @@ import scipy.integrate
 
 import granchain_core.accuracy
 from app.cli import main
-from granchain_core import Cancelled, NumbersFailed, scene, settled
+from granchain_core import Cancelled, NumbersFailed, scene, settle
 from granchain_core.accuracy import Row, WorkPrecision, cheapest, compared_methods, work_precision
 from granchain_core.accuracy import work_precision as entry
 from granchain_core.accuracy.compared_methods import measured_settings
@@ -192,7 +192,7 @@ def test_the_naive_force_is_wrong_and_names_where_it_blows_up() -> None:
 
 def test_an_error_of_the_force_is_told_of_the_largest_pulse_and_the_pulse_is_shown() -> None:
     """At 1130 Hz the wall is pressed hard once in three drive periods."""
-    found, whole = lesson(scene("sec2").evolve(f=1130.0), Stop()), settled(scene("sec2").evolve(f=1130.0)).run
+    found, whole = lesson(scene("sec2").evolve(f=1130.0), Stop()), settle(scene("sec2").evolve(f=1130.0)).run
     assert np.abs(found.force).max() == pytest.approx(whole.max_output_force, rel=0.1)  # ten periods from rest
     for one in found.drawn:
         if not one.failure:

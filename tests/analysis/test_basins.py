@@ -23,6 +23,7 @@ def test_each_start_ends_where_its_cell_says() -> None:
     assert [(one.regime.name, one.regime.period) for one in found.attractors] == [("periodic", 4), ("quasi-periodic", None)]
     # the file states the share of the plane that leads to each attractor; no random state was drawn, so it has no error
     table = found.to_xarray("attractors")
+    assert set(table["share_of"].values) == {"starts of the plane"}
     assert table["share"].values.tolist() == found.shares.tolist() and np.isnan(table["share_error"]).all()
     cells = [(0, 0), (0, 1), (1, 1), (1, 2)]
     assert {int(found.number[cell]) for cell in cells} == {0, 1}

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Run, pulse, resonance_curve, run, scene, settle
-from granchain_core.analysis.pulse import DISCRETE, solitary_speed
+from granchain_core.analysis.pulse import CONTINUUM, solitary_speed
+from granchain_core.scene.hertz import SOLITARY_BY_FORCE, SOLITARY_BY_VELOCITY
 
 #: Samples in the time 1/f; the pulse takes some 70 of them to pass a bead.
 SAMPLES = 4000
@@ -38,10 +39,28 @@ def traveling_wave() -> tuple[np.ndarray, np.ndarray]:
     return xi, np.maximum(overlap, 0.0) ** 1.5
 
 
-def test_the_discrete_constant_is_that_of_the_traveling_wave() -> None:
-    """V = 1 = c F^{1/6}."""
-    _, force = traveling_wave()
-    assert force.max() ** (-1 / 6) == pytest.approx(DISCRETE, abs=1e-7)  # the constant has seven digits
+def test_both_constants_are_those_of_the_traveling_wave() -> None:
+    """V = 1 = c F^{1/6} = c' v^{1/5}; by Newton's law v(ξ) is the mean force between ξ − 1/2 and ξ + 1/2."""
+    xi, force = traveling_wave()
+    velocity = np.fft.irfft(np.sinc(np.fft.rfftfreq(len(xi), xi[1] - xi[0])) * np.fft.rfft(force), len(xi))
+    assert force.max() ** (-1 / 6) == pytest.approx(SOLITARY_BY_FORCE, abs=1e-7)  # the constants have seven digits
+    assert velocity.max() ** (-1 / 5) == pytest.approx(SOLITARY_BY_VELOCITY, abs=1e-7)
+
+
+def test_nesterenkos_wave_has_both_closed_forms() -> None:
+    """V = K = m = 1: cos⁴ with the largest overlap (5/4)², the force (5/4)³ and v = V δ."""
+    overlap = (5.0 / 4.0) ** 2
+    assert overlap ** (-1.5 / 6) == pytest.approx(CONTINUUM)
+    assert overlap ** (-1 / 5) == pytest.approx(0.64**0.2)
+
+
+def test_a_speed_has_its_unit_in_its_name() -> None:
+    """Both names with a unit differ by the distance of the beads; the older names are the same numbers."""
+    found = pulse(recorded("impact"))
+    radius = found.scene.beads[0].radius
+    np.testing.assert_allclose(found.speed_m_s[1:-1], 2.0 * radius * found.speed_beads_s[1:-1])
+    np.testing.assert_array_equal(found.speed, found.speed_beads_s)
+    np.testing.assert_array_equal(found.speed_in_metres, found.speed_m_s)
 
 
 def test_the_pulse_of_an_impact_is_the_solitary_wave() -> None:
@@ -50,13 +69,13 @@ def test_the_pulse_of_an_impact_is_the_solitary_wave() -> None:
     middle = slice(14, 20)
     law = [solitary_speed(found.run.scene, float(force)) for force in found.force]
     # behind fifteen beads the wave is the solitary one to 1e-4 in force; parabolas through the samples add 1e-6
-    np.testing.assert_allclose(found.speed[middle], law[middle], rtol=1e-4)
+    np.testing.assert_allclose(found.speed_beads_s[middle], law[middle], rtol=1e-4)
     xi, force = traveling_wave()
     above = xi[force > 0.5 * force.max()]
     # 2048 points over 16 beads: the width is known to one point
     np.testing.assert_allclose(found.width[middle], above[-1] - above[0], atol=0.01)
     contact = recorded("impact").force[:, 17]
-    place = (recorded("impact").time - found.time[16]) * found.speed[16]
+    place = (recorded("impact").time - found.time[16]) * found.speed_beads_s[16]
     near = np.abs(place) < 2.0
     np.testing.assert_allclose(contact[near] / found.force[16], np.interp(place[near], xi, force / force.max()),
                                atol=1e-3)  # straight lines between points 1/128 bead apart: h²/8 F'' = 1e-5; speed 1e-4
@@ -67,7 +86,7 @@ def test_its_speed_grows_as_the_fifth_root_of_the_strike_and_its_force_as_the_po
     fast = scene("impact").evolve(strike=0.32, f=500.0, A0=3e-6)
     one, other = pulse(recorded("impact")), pulse(run(fast, periods=0, record=1, samples=SAMPLES))
     # the equations scale exactly; both runs are within 1e-6 of the truth
-    np.testing.assert_allclose(other.speed[1:-1], 2.0 * one.speed[1:-1], rtol=1e-5)
+    np.testing.assert_allclose(other.speed_beads_s[1:-1], 2.0 * one.speed_beads_s[1:-1], rtol=1e-5)
     np.testing.assert_allclose(other.force, 64.0 * one.force, rtol=1e-5)
 
 
@@ -153,14 +172,14 @@ def test_the_wave_from_the_wall_is_not_the_pulse(name: str, knobs: dict[str, flo
     comes back before the contact has opened is larger; with it, pulses ran backwards."""
     found = pulse(run(scene(name).evolve(**knobs), periods=0, record=1, samples=SAMPLES))
     assert found.time[first - 1 : first - 1 + len(times)] == pytest.approx(times, rel=6e-3)
-    assert found.speed[1:-1].min() > 0.0 and found.width[1:-1].min() > 0.0
+    assert found.speed_beads_s[1:-1].min() > 0.0 and found.width[1:-1].min() > 0.0
 
 
 def test_a_ripple_before_the_pulse_of_a_pressed_chain_is_not_the_pulse() -> None:
     """A bead that is thrown with 1 m/s at beads that 0.1 N presses: the pulse is nearly the solitary wave."""
     chain = scene("impact").evolve(F0=0.1, strike=1.0, N=20)
     pressed, free = (pulse(run(chain.evolve(F0=F0), periods=0, record=1, samples=SAMPLES)) for F0 in (0.1, 0.0))
-    assert pressed.force == pytest.approx(free.force, rel=0.01) and pressed.speed[1:-1] == pytest.approx(free.speed[1:-1], rel=0.01)
+    assert pressed.force == pytest.approx(free.force, rel=0.01) and pressed.speed_beads_s[1:-1] == pytest.approx(free.speed_beads_s[1:-1], rel=0.01)
 
 
 def test_coarse_samples_are_told_by_the_error() -> None:

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, NumbersFailed, Scene, State, scene, settled
+from granchain_core import BadInput, NumbersFailed, Scene, State, scene, settle
 from granchain_core.bifurcation_curves import bifurcation_curves
 from granchain_core.bifurcation_curves.continuation import BifurcationPoint, bifurcation_point, points_of_curve
 from granchain_core.orbits import continue_branch, periodic_orbit
@@ -43,8 +43,8 @@ def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, Bifurcati
 
 def test_beyond_a_period_doubling_the_period_is_two(points: dict[str, BifurcationPoint]) -> None:
     at = points["period_doubling"].x
-    assert settled(scene("sec2").evolve(f=at - 3.0)).regime.period == 1
-    assert settled(scene("sec2").evolve(f=at + 3.0)).regime.period == 2
+    assert settle(scene("sec2").evolve(f=at - 3.0)).regime.period == 1
+    assert settle(scene("sec2").evolve(f=at + 3.0)).regime.period == 2
 
 
 @pytest.mark.parametrize(("away", "name"), [(-8.0, "quasi-periodic"), (15.0, "periodic")])
@@ -54,7 +54,7 @@ def test_on_one_side_of_a_neimark_sacker_point_the_motion_is_quasi_periodic(
     orbit = periodic_orbit(shown, 1)
     assert orbit.stable == (name == "periodic")
     beside = State(1.02 * orbit.state.displacement, orbit.state.velocity)
-    assert settled(shown, beside).regime.name == name
+    assert settle(shown, beside).regime.name == name
 
 
 def test_beyond_a_fold_there_is_no_such_orbit(points: dict[str, BifurcationPoint]) -> None:

@@ -16,8 +16,9 @@ import h5py
 import pytest
 
 from app.cli import main
-from granchain_core import Curve
+from granchain_core import Curve, bifurcation_curves
 from granchain_core.steady.curve.request import CurveRequest
+from granchain_core.store.diagrams import load_diagram
 
 SHORT = ["--periods", "2", "--record", "1", "--samples", "8"]
 
@@ -30,6 +31,37 @@ def test_run_prints_one_json_object_and_explains_on_stderr(capsys: pytest.Captur
     assert data["evidence"]["distance"] <= 1e-6 and data["evidence"]["window_ratios"] is None
     assert data["max_output_force_elastic"] == pytest.approx(0.62, rel=0.01)  # docs/lecture.md, `fig3a`
     assert "absent, with no code and no array: tension cut, foundation, preload" in err
+
+
+@pytest.mark.parametrize(("words", "said"), [
+    (["curve", "sec2", "--from", "2000", "--to", "2010", "--points", "1"], "points that a batch computes"),
+    (["map", "sec2", "--x", "f=2000:2010:2", "--y", "A0=5e-7:6e-7:2"], "cells that a batch computes")])
+def test_an_accuracy_that_a_batch_does_not_use_is_said(words: list[str], said: str, tmp_path: Path,
+                                                       capsys: pytest.CaptureFixture[str]) -> None:
+    for changed in ([], ["accuracy=1e-8"]):
+        out = tmp_path / f"a{len(changed)}.h5"
+        assert main([*words, "--set", "N=2", *(word for one in changed for word in ("--set", one)), "--out", str(out)]) == 0
+        assert (f"accuracy = 1e-08 does not change {said}" in capsys.readouterr().err) == bool(changed)
+
+
+def test_a_map_has_its_bifurcation_curves(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As numbers, in words and in the picture; without an option nothing of it, and with tension cut a sentence."""
+    words = ["map", "sec2", "--set", "N=3", "--x", "f=1860:1900:2", "--y", "A0=4.5e-7:5e-7:2", "--out", str(tmp_path / "map.h5")]
+    picture = tmp_path / "map.html"
+    assert main([*words, "--json"]) == 0
+    plain = json.loads(capsys.readouterr().out)
+    assert main([*words, "--json", "--bifurcations", "--resume", "--picture", str(picture)]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert set(told) - set(plain) == {"bifurcations"} and told["computed"] == 0
+    curve, = told["bifurcations"]
+    found = bifurcation_curves(load_diagram(tmp_path / "map.h5"))[0]
+    assert (curve["kind"], curve["period"], curve["x"]) == ("period_doubling", 1, [point.x for point in found.points])
+    assert [complex(*mu) for mu in curve["multiplier"]] == [point.multiplier for point in found.points]
+    assert "bifurcation curve" in picture.read_text(encoding="utf-8")
+    assert main([*words, "--bifurcations", "--resume"]) == 0
+    assert found.sentence("f", "A0") in capsys.readouterr().out.splitlines()
+    assert main([*words, "--bifurcations", "--set", "tension=cut"]) == 2
+    assert "tension = cut" in capsys.readouterr().err
 
 
 def test_curve_prints_what_it_writes_into_its_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

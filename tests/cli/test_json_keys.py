@@ -38,6 +38,8 @@ EXAMPLES = {
     "branch, amplitude": ["branch", "sec2", "--set", "N=2", "--knob", "f", "--from", "2000", "--to", "700",
                           "--amplitude", "constant-velocity=3e-3"],
     "map": ["map", *_SMALL, "--x", "f=1900:2000:2", "--y", "A0=1e-7:2e-7:2", "--out", "map.h5"],
+    "map, bifurcations": ["map", "sec2", "--set", "N=3", "--x", "f=1860:1900:2", "--y", "A0=4.5e-7:5e-7:2", "--out", "map.h5",
+                          "--bifurcations"],
     "observe": ["observe", *_SMALL, "--input", "force.csv"],
     "spectrum": ["spectrum", *_SMALL, "--samples", "32"],
     "lyapunov": ["lyapunov", *_SMALL, "--periods", "20"],

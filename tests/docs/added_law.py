@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import LiveChain, resonance_curve, run, scene, settled
+from granchain_core import LiveChain, resonance_curve, run, scene, settle
 from granchain_core.integrate import Engine, Setting
 from granchain_core.kernels.dop853.force_kinks import scaled_force
 from granchain_core.laws import LAWS
@@ -17,7 +17,7 @@ REFINED = (1, 2, 4, 8, 16)
 
 def test_every_way_to_the_steady_state_gives_the_same_state() -> None:
     """The adaptive method, a batch, and the fixed-step method after 200 periods; displacements at phase 0."""
-    orbit = settled(CHAIN).state.displacement
+    orbit = settle(CHAIN).state.displacement
     live = LiveChain(CHAIN)
     near = {"rtol": 0.0, "atol": 1e-4 * CHAIN.A0}
     np.testing.assert_allclose(live.advance(200 * live.samples).displacement[-1], orbit, **near)

@@ -1,4 +1,4 @@
-"""Every method converges at least with the order that theory gives it, regime by regime, and reaches what it says.
+"""Every method has at least the order of theory, for every smoothness of the forces, and reaches what it says.
 
 A measured order is the slope of a straight line through log error over log step, over at least three decades of error
 where the method is of order 2 or more; errors of several scenes are averaged (geometric mean), since beside contact
@@ -23,7 +23,7 @@ TOLERANCES = 10.0 ** np.arange(-4, -12.5, -1)
 TOLERANCE = 0.2
 _FREQUENCIES = (340.0, 470.0, 615.0, 900.0, 1130.0, 1576.0)
 #: What the right-hand side is like: never a contact that opens; contacts without damping; with each damping law; cut.
-REGIMES = {
+SMOOTHNESS = {
     "closed": {"F0": 5.0}, "none": {"dissipation": "none"}, **{law: {"dissipation": law} for law in LAWS},
     "cut": {"tension": "cut"},
 }
@@ -51,53 +51,51 @@ LOST = {"rk4": 3.0, "rk4-naive": 2.0}
 
 
 @functools.cache
-def motion(regime: str, f: float, setting: Setting) -> tuple[np.ndarray, int]:
+def motion(smoothness: str, f: float, setting: Setting) -> tuple[np.ndarray, int]:
     """Eight samples a period in scaled units, and the steps they took.
 
     The adaptive method carries the energy account along, as in a run: these kernels are compiled for other tests too.
     """
-    engine = Engine(scene("sec2").evolve(f=f, **REGIMES[regime]), setting, 8, account=METHODS[setting.method].adaptive)
+    engine = Engine(scene("sec2").evolve(f=f, **SMOOTHNESS[smoothness]), setting, 8, account=METHODS[setting.method].adaptive)
     return engine.record(8 * PERIODS).displacement, engine.counts.steps
 
 
-def frequencies(regime: str) -> tuple[float, ...]:
+def frequencies(smoothness: str) -> tuple[float, ...]:
     """Without damping only the fast drives, whose motion has not yet become sensitive after three periods."""
-    return _FREQUENCIES[2:] if regime == "none" else _FREQUENCIES
+    return _FREQUENCIES[2:] if smoothness == "none" else _FREQUENCIES
 
 
-def errors(regime: str, settings) -> np.ndarray:
+def errors(smoothness: str, settings) -> np.ndarray:
     """(settings, scenes): largest relative displacement error, against the adaptive method at 1e-14 per step."""
-    found = np.empty((len(settings), len(frequencies(regime))))
-    for j, f in enumerate(frequencies(regime)):
-        true = motion(regime, f, Setting("dop853", tolerance=1e-14))[0]
+    found = np.empty((len(settings), len(frequencies(smoothness))))
+    for j, f in enumerate(frequencies(smoothness)):
+        true = motion(smoothness, f, Setting("dop853", tolerance=1e-14))[0]
         for i, setting in enumerate(settings):
-            found[i, j] = np.abs(motion(regime, f, setting)[0] - true).max() / np.abs(true).max()
+            found[i, j] = np.abs(motion(smoothness, f, setting)[0] - true).max() / np.abs(true).max()
     return found
 
 
 @functools.cache
-def order(method: str, regime: str) -> float:
+def order(method: str, smoothness: str) -> float:
     """Slope of log error over log step: 1.5 decades of steps, or eight of the adaptive method's tolerance."""
     if METHODS[method].adaptive:
-        return adaptive_order(method, regime)
-    found = errors(regime, [Setting(method, refine=r) for r in REFINED])
+        return adaptive_order(method, smoothness)
+    found = errors(smoothness, [Setting(method, refine=r) for r in REFINED])
     return float(-np.polyfit(np.log(REFINED), np.log(found).mean(axis=1), 1)[0])
 
 
-def adaptive_order(method: str, regime: str) -> float:
+def adaptive_order(method: str, smoothness: str) -> float:
     """Slope of log error over log mean step, eight decades of tolerance."""
     settings = [Setting(method, tolerance=t) for t in TOLERANCES]
-    steps = np.array([[motion(regime, f, s)[1] for f in frequencies(regime)] for s in settings])
-    error = np.log(errors(regime, settings)).mean(axis=1)
+    steps = np.array([[motion(smoothness, f, s)[1] for f in frequencies(smoothness)] for s in settings])
+    error = np.log(errors(smoothness, settings)).mean(axis=1)
     return float(-np.polyfit(np.log(steps).mean(axis=1), error, 1)[0])
 
 
-@pytest.mark.parametrize(("method", "regime"), THEORY)
-def test_every_method_has_its_order_in_every_regime(method, regime):
+@pytest.mark.parametrize(("method", "smoothness"), THEORY)
+def test_every_method_has_its_order_for_every_smoothness(method, smoothness):
     """At least the theory's, less a fifth for the fit."""
-    found = order(method, regime)
-    print(f"{method}, {regime}: {found:.2f}")
-    assert found >= THEORY[method, regime] - TOLERANCE
+    assert order(method, smoothness) >= THEORY[method, smoothness] - TOLERANCE
 
 
 @pytest.mark.parametrize(("method", "most"), LOST.items())
@@ -109,10 +107,10 @@ def test_contact_events_take_orders_from_a_fixed_step(method, most):
 @pytest.mark.parametrize("method", METHODS)
 def test_the_table_of_methods_claims_no_more_than_is_measured(method):
     """Its orders are not above those measured where no contact opens, across contact events and with a tension cut."""
-    with_events = [regime for name, regime in THEORY if name == method and regime not in ("closed", "cut")]
+    with_events = [smoothness for name, smoothness in THEORY if name == method and smoothness not in ("closed", "cut")]
     assert with_events, f"add rows of {method} to THEORY"
     assert METHODS[method].observed_smooth <= order(method, "closed") + TOLERANCE
-    assert METHODS[method].observed_order <= min(order(method, regime) for regime in with_events) + TOLERANCE
+    assert METHODS[method].observed_order <= min(order(method, smoothness) for smoothness in with_events) + TOLERANCE
     if (method, "cut") in THEORY:
         assert METHODS[method].observed_with_cut <= order(method, "cut") + TOLERANCE
 
@@ -120,15 +118,15 @@ def test_the_table_of_methods_claims_no_more_than_is_measured(method):
 @pytest.mark.parametrize("method", METHODS)
 def test_the_table_of_methods_has_the_orders_of_theory(method):
     """Where no contact opens, and the least of all damping laws across contact events."""
-    with_events = [found for (name, regime), found in THEORY.items() if name == method and regime in LAWS]
+    with_events = [found for (name, smoothness), found in THEORY.items() if name == method and smoothness in LAWS]
     assert METHODS[method].order == THEORY[method, "closed"]
     assert METHODS[method].order_at_events == min(with_events)
 
 
-@pytest.mark.parametrize("regime", [r for r in REGIMES if r not in ("none", "cut")])
-def test_error_of_the_adaptive_method_follows_its_tolerance(regime):
+@pytest.mark.parametrize("smoothness", [one for one in SMOOTHNESS if one not in ("none", "cut")])
+def test_error_of_the_adaptive_method_follows_its_tolerance(smoothness):
     """At every tolerance the error stays below a thousand times it: each of some hundred events and steps may add one
     tolerance, and the sensitivity of these motions is below 10 (reference.npz). Without damping, and where a force is
     cut, sensitivities are thousands."""
-    found = errors(regime, [Setting("dop853", tolerance=t) for t in TOLERANCES])
+    found = errors(smoothness, [Setting("dop853", tolerance=t) for t in TOLERANCES])
     assert (found.max(axis=1) < 1000 * TOLERANCES).all()

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import resonance_curve, run, scene, settled
+from granchain_core import resonance_curve, run, scene, settle
 from granchain_core.orbits import periodic_orbit
 from granchain_core.scaling import scale_chain
 from granchain_core.steady.returns import sizes
@@ -61,7 +61,7 @@ def test_an_orbit_of_a_part_of_the_period_is_told_as_that() -> None:
     """Newton's method on four periods of a period-1 motion finds that orbit; its multipliers are those of one period.
     """
     chain = scene("sec2").evolve(f=340.0)
-    x = FiniteDifferenceMap(chain, 4).inner(scale_chain(chain).from_si(settled(chain).state))
+    x = FiniteDifferenceMap(chain, 4).inner(scale_chain(chain).from_si(settle(chain).state))
     found = orbit_of(chain, 4, x, Stop())
     assert found is not None and found.period == 1 and found.modulus == pytest.approx(0.361, abs=1e-3)
 
@@ -92,7 +92,7 @@ def test_a_closed_curve_beside_a_stable_orbit_is_not_that_orbit() -> None:
 def test_one_motion_has_one_name_from_curve_and_page(f: float) -> None:
     """|μ| = 0.9995 and 0.9987: the orbit is claimed by both, with its multiplier, and with the same force."""
     chain = scene("sec2").evolve(f=f)
-    pictured, drawn = settled(chain), resonance_curve(chain, [f]).points[0]
+    pictured, drawn = settle(chain), resonance_curve(chain, [f]).points[0]
     assert (pictured.regime.name, pictured.regime.period) == (drawn.regime.name, drawn.regime.period) == ("periodic", 1)
     assert pictured.regime.multiplier == pytest.approx(
         float(np.abs(periodic_orbit(chain, 1, pictured.state).multipliers[0])), abs=2e-5)

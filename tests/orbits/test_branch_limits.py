@@ -26,6 +26,7 @@ def stands(shown: Scene, found: Branch) -> None:
     """The branch has reached its end, is right everywhere, and its last orbit is that of a search of its own."""
     last = found.points[-1]
     assert found.arms[0].ended == "reached" and last.knob == found.axis.end and check_branch(found) == []
+    assert found.summary()[1] == found.arms[0].reason  # which says "reached" itself
     direct = periodic_orbit(shown.evolve(**{found.axis.knob: last.knob}), 1, found.state(last))
     np.testing.assert_allclose(direct.state.displacement, found.state(last).displacement, rtol=1e-8, atol=1e-18)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, NumbersFailed, Scene, State, run, scene, settled
+from granchain_core import BadInput, NumbersFailed, Scene, State, run, scene, settle
 from granchain_core.orbits import (
     Branch,
     BranchPoint,
@@ -47,7 +47,7 @@ def came_to(branch: Branch, point: BranchPoint, disturbed: float = 1e-4) -> tupl
     """Relative distance in output force from the orbit to where the slightly disturbed chain settles; and |μ|."""
     state, shown = branch.state(point), branch.axis.scene_at(point.knob).evolve(accuracy=_ASKED)
     start = State(state.displacement * (1.0 + disturbed), state.velocity)
-    found = settled(shown, start).run.max_output_force_elastic
+    found = settle(shown, start).run.max_output_force_elastic
     return abs(found / point.max_output_force_elastic - 1.0), abs(point.multipliers[0])
 
 
@@ -87,8 +87,8 @@ def test_the_folds_are_where_up_and_down_sweeps_jump(folded: Branch) -> None:
     upper = the(folded, "fold")
     sweep = continue_branch(scene("sec2"), "f", 340.0, upper.interval[0] - 0.2, 1)
     edge, state = sweep.points[-1], sweep.state(sweep.points[-1])
-    inside = settled(sweep.axis.scene_at(edge.knob), state).run.max_output_force_elastic
-    beyond = settled(sweep.axis.scene_at(upper.interval[1] + 0.2), state).run.max_output_force_elastic
+    inside = settle(sweep.axis.scene_at(edge.knob), state).run.max_output_force_elastic
+    beyond = settle(sweep.axis.scene_at(upper.interval[1] + 0.2), state).run.max_output_force_elastic
     assert inside == pytest.approx(edge.max_output_force_elastic, rel=1e-5)
     assert beyond != pytest.approx(inside, rel=5e-3)
     # and the other stable piece, behind the second fold, is there at the same frequency: hysteresis
@@ -123,7 +123,7 @@ def test_a_doubling_has_a_doubled_branch_that_leads_to_the_next_one(doubling: Br
     with pytest.raises(BadInput, match="merges with that of half its period"):
         switch_to_doubled(found, last)
     middle = min(found.points, key=lambda p: abs(p.knob - 247.0))
-    settled_there = settled(found.axis.scene_at(middle.knob).evolve(accuracy=_ASKED))
+    settled_there = settle(found.axis.scene_at(middle.knob).evolve(accuracy=_ASKED))
     assert settled_there.regime.period == 2
     assert settled_there.run.max_output_force_elastic == pytest.approx(middle.max_output_force_elastic, rel=1e-5)
 

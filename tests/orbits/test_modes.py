@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, Cancelled, LiveChain, NumbersFailed, Scene, State, scene, settled
+from granchain_core import BadInput, Cancelled, LiveChain, NumbersFailed, Scene, State, scene, settle
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import mode, orbit_section
 from granchain_core.orbits.search import least_period_of, search_orbit
@@ -101,7 +101,7 @@ def test_a_section_grows_and_earlier_points_stay() -> None:
 
 
 def test_a_section_starts_at_the_given_state() -> None:
-    state = settled(scene("sec2")).state
+    state = settle(scene("sec2")).state
     *_, found = iter_section(scene("sec2"), state, 5)
     points = found.points(3, 0)
     assert (np.ptp(points, axis=0) < 1e-3 * np.abs(points).max(axis=0)).all()  # already on the orbit
@@ -114,7 +114,7 @@ def test_long_chains_keep_fewer_periods() -> None:
 
 def test_a_search_finds_the_unstable_orbit_that_chaos_passes_by() -> None:
     shown = scene("rig").evolve(f=140.0)
-    state = settled(shown).state
+    state = settle(shown).state
     found = search_orbit(shown, 1, state, section("rig", 900, f=140.0).strobes()[400:])
     assert not found.stable and found.residual < 1e-9
     assert orbit_section(found).points(3, 0)[0] == pytest.approx([found.state.displacement[2], found.state.velocity[2]], rel=1e-6)

@@ -11,6 +11,7 @@ from bokeh.models import LogScale
 from app.pictures.diagram import CATEGORIES, category, cell_rows, cell_words, diagram, nothing, scale_models
 from app.pictures.theme import THEMES
 from granchain_core import scene
+from granchain_core.bifurcation_curves import BifurcationCurve, BifurcationPoint
 from granchain_core.parameter_map import Axis, Diagram, Grid
 from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
 
@@ -41,6 +42,15 @@ def test_cells_meet_half_way_and_coarse_ones_stand_for_those_around_them() -> No
     assert isinstance(plot.y_scale, LogScale) and not isinstance(plot.x_scale, LogScale)
     assert plot.yaxis[0].axis_label == "drive amplitude A₀ (µm)"
     assert (plot.x_range.start, plot.x_range.end) == (1850.0, 2150.0)
+
+
+def test_bifurcation_curves_are_drawn_over_the_map_in_its_units() -> None:
+    points = [BifurcationPoint(1920.0, 1e-6, -1.0 + 0.0j, np.zeros(4)), BifurcationPoint(1980.0, 1e-5, -1.0 + 0.0j, np.zeros(4))]
+    plot = diagram(filled(0, 4), THEMES["light"], curves=[BifurcationCurve("period_doubling", 1, points)])
+    drawn = data(plot, "bifurcation curve")
+    assert drawn["x"] == [1920.0, 1980.0] and drawn["y"] == pytest.approx([1.0, 10.0])  # Hz, µm
+    assert drawn["tooltip"] == ["period doubling of period 1: f 1920 to 1980 Hz, A0 1e-06 to 1e-05 m, 2 points"] * 2
+    assert diagram(filled(0), THEMES["light"]).select_one({"name": "bifurcation curve"}) is None
 
 
 def test_only_what_is_computed_is_drawn() -> None:

@@ -23,6 +23,6 @@ def test_the_sentence_claims_no_more_than_the_periods_show() -> None:
     settled = Regime("periodic", 3, 0.54, 1e-8, 303)
     assert settled.sentence == "period 3, settled within 303 periods (contracts by 0.54 per 3 periods)"
     followed = replace(settled, followed=True, multiplier=0.995, periods_run=400)
-    assert followed.sentence == "period 3, followed to its orbit after 400 periods (|μ| 0.9950 per 3 periods)"
+    assert followed.sentence == "period 3, orbit found after 400 periods of approach (|μ| 0.9950 per 3 periods)"
     assumed = replace(followed, multiplier=None)  # by a batch, which computes no multiplier of it
-    assert assumed.sentence == "period 3, followed to its orbit after 400 periods"
+    assert assumed.sentence == "period 3, orbit found after 400 periods of approach"

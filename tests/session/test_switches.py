@@ -7,7 +7,7 @@ import pytest
 from app.session.energy_residual import with_account
 from app.session.session import Session
 from app.session.switches import ACCOUNT_SWITCH, SWITCHES, changes, present, variants
-from granchain_core import BadInput, scene, scene_names, settled
+from granchain_core import BadInput, scene, scene_names, settle
 from granchain_core.scaling import slots_of
 from granchain_core.stop import Stop
 from granchain_core.warm import structure
@@ -85,7 +85,7 @@ def test_slots_name_types_and_absences() -> None:
 
 
 def test_the_account_of_a_picture_closes() -> None:
-    picture = settled(scene("sec2").evolve(N=3, f=1000.0))
+    picture = settle(scene("sec2").evolve(N=3, f=1000.0))
     assert picture.run.energy_residual is None
     counted = with_account(picture, Stop())
     # the account is as good as the motion it is integrated with: a hundredth of the 1e-6 asked for

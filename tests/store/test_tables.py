@@ -83,6 +83,24 @@ def test_what_print_shows_is_the_summary_and_no_array(kind: str) -> None:
     assert shown == [result(kind).heading(), *(f"  {line}" for line in result(kind).summary())]
 
 
+#: Knobs that a result varies, and those that differ from the preset: only the latter are stated.
+HEADINGS = {
+    "Run": "Run of sec2: f = 2000 Hz, N = 2", "Curve": "Curve of sec2: N = 2", "Branch": "Branch of sec2: N = 2",
+    "Diagram": "Diagram of sec2: N = 2", "StrobeDiagram": "StrobeDiagram of sec2: N = 2",
+    "Pulse": "Pulse of sec2: time 1/f = 0.00125 s, N = 5, drive = rest, strike = 0.01 m/s",
+}
+
+
+@pytest.mark.parametrize("kind", HEADINGS)
+def test_a_heading_states_no_value_that_was_not_used(kind: str) -> None:
+    assert result(kind).heading() == HEADINGS[kind]
+
+
+def test_the_heading_of_a_fit_states_the_frequency_of_a_series_only() -> None:
+    assert "f = " not in result("Fit of features").heading() and "f = " not in result("Fit").heading()
+    assert result("Fit of a series").heading().startswith("Fit of sec2: f = 2000 Hz, ")
+
+
 @pytest.mark.parametrize("kind", RESULTS)
 def test_a_file_opens_in_xarray_as_to_xarray_gives_it(kind: str, tmp_path: Path) -> None:
     """Names, axes, units, long names and numbers of each table; the root has the same attributes."""

@@ -28,7 +28,7 @@ STEADY = (
            "a section that never comes back is called a closed curve", k.CLAIMS),
     Mutant("settled-error-without-distance", _RECORDING, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",
            "a settled picture states no error of its integration", k.SETTLED),
-    Mutant("settled-error-not-amplified", _RECORDING, "    integration /= 1.0 - motion.regime.contraction\n", "",
+    Mutant("settled-error-not-amplified", _RECORDING, "    integration /= 1.0 - motion.regime.assumed_contraction\n", "",
            "an error of the map is taken for one of its fixed point", k.CLAIMS_SETTLED),
     Mutant("relaxed-by-change", "steady/settling/refine_orbit.py", "unproved, bound = None, change * contraction / (1.0 - contraction)", "unproved, bound = None, change",
            "the converged orbit is left too early", k.CLAIMS_SETTLED),

@@ -70,6 +70,11 @@ class Branch(Labelled):
         return self.axis.scene
 
     @property
+    def varied(self) -> tuple[str, ...]:
+        """The knob, and the drive amplitude where it follows the frequency."""
+        return (self.axis.knob,) if self.axis.amplitude is None else (self.axis.knob, "A0")
+
+    @property
     def points(self) -> list[BranchPoint]:
         """All orbits in their order along the branch, from the end of the second arm to that of the first."""
         first = self.arms[0].points
@@ -104,7 +109,7 @@ class Branch(Labelled):
 
     def summary(self) -> list[str]:
         """How many orbits, where it ended, and the special points."""
-        ends = [f"{arm.ended}: {arm.reason}" if arm.reason else arm.ended for arm in self.arms if arm.ended]
+        ends = [arm.reason or arm.ended for arm in self.arms if arm.ended]
         kinds = [f"{one.kind.replace('_', ' ')} at {self.axis.text(one.knob)}"
                  + (f", {one.criticality_words()}" if one.normal_form and one.kind != "fold" else "")
                  for one in self.special if one.kind != "grazing"]
@@ -202,8 +207,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
                     start_state: State | None = None, both: bool = False, most_points: int = MOST_POINTS,
                     on_point: Callable[[Arm], None] | None = None, stop: Stop | None = None,
                     amplitude: Amplitude | None = None) -> Branch:
-    """Continue a periodic orbit over one knob by pseudo-arclength; `branch` and `continue_branch` are the same
-    function.
+    """Continue a periodic orbit over one knob by pseudo-arclength.
 
     An arm ends when the knob reaches `end` or returns to `start`, when the branch closes on itself or merges with one
     of half the period, or when it cannot be continued; `branch.arms[0].reason` says which (docs/branches.md).

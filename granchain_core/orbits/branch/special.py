@@ -1,9 +1,10 @@
 """Special points of a branch: changes between two neighbouring orbits, enclosed in a narrow interval of the knob.
 
-fold             the knob turns; a real multiplier passes +1
-period_doubling  a real multiplier passes −1; at the end of a doubled branch one of its own passes +1 (ends.py)
-neimark_sacker   a complex pair passes the unit circle
-grazing          a contact touches or separates once more, or once less, along the orbit
+fold             the knob turns; a real multiplier passes +1 (LP in AUTO, LPC in MatCont)
+period_doubling  a real multiplier passes −1 (PD); at the end of a doubled branch, where AUTO and MatCont have a branch
+                 point (BP, BPC), one of its own passes +1 (ends.py)
+neimark_sacker   a complex pair passes the unit circle (TR in AUTO, NS in MatCont)
+grazing          a contact touches or separates once more, or once less, along the orbit; not in AUTO and MatCont
 
 Each change lies between two computed orbits. For period doublings, Neimark–Sacker points and grazings the interval is
 that of the two orbits. The interval of a fold extends beyond them by a bound from both tangents, which assumes that the

@@ -137,7 +137,7 @@ class _JobsInBatch:
             return
         regime, maxima = job.coarse
         assert regime.period is not None
-        contraction = max(1e-3, regime.contraction)
+        contraction = max(1e-3, regime.assumed_contraction)
         self.batch.put_fine(member, job.scaled, job.y, FINER, regime.period, contraction, maxima)
 
     def step(self) -> SteadyState | None:

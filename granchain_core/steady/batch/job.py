@@ -104,7 +104,7 @@ class BatchJob:
         left = force_distances(farther, self.scaled, maxima, y)
         # coarse and fine run have each come to an orbit of their own: the change is the difference of these orbits
         errors = orbit_force_errors(relative_changes(maxima, before), left,
-                                    least=_FINER_ERROR / (1.0 - regime.contraction))
+                                    least=_FINER_ERROR / (1.0 - regime.assumed_contraction))
         if jumps.any() and (jumps > AT_A_JUMP * maxima[:2]).any():
             at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
             located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
@@ -127,7 +127,7 @@ class BatchJob:
         first = engine.largest_forces(regime.period)
         finer = Engine(self.scene, _LOCATED_SETTING.finer(), 1, stop=stop, scaled=self.scaled)
         finer.start(engine.state)
-        return finer.largest_forces(regime.period), errors_between(finer, first, regime.contraction, distance)
+        return finer.largest_forces(regime.period), errors_between(finer, first, regime.assumed_contraction, distance)
 
 
 def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:

@@ -115,6 +115,11 @@ class Curve(Labelled):
     amplitude: Amplitude | None = None
 
     @property
+    def varied(self) -> tuple[str, ...]:
+        """The frequency, and the drive amplitude where it follows the frequency."""
+        return ("f",) if self.amplitude is None else ("f", "A0")
+
+    @property
     def drive_amplitude(self) -> np.ndarray:
         """A0 at every point [m]."""
         return np.array([self.scene.A0 if self.amplitude is None else self.amplitude.at(p.frequency)

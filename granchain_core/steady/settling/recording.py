@@ -53,7 +53,7 @@ def recorded_orbit(motion: SettlingRun, samples: int, began: float, origin: str)
     fine.counts.array += motion.engine.counts.array + engine.counts.array + coarse.counts.array
     cost = Cost.of(time.perf_counter() - began, fine.counts, fine.setting.method)
     regime = replace(motion.regime, distance=distance)
-    integration /= 1.0 - motion.regime.contraction
-    forces = errors_between(fine, coarse.maxima, motion.regime.contraction, distance)
+    integration /= 1.0 - motion.regime.assumed_contraction
+    forces = errors_between(fine, coarse.maxima, motion.regime.assumed_contraction, distance)
     run = run_from(fine, record, 0, regime, integration + distance, cost, force_errors=forces, start=origin)
     return Settled(run, regime, start, preview=False, final=True)

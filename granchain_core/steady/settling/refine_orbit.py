@@ -46,7 +46,7 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
     """
     scene, n = settling.scene, settling.regime.period
     assert n is not None
-    contraction = settling.regime.contraction
+    contraction = settling.regime.assumed_contraction
     setting = orbit_setting(scene, accuracy, contraction)
     engine = Engine(scene, setting, samples, stop=settling.stop)
     engine.start(settling.engine.state)

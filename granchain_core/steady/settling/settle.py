@@ -76,7 +76,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
 
 def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMPLES,
            stop: Stop | None = None) -> Settled:
-    """The steady state of a chain; `settle` and `settled` are the same function.
+    """The steady state of a chain.
 
     The chain runs by fixed steps, or by dop853 where tension is cut, until the distance to the orbit is bounded or the
     regime is decided otherwise; a periodic orbit is then computed again with a setting fine enough for the accuracy
@@ -132,5 +132,5 @@ def _checked(scene: Scene, samples: int) -> int:
     return whole_number("samples =", samples, 1, MOST_SAMPLES)
 
 
-#: The longer name of `settle`.
+#: The older name of `settle`.
 settled = settle

@@ -43,7 +43,7 @@ def _on_its_orbit(settling: SettlingRun) -> SteadyState:
     finer = Engine(settling.scene, engine.setting.finer(), 1, stop=settling.stop)
     finer.start(engine.state)
     maxima = finer.largest_forces(n)
-    errors = errors_between(finer, before, settling.regime.contraction, distance)
+    errors = errors_between(finer, before, settling.regime.assumed_contraction, distance)
     return SteadyState(settling.scene, maxima * finer.scaled.scales.force, settling.regime, errors, finer.state)
 
 

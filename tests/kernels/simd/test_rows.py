@@ -1,4 +1,4 @@
-"""Vectors are rows of C-ordered arrays of float64: anything else is refused while a kernel is typed. And their minus."""
+"""Vectors are rows of C-ordered arrays of float64: anything else is refused while a kernel is typed; and minus of one."""
 
 from __future__ import annotations
 
