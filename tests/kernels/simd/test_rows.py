@@ -1,4 +1,4 @@
-"""Vectors are rows of C-ordered arrays of float64: anything else is refused while a kernel is typed; and minus of one."""
+"""Vectors are rows of C-ordered arrays of float64, all others are refused while a kernel is typed; minus a vector."""
 
 from __future__ import annotations
 
