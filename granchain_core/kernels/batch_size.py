@@ -40,6 +40,11 @@ def _host_features() -> str:
     return told
 
 
+def is_x86() -> bool:
+    """Whether kernels are compiled for an x86 of 64 bits, whatever its features: it has `rsqrtps`."""
+    return llvmlite.binding.get_process_triple().startswith("x86_64")
+
+
 def processor() -> str:
     """The processor that kernels are compiled for, as LLVM names it."""
     return numba.config.CPU_NAME or llvmlite.binding.get_host_cpu_name()

@@ -1,14 +1,15 @@
 """One Runge–Kutta step of several chains, one in each SIMD lane: four stages, each a sweep along the chains.
 
-In a sweep no contact waits for another one, so that the processor computes several at once. In batches of eight on
-AVX-512 one root in three is taken by the square-root instruction and the others by multiplications, which keeps both
-units busy; in all other batches the instruction takes every root.
+In a sweep no contact waits for another one, so that the processor computes several at once. The square-root instruction
+takes one root in three in batches of eight and two in three in batches of four; the others are taken by multiplications
+where simd/functions.py has them. That keeps both units of the processor busy.
 """
 
 from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+from ..batch_size import BATCH_SIZE
 from ..compiling.jit import by_slot, by_type_inlined, inline_llvm
 from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, unit_primitive
 from ..effects.preload import batch_overlap
@@ -16,7 +17,7 @@ from ..equations.body_forces import force_on_bead
 from ..forces.crossings import Approach, brief_touch, closing_rate
 from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, update_batch_peak
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
-from ..simd.vector import blank, load_batch, positive_mask, store
+from ..simd.vector import VECTOR_WIDTH, blank, load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
 
 
@@ -49,6 +50,10 @@ def by_divider(d):
 def by_multipliers(d):
     """√d, d > 0, by multiplications where simd/functions.py has them, else by the instruction."""
     return root_by_series(d)
+
+
+#: How the last of three roots is taken. The shares that measured best: docs/benchmarks.md, "The step of a batch".
+third_root = by_multipliers if BATCH_SIZE == VECTOR_WIDTH else by_divider
 
 
 @inline_llvm
@@ -142,7 +147,7 @@ def run_stage(values, stage, source, driver):
     for i in range(2, last - 2, 3):
         _, left = bead(values, by_divider, stage, source, i, left, False)
         _, left = bead(values, by_multipliers, stage, source, i + 1, left, False)
-        _, left = bead(values, by_multipliers, stage, source, i + 2, left, False)
+        _, left = bead(values, third_root, stage, source, i + 2, left, False)
     for i in range(max(2, last - (last - 2) % 3), last):
         _, left = bead(values, by_divider, stage, source, i, left, False)
     v_last, left = bead(values, by_divider, stage, source, last, left, True)

@@ -1,28 +1,58 @@
-"""The root of an overlap in batches, which AVX-512 takes from 14 bits and a series, against the square root."""
+"""The root of an overlap in batches, which x86 takes from some bits of an inverse root and a series."""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.simd.functions import root_by_series
-from granchain_core.kernels.simd.vector import VECTOR_WIDTH, aligned, load, store
+from granchain_core.kernels.simd.vector import VECTOR_WIDTH, aligned, load, loader, store
+
+load4 = loader(4)
 
 
 @kernel
-def roots(values, out):
+def roots_of_eight(values, out):
     """√ of every row of eight."""
     for row in range(values.shape[0]):
         store(out, row, root_by_series(load(values, row)))
 
 
-def test_the_root_by_series_is_the_square_root() -> None:
-    """To the series' next term, 5e³/16 with |e| ≤ 2^{−13}, over all overlaps and far beyond; a NaN stays a NaN."""
-    values, found = aligned(1000, VECTOR_WIDTH), aligned(1000, VECTOR_WIDTH)
-    values[:] = 10.0 ** np.random.default_rng(1).uniform(-200.0, 10.0, values.shape)
-    values[0], values[1, 3] = 10.0 ** np.linspace(-200.0, 10.0, VECTOR_WIDTH), np.nan
+@kernel
+def roots_of_four(values, out):
+    """√ of every row of four."""
+    for row in range(values.shape[0]):
+        store(out, row, root_by_series(load4(values, row)))
+
+
+#: By the vector's width: the kernel, the smallest and largest exponents of ten, and the series' first term left out.
+#: 14 bits of an inverse root leave |e| ≤ 2^{−13}, 1.5 · 2^{−12} of one in floats |e| ≤ 3 · 2^{−12} and its square.
+CASES = {
+    VECTOR_WIDTH: (roots_of_eight, -200.0, 10.0, 5.0 / 16.0 * 2.0**-39),
+    4: (roots_of_four, -30.0, 10.0, 35.0 / 128.0 * (3.0 * 2.0**-12) ** 4),
+}
+
+
+@pytest.mark.parametrize("width", CASES)
+def test_the_root_by_series_is_the_square_root(width: int) -> None:
+    """To the series' next term, over all overlaps and far beyond; a NaN stays a NaN."""
+    roots, low, high, left_out = CASES[width]
+    values, found = aligned(1000, width), aligned(1000, width)
+    values[:] = 10.0 ** np.random.default_rng(1).uniform(low, high, values.shape)
+    values[0], values[1, 3] = 10.0 ** np.linspace(low, high, width), np.nan
     roots(values, found)
     exact = np.sqrt(values)
-    np.testing.assert_allclose(found, exact, rtol=5.0 / 16.0 * 2.0**-39 + 1e-15, equal_nan=True)
-    print(f"largest relative difference {np.nanmax(np.abs(found / exact - 1.0)):.1e}")
+    np.testing.assert_allclose(found, exact, rtol=1.1 * left_out + 1e-15, equal_nan=True)
     assert (np.isnan(found) == np.isnan(values)).all()
+
+
+@pytest.mark.parametrize("width", CASES)
+def test_an_overflow_is_not_hidden(width: int) -> None:
+    """Far beyond the range of floats the root is right or NaN, never a small number."""
+    values, found = aligned(1, width), aligned(1, width)
+    values[0] = np.resize([1e39, 1e200, np.inf, 4.0], width)
+    CASES[width][0](values, found)
+    right = np.isclose(found[0], np.sqrt(values[0]), rtol=1e-12) & np.isfinite(values[0])
+    assert (right | ~np.isfinite(found[0])).all()
+    assert right[3]
