@@ -20,16 +20,16 @@ from tornado.web import ErrorHandler
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
-from .serve import logs
-from .serve.bokeh_defaults import remember_defaults
-from .serve.compiler import COMPILER
-from .serve.guard import Rules, guard_handlers, guarded
-from .serve.limits import LARGEST_UPLOAD, USUAL_VISITORS
-from .serve.metrics import METRICS, Liveness, MetricsPage
-from .serve.panel_pages import remember_resources
-from .serve.queues import PICTURES, SWEEPS
-from .serve.shared import Shared
-from .serve.turns import TURNS
+from .serve.compiling.compiler import COMPILER
+from .serve.http.guard import Rules, guard_handlers, guarded
+from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
+from .serve.monitoring import logs
+from .serve.monitoring.metrics import METRICS, Liveness, MetricsPage
+from .serve.opening.bokeh_defaults import remember_defaults
+from .serve.opening.panel_pages import remember_resources
+from .serve.work.queues import PICTURES, SWEEPS
+from .serve.work.shared import Shared
+from .serve.work.turns import TURNS
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].

@@ -7,7 +7,7 @@ from typing import Any
 
 from granchain_core.steady.curve.resonance import STRONG_PART
 
-from ..parts.component import Component, text
+from ..parts.toolkit.component import Component, text
 from ..pictures.curve import LABELS
 from ..pictures.regimes import REGIME_MARKS, SYMBOLS
 from ..scripts import module

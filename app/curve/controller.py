@@ -15,10 +15,10 @@ from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..pictures.curve import WORDS
-from ..serve.compiler import COMPILER, PICTURE_PIECES
-from ..serve.delays import CURVE_QUIET
-from ..serve.queues import CURVES, LatestWins
-from ..serve.turns import TurnFlag
+from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES
+from ..serve.work.delays import CURVE_QUIET
+from ..serve.work.queues import CURVES, LatestWins
+from ..serve.work.turns import TurnFlag
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce

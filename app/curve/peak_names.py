@@ -28,10 +28,10 @@ from granchain_core.steady.curve.resonance import (
 from granchain_core.stop import Stop
 
 from ..frames import samples_for
-from ..serve.cpu_time import CpuTime
-from ..serve.queues import ANALYSES, SWEEPS
-from ..serve.shared import Shared
-from ..serve.turns import TurnFlag
+from ..serve.work.cpu_time import CpuTime
+from ..serve.work.queues import ANALYSES, SWEEPS
+from ..serve.work.shared import Shared
+from ..serve.work.turns import TurnFlag
 from ..session.host import Host
 from ..session.session import without_frequency
 from ..session.task import Job, Task, say_nothing

@@ -7,7 +7,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from ..serve.delays import CURVE_EVERY
+from ..serve.work.delays import CURVE_EVERY
 from ..session.host import Host
 from .sweep import Progress
 

@@ -8,10 +8,10 @@ from functools import partial
 
 from bokeh.document import Document
 
-from ..serve.changes import batched_changes
-from ..serve.channel import Channel
-from ..serve.document_lock import with_document_lock
-from ..serve.metrics import METRICS
+from ..serve.document.changes import batched_changes
+from ..serve.document.channel import Channel
+from ..serve.document.document_lock import with_document_lock
+from ..serve.monitoring.metrics import METRICS
 
 log = logging.getLogger("granchain.page")
 

@@ -12,12 +12,12 @@ from granchain_core import BadInput, CurvePoint, Scene, Settled, State
 
 from ..curve.controller import CurveController
 from ..pictures.theme import Theme
-from ..serve.compiler import COMPILER
-from ..serve.metrics import METRICS
-from ..serve.socket_tuning import disable_nagle
+from ..serve.compiling.compiler import COMPILER
+from ..serve.document.socket_tuning import disable_nagle
+from ..serve.monitoring.metrics import METRICS
 from ..session.activities import Activity, account_activity, picture_activities
-from ..session.hooks import Actions, Page, all_actions
 from ..session.message_checks import quoted
+from ..session.page import Actions, Page, all_actions
 from ..session.session import Session
 from .calls import Calls
 from .display_choices import DisplayChoices

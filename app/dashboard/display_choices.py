@@ -7,7 +7,7 @@ from typing import Any
 
 from ..curve.controller import CurveController
 from ..pictures.theme import THEMES, Theme
-from ..session.hooks import Actions
+from ..session.page import Actions
 from ..session.session import Session
 from .layout import Views
 

@@ -16,20 +16,20 @@ from granchain_core.experiment.formats import FORMATS
 
 from ..curve.bar import KINDS, CurveBar
 from ..curve.view import CurveFigure
-from ..parts.chain import SCALES, ChainPart
-from ..parts.component import text
-from ..parts.energy import EnergyMap
-from ..parts.equation import EquationPart
-from ..parts.figure_style import BOTTOM, GAP, LEFT, TOP
-from ..parts.header import Header
-from ..parts.knobs import Knobs
-from ..parts.status_line import StatusLine
-from ..parts.trains import WIDEST_TITLES, ForceTrains
+from ..parts.chain.chain import SCALES, ChainPart
+from ..parts.equation.equation import EquationPart
+from ..parts.figures.figure_style import BOTTOM, GAP, LEFT, TOP
+from ..parts.header.header import Header
+from ..parts.knobs.knobs import Knobs
+from ..parts.stage.energy import EnergyMap
+from ..parts.stage.trains import WIDEST_TITLES, ForceTrains
+from ..parts.status.status_line import StatusLine
+from ..parts.toolkit.component import text
 from ..pictures.curve import KEY
 from ..pictures.energies import ENERGY_COLOURS
 from ..pictures.theme import Theme, style_sheet
 from ..scripts import IN_PAGE, modules
-from ..serve.limits import LARGEST_UPLOAD
+from ..serve.http.limits import LARGEST_UPLOAD
 from ..session.session import Session
 from ..session.terms import definitions
 from .scales import PictureScales

@@ -31,12 +31,12 @@ from granchain_core.stop import Stop
 
 from ..curve.controller import CurveController
 from ..format import given_in_words, in_words, signed_in_words
-from ..serve.compiler import PICTURE_PIECES
-from ..serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
-from ..serve.queues import FILES, LONG
+from ..serve.compiling.compiler import PICTURE_PIECES
+from ..serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
+from ..serve.work.queues import FILES, LONG
 from ..session.budget import WHOLE_PICTURE, check_first_picture
-from ..session.hooks import Actions
 from ..session.host import Host
+from ..session.page import Actions
 from ..session.task import Job, Task, say_nothing
 from .layout import Views
 

@@ -12,14 +12,14 @@ from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
 
 from ..curve.sweep import Progress, Sweep
 from ..frames import samples_for
-from ..parts.pinned_trains import SIGNS
-from ..serve.compiler import PICTURE_PIECES
-from ..serve.cpu_time import CpuTime
-from ..serve.queues import ANALYSES, CURVES
+from ..parts.stage.pinned_trains import SIGNS
+from ..serve.compiling.compiler import PICTURE_PIECES
+from ..serve.work.cpu_time import CpuTime
+from ..serve.work.queues import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
-from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.message_checks import listed
+from ..session.page import Actions
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
 from ..session.session import without_frequency
 from ..session.starts import MOST_BEADS

@@ -8,8 +8,8 @@ from typing import Any
 from granchain_core import Scene, State
 
 from ..curve.controller import CurveController
-from ..parts.knobs import beside_knobs, knob_state
-from ..session.hooks import Actions, Page
+from ..parts.knobs.knobs import beside_knobs, knob_state
+from ..session.page import Actions, Page
 from ..session.session import Session, clicked_frequency
 from .addresses import apply_address
 from .layout import Views

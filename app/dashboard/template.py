@@ -11,8 +11,8 @@ from bokeh.models import Plot
 from jinja2 import Template
 from panel.io.resources import BASE_TEMPLATE
 
-from ..parts.component import Component
-from ..serve.part_messages import register
+from ..parts.toolkit.component import Component
+from ..serve.document.part_messages import register
 
 
 def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable[Plot], template: str,

@@ -13,7 +13,7 @@ from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
-from ..serve.cpu_time import CpuTime
+from ..serve.work.cpu_time import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
 from .share import BROWSER_FIELDS, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in

@@ -9,10 +9,10 @@ from typing import Any
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
 from granchain_core.stop import Stop
 
-from ..serve.compiler import COMPILER
-from ..serve.delays import LONGEST_PICTURE_POLL, PICTURE_POLL
-from ..serve.queues import Queue
-from ..serve.turns import Flag
+from ..serve.compiling.compiler import COMPILER
+from ..serve.work.delays import LONGEST_PICTURE_POLL, PICTURE_POLL
+from ..serve.work.queues import Queue
+from ..serve.work.turns import Flag
 from .host import Host
 from .progress import Status
 

@@ -14,10 +14,11 @@ from panel.custom import JSComponent
 from source import ROOT, imports_in
 
 import app.dashboard.layout  # noqa: F401  (makes every component known)
-from app.parts.component import Component
-from app.parts.figure_part import FigurePart
-from app.parts.result_figure import ResultFigure
-from app.serve import changes
+from app.parts.figures.figure_part import FigurePart
+from app.parts.figures.result_figure import ResultFigure
+from app.parts.toolkit.component import Component
+from app.scripts import FILES
+from app.serve.document import changes
 from granchain_core.kernels.compiling import cache, link_only
 
 
@@ -83,16 +84,34 @@ USES = {folder.replace("/", "."): re.findall(r"`(\w+)`", uses) for folder, uses 
 SHARED = {"format", "frames", "scripts"}
 
 
+#: Folders whose own folders the map orders. Others may use all of them; of a folder of `pages`, `dashboard` alone.
+FAMILIES = {folder.split(".")[0] for folder in USES if "." in folder} - {"pictures"}
+
+
 def layer(module: str) -> str:
-    """The folder of a module of `app`, with a page's own; of one beside the folders its name."""
+    """The folder of a module of `app`, with that inside a family; of a module beside the folders its name."""
     parts = module.split(".")[1:]
-    return ".".join(parts[:2]) if parts[0] == "pages" and len(parts) > 2 else parts[0]
+    return ".".join(parts[:2]) if parts[0] in FAMILIES and len(parts) > 2 else parts[0]
 
 
 def allowed(folder: str) -> set[str]:
-    """The folders that a folder may import: itself, what it uses, and what those use; a page uses what `pages` does."""
-    used = [*USES[folder], *(USES["pages"] if folder.startswith("pages.") else ())]
+    """The folders that a folder may import: itself, what it uses, and what those use.
+
+    One of a family uses what its family does, too, and others of the family by their last name.
+    """
+    family, _, inside = folder.partition(".")
+    used = [f"{family}.{one}" if inside and f"{family}.{one}" in USES else one for one in USES[folder]]
+    used += USES[family] if inside else [one for one in USES if one.startswith(f"{folder}.") and folder != "pages"]
     return {folder}.union(*(allowed(one) for one in used))
+
+
+def test_the_order_of_the_map_is_read() -> None:
+    """A family's own folders, and those that other folders use with it."""
+    assert {"serve", "parts", "pages"} == FAMILIES
+    assert allowed("serve.compiling") == {"serve.compiling", "serve.work", "serve.monitoring"}
+    assert {"parts.toolkit", "serve.document", "pictures"} <= allowed("parts.stage")
+    assert not {"parts.chain", "curve", "pages"} & allowed("parts.stage")
+    assert {"parts.chain", "serve.work"} <= allowed("pages.map") and "pages.probe" not in allowed("pages.map")
 
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app.")])
@@ -106,10 +125,20 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None
             assert theirs in SHARED, f"{module} imports {name}"
         elif module == "app.cli.serve":
             assert name in ("app.server", "app.cli.common", "app.cli.options", "app.cli.waiting",
-                            "app.serve.limits"), f"{module} imports {name}"
+                            "app.serve.http.limits"), f"{module} imports {name}"
         elif mine in USES:
             fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
             assert theirs in fits | SHARED, f"{module} imports {name}"
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_script_imports_only_from_folders_that_the_map_allows(name: str) -> None:
+    """As the Python beside it; what puts the dashboard together may import pages, too."""
+    folder = FILES[name].parent
+    theirs = {(folder / url).resolve().parent.relative_to(ROOT / "app").as_posix().replace("/", ".")
+              for url in re.findall(r'^import [^"]*"([^"]+)";$', FILES[name].read_text(encoding="utf-8"), re.MULTILINE)}
+    mine = folder.relative_to(ROOT / "app").as_posix().replace("/", ".")
+    assert theirs <= allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
 
 
 def components(of: type) -> Iterator[type]:
@@ -198,8 +227,8 @@ def test_the_tables_name_modules_that_are_there() -> None:
     assert PRIVATE and PRIVATE_OF_NUMBA and {*PRIVATE, *PRIVATE_OF_NUMBA} <= set(MODULES)
 
 
-#: Attributes that app/serve/changes.py uses of documented classes: Bokeh's documents, models and their events, Panel's
-#: state, Tornado's streams and locks, NumPy's arrays and what Python has.
+#: Attributes that app/serve/document/changes.py uses of documented classes: Bokeh's documents, models and their events,
+#: Panel's state, Tornado's streams and locks, NumPy's arrays and what Python has.
 DOCUMENTED_ATTRIBUTES = {
     "acquire", "add_done_callback", "append", "closed", "done", "result", "rpartition", "write", "state", "loaded",
     "char", "dtype", "nbytes", "shape", "tobytes", "attr", "cols", "data", "document", "event_name", "id", "model",
@@ -209,8 +238,8 @@ DOCUMENTED_ATTRIBUTES = {
 
 def test_the_documentation_names_what_is_used_of_bokeh_without_an_underscore() -> None:
     """Most attributes without one are documented; those that changes.py uses beyond that are in its row."""
-    module = "app.serve.changes"
-    (row,) = re.findall(r"^\| ([^|]+) \| `app/serve/changes.py` \|", (ROOT / "docs/dashboard.md").read_text(encoding="utf-8"), re.MULTILINE)
+    module = "app.serve.document.changes"
+    (row,) = re.findall(r"^\| ([^|]+) \| `app/serve/document/changes.py` \|", (ROOT / "docs/dashboard.md").read_text(encoding="utf-8"), re.MULTILINE)
     tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
     names = [alias.asname or alias.name for node in tree.body if isinstance(node, ast.Import) for alias in node.names]
     own = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)} | {"arrays", "connection"}

@@ -21,11 +21,11 @@ from app.dashboard import links_and_files, main_picture, measurement
 from app.dashboard.table import PAGES, watched_pages
 from app.frames import Extremes, settled_frames
 from app.pictures.theme import THEMES, Theme
-from app.serve.compiler import COMPILER, Compiler
-from app.serve.limits import LARGEST_UPLOAD
-from app.serve.metrics import METRICS
+from app.serve.compiling.compiler import COMPILER, Compiler
+from app.serve.http.limits import LARGEST_UPLOAD
+from app.serve.monitoring.metrics import METRICS
 from app.session.budget import RefusedPicture
-from app.session.hooks import all_actions
+from app.session.page import all_actions
 from app.session.starts import MOST_BEADS
 from granchain_core import BadInput, run, scene, settle
 from granchain_core.result import GIVEN_STATE

@@ -15,11 +15,11 @@ from granchain_core.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP
 
 from ...format import duration, short_error
 from ...pictures.accuracy import Annotations
-from ...serve.queues import MEASUREMENTS
+from ...serve.work.queues import MEASUREMENTS
 from ...session.active_setting import PlacedSetting, locate, page_setting
 from ...session.activities import Activity
-from ...session.hooks import Actions, Page
 from ...session.host import Host
+from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
 from .view import Accuracy, described_methods, described_reference

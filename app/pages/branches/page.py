@@ -15,12 +15,12 @@ from granchain_core.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_K
 from granchain_core.stop import Stop
 
 from ...pictures.branches import BranchRows
-from ...serve.delays import BRANCH_EVERY
-from ...serve.queues import LONG
+from ...serve.work.delays import BRANCH_EVERY
+from ...serve.work.queues import LONG
 from ...session.budget import curve_affordable
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import listed, whole
+from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.session import slider_range, without_frequency
 from ...session.task import Job, Task

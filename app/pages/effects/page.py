@@ -12,15 +12,15 @@ from granchain_core.scaling import slots_of
 from granchain_core.scene.effects import ALWAYS
 from granchain_core.warm import structure
 
-from ...parts.component import Component
-from ...serve.compiler import COMPILER, PICTURE_PIECES
-from ...serve.delays import ACTIVITIES_EVERY, COST_QUIET
-from ...serve.queues import MEASUREMENTS
+from ...parts.toolkit.component import Component
+from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES
+from ...serve.work.delays import ACTIVITIES_EVERY, COST_QUIET
+from ...serve.work.queues import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.debounce import Debounce
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import quoted
+from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, READY, UNDER_WAY
 from ...session.switches import SWITCHES, present, refusal, variants
 from ...session.task import Job, Task

@@ -13,7 +13,7 @@ from granchain_core.child_processes import end_with_parent, starting
 from granchain_core.hard import CASES, Case, Check, Picture, run_case
 from granchain_core.stop import Stop
 
-from ...serve.delays import STOP_POLL
+from ...serve.work.delays import STOP_POLL
 
 #: Niceness: the page's pictures come first when cores are scarce.
 _NICENESS = 5

@@ -16,16 +16,16 @@ from granchain_core.diagram.cells import cell_of, empty_cells
 from granchain_core.pieces import ORBIT_KERNELS
 from granchain_core.stop import Stop
 
-from ...parts.component import Component
+from ...parts.toolkit.component import Component
 from ...pictures.diagram import now_row
 from ...pictures.theme import THEMES, Theme
-from ...serve.compiler import PICTURE_PIECES
-from ...serve.delays import CELLS_EVERY, MAP_QUIET
-from ...serve.queues import LONG
+from ...serve.compiling.compiler import PICTURE_PIECES
+from ...serve.work.delays import CELLS_EVERY, MAP_QUIET
+from ...serve.work.queues import LONG
 from ...session.debounce import Debounce
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import listed
+from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.session import slider_range
 from ...session.task import Job, Task

@@ -8,9 +8,9 @@ from panel.io import unlocked
 
 from granchain_core import Settled
 
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import whole
+from ...session.page import Actions, Page
 from .view import Probe
 
 

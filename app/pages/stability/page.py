@@ -14,13 +14,13 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...pictures.multipliers import plane_state
-from ...serve.delays import ANALYSIS_QUIET
-from ...serve.queues import ANALYSES
+from ...serve.work.delays import ANALYSIS_QUIET
+from ...serve.work.queues import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import whole
+from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
 from .trail import Trail
