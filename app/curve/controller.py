@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Difference, Measured, stated_features
 from granchain_core.pieces import CURVE_KERNELS
@@ -108,8 +106,7 @@ class CurveController:
     def _draw_draft(self, drafted: tuple[int, list[CurvePoint]]) -> None:
         begun, points = drafted
         if points and begun == self._begun:  # otherwise the curve itself is on its way
-            with unlocked():
-                self._figure.redraw("rest", points)
+            self._figure.redraw("rest", points)
 
     def changed(self, scene: Scene) -> None:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
@@ -136,8 +133,7 @@ class CurveController:
         """Show no curve: this chain has none, or it would take too long, and another chain's belongs to no picture."""
         self.stop()
         self._complete_for.clear()
-        with unlocked():
-            self._figure.clear()
+        self._figure.clear()
         self._placed()
 
     def visibility_changed(self, visible: bool) -> None:
@@ -224,10 +220,9 @@ class CurveController:
             self._complete_for.pop(name, None)
         self._begun_for = key
         shown = [name for name in CURVE_STARTS if self._wanted[name]]
-        with unlocked():
-            self._figure.show_directions(shown)
-            self._figure.begin(missing)
-            self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
+        self._figure.show_directions(shown)
+        self._figure.begin(missing)
+        self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
         self._begun += bool(missing)
         if "rest" in missing:
             self.compared(None)
@@ -250,19 +245,18 @@ class CurveController:
         for progress in reports:
             points.setdefault(progress.direction, []).extend(progress.points)
         covers = {progress.direction for progress in reports if progress.covers}
-        with unlocked():
-            for direction, new in points.items():
-                self._figure.add(direction, new, direction in covers)
-            for progress in reports:
-                if progress.complete and self._begun_for is not None:
-                    self._complete_for[progress.direction] = self._begun_for
-                    self._figure.finished(progress.direction)
-                    self._placed()
-                    if progress.direction == "rest":
-                        self._names.name(self._figure.points("rest"), self._begun_for)
-                    self.compared(self._figure.difference)
-            self._done = self._overall(reports[-1])
-            self._bar.update_state(done=self._done)
+        for direction, new in points.items():
+            self._figure.add(direction, new, direction in covers)
+        for progress in reports:
+            if progress.complete and self._begun_for is not None:
+                self._complete_for[progress.direction] = self._begun_for
+                self._figure.finished(progress.direction)
+                self._placed()
+                if progress.direction == "rest":
+                    self._names.name(self._figure.points("rest"), self._begun_for)
+                self.compared(self._figure.difference)
+        self._done = self._overall(reports[-1])
+        self._bar.update_state(done=self._done)
 
     def _overall(self, progress: Progress) -> float:
         """Progress over all directions of this request."""

@@ -10,7 +10,6 @@ from typing import Any
 
 from bokeh.document import Document
 from bokeh.models import Range1d
-from panel.io import unlocked
 
 from granchain_core.experiment.formats import FORMATS
 
@@ -65,10 +64,9 @@ class Views:
 
     def set_compact(self, compact: bool) -> None:
         """Shorten titles and leave out numbers on the axes over time if there is little room for them."""
-        with unlocked():  # sent like the pictures, which write the same titles, so that neither overtakes the other
-            self.trains.set_compact(compact)
-            self.energy.set_compact(compact)
-            self.curve.set_compact(compact)
+        self.trains.set_compact(compact)
+        self.energy.set_compact(compact)
+        self.curve.set_compact(compact)
 
     def apply_theme(self, theme: Theme) -> None:
         """Draw the figures of all pages in another theme."""

@@ -6,8 +6,6 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
 
 from ..curve.sweep import Progress, Sweep
@@ -60,8 +58,7 @@ class Pinned:
             self._curve_task.start(partial(self._sweep, missing, self._session.cpu_time))
         elif self._session.pins:
             self._curve_task.cancel()
-        with unlocked():
-            self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
+        self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
 
     def picture_ready(self, picture: Settled) -> None:
         """Compare the pins with another picture."""
@@ -144,10 +141,9 @@ class Pinned:
 
     def _draw(self) -> None:
         runs = self._found()
-        with unlocked():
-            self._views.trains.pin(runs)
-            self._views.curve.pin([(name, run.scene.f, run.max_output_force)
-                                   for name, run in zip(NAMES, runs, strict=False) if run is not None])
+        self._views.trains.pin(runs)
+        self._views.curve.pin([(name, run.scene.f, run.max_output_force)
+                               for name, run in zip(NAMES, runs, strict=False) if run is not None])
         self._tell()
 
     def _tell(self) -> None:

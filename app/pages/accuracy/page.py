@@ -6,8 +6,6 @@ import math
 from functools import partial
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.kernels.batch_size import machine
@@ -119,12 +117,11 @@ class AccuracyPage(Page):
     def _show(self, rows: list[Row], naive: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
         self.rows = rows
         self._agreement = agreement if math.isfinite(agreement) else None
-        with unlocked():
-            self._view.measured(rows, reference)
-            if naive is not None and self._naive is None:
-                self._naive = naive
-                self._view.show_naive(naive)
-            self.describe()
+        self._view.measured(rows, reference)
+        if naive is not None and self._naive is None:
+            self._naive = naive
+            self._view.show_naive(naive)
+        self.describe()
 
     def _progress(self, done: float) -> None:
         self.done = done

@@ -7,8 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import Scene, Settled
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
@@ -190,24 +188,22 @@ class BranchesPage(Page):
         if added is not None:
             self._scene = self._scene or now
             self.scene_changed()
-            with unlocked():
-                self._view.need_figures()
-                self._view.send(type="add", **added)
+            self._view.need_figures()
+            self._view.send(type="add", **added)
 
     def _draw(self) -> None:
         """Send what is new; a special point goes before the orbit that follows it on its arm."""
-        with unlocked():
-            for number, drawn in enumerate(self._drawn):
-                points = drawn.arm.points[drawn.points :]
-                special = drawn.arm.special[drawn.special :]
-                if not points:
-                    continue
-                self._special.extend((drawn.branch, s) for s in special)
-                drawn.points += len(points)
-                drawn.special += len(special)
-                self._view.need_figures()
-                self._view.send(type="add", **self._rows.add(number, drawn.branch, points, special))
-            self._say(self.status if self.status in ("stopped", "done") else "following")
+        for number, drawn in enumerate(self._drawn):
+            points = drawn.arm.points[drawn.points :]
+            special = drawn.arm.special[drawn.special :]
+            if not points:
+                continue
+            self._special.extend((drawn.branch, s) for s in special)
+            drawn.points += len(points)
+            drawn.special += len(special)
+            self._view.need_figures()
+            self._view.send(type="add", **self._rows.add(number, drawn.branch, points, special))
+        self._say(self.status if self.status in ("stopped", "done") else "following")
 
     def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status

@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from panel.io import unlocked
 
 from granchain_core import Scene
 from granchain_core.diagram import Attractor, Axis, Grid, attractors, iter_diagram
@@ -179,8 +178,7 @@ class MapPage(Page):
             message["models"] = {}
         else:
             self._scale = message["models"]
-        with unlocked():
-            self._send(**message)
+        self._send(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
         """A place of the map was clicked: set f and A0 to its values."""

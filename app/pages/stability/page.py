@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import BadInput, Scene, Settled, State
 from granchain_core.orbits.stroboscopic_map import refuse_cut
 from granchain_core.pieces import ORBIT_KERNELS
@@ -159,29 +157,26 @@ class StabilityPage(Page):
     def _arrived(self, found: OrbitAnalysis | OrbitTarget | Section) -> None:
         if self._picture is None:
             return
-        with unlocked():
-            if isinstance(found, OrbitAnalysis):
-                self._show(found)
-            elif isinstance(found, OrbitTarget):
-                self._rank = 0
-                self._follow(found)
-            else:
-                self._section = found
-                self._show_section()
-            self._show_evidence()
+        if isinstance(found, OrbitAnalysis):
+            self._show(found)
+        elif isinstance(found, OrbitTarget):
+            self._rank = 0
+            self._follow(found)
+        else:
+            self._section = found
+            self._show_section()
+        self._show_evidence()
 
     def _ended(self, status: Status, sentence: str) -> None:
         """Report a failure or a state such as "compiling"; results have arrived by themselves."""
         if status != "done":
-            with unlocked():
-                self._say(status, sentence)
-                self._show_evidence()
+            self._say(status, sentence)
+            self._show_evidence()
 
     def _section_ended(self, status: Status, sentence: str) -> None:
         """Report a failure; it says nothing about the analysis."""
         if status == "failed":
-            with unlocked():
-                self._view.update_state(failure=sentence)
+            self._view.update_state(failure=sentence)
 
     def _show(self, analysis: OrbitAnalysis) -> None:
         self._analysis, self.status = analysis, "done"
