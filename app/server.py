@@ -20,6 +20,7 @@ from tornado.web import ErrorHandler
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
+from .needed import warn_of_missing
 from .serve.compiling.compiler import COMPILER
 from .serve.http.guard import Rules, guard_handlers, guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
@@ -86,6 +87,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     `before` is called when the server is about to listen.
     """
     logs.configure(log_level)
+    warn_of_missing()
     before()
     server = server_at(port, address, access)
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else _in_url(address)

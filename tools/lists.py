@@ -1,9 +1,12 @@
-"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes (README.md)."""
+"""Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes (README.md), and
+what is used of libraries (docs/dashboard.md).
+"""
 
 from __future__ import annotations
 
 import math
 
+from app import needed
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
 from granchain_core.quantities import QUANTITIES, Quantity
@@ -42,3 +45,10 @@ def table_of_scenes() -> str:
     """The table of README.md: every scene with its title, in teaching order."""
     rows = [f"| `{name}` | {scene(name).title} |" for name in scene_names()]
     return "\n".join(["| scene | what it is |", "|---|---|", *rows])
+
+
+def table_of_libraries() -> str:
+    """The table of docs/dashboard.md: what is used of libraries beyond their documentation, and where."""
+    rows = [f"| `{row.owner}`: {', '.join(f'`{name}`' for name in row.names)} | `app/{module.replace('.', '/')}.py` | {row.without} |"
+            for module, table in needed.tables().items() for row in table]
+    return "\n".join(["| what | where | without it |", "|---|---|---|", *rows])

@@ -14,11 +14,11 @@ from panel.custom import JSComponent
 from source import ROOT, imports_in
 
 import app.dashboard.layout  # noqa: F401  (makes every component known)
+from app import needed
 from app.parts.figures.figure_part import FigurePart
 from app.parts.figures.result_figure import ResultFigure
 from app.parts.toolkit.component import Component
 from app.scripts import FILES
-from app.serve.document import changes
 from granchain_core.kernels.compiling import cache, link_only
 
 
@@ -81,7 +81,7 @@ def test_no_import_goes_in_a_circle() -> None:
 USES = {folder.replace("/", "."): re.findall(r"`(\w+)`", uses) for folder, uses in re.findall(
     r"^\| `app/([\w/]+)` \| [^|]+ \| ([^|]+) \|$", (ROOT / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)}
 #: Modules beside the folders that any folder may use; the others are above all.
-SHARED = {"format", "frames", "scripts"}
+SHARED = {"format", "frames", "needed", "scripts"}
 
 
 #: Folders whose own folders the map orders. Others may use all of them; of a folder of `pages`, `dashboard` alone.
@@ -179,6 +179,10 @@ DOCUMENTED = {"_esm", "_stylesheets", "_handle_msg", "_send_msg"}
 _OF_NAMED_TUPLES = {"_fields", "_replace", "_asdict", "_make"}
 
 
+#: Private names that are passed as keyword arguments, where `private_uses` does not look.
+PARAMETERS = {"_with_props"}
+
+
 def private_uses(module: str) -> Iterator[str]:
     """Private attributes of other objects than a class's own, by a dot or by name."""
     for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
@@ -206,25 +210,38 @@ def documented(page: str, folder: str) -> dict[str, set[str]]:
     return rows
 
 
-#: Private attributes of Tornado, Bokeh and Panel, by the only modules that use them. Each module goes on without them
-#: in the libraries' public way, and says how; without `_tornado` the server does not start.
-PRIVATE = documented("dashboard.md", "app")
+#: What is used of Tornado, Bokeh, Panel and Param beyond their documentation, by the only modules that use it.
+NEEDED = {f"app.{module}": {name for row in table for name in row.names} for module, table in needed.tables().items()}
+#: Those of these names that are private.
+PRIVATE = {module: {name for name in names if re.match("_[a-z]", name)} for module, names in NEEDED.items()}
 #: Those of Numba, by the modules of the core; among them names that a class uses of the one it is derived from, which
 #: `private_uses` does not find.
 PRIVATE_OF_NUMBA = {f"granchain_core.{module}": names for module, names in documented("compiling.md", "kernels").items()}
 
 
 @pytest.mark.parametrize("module", MODULES)
-def test_private_attributes_of_others_are_used_where_a_table_says(module: str) -> None:
+def test_private_attributes_of_others_are_in_the_table_of_the_module_that_uses_them(module: str) -> None:
     used = set(private_uses(module))
     if module.startswith("app."):
-        assert used == PRIVATE.get(module, set())
+        assert used | PARAMETERS & PRIVATE.get(module, set()) == PRIVATE.get(module, set())
+        assert module in NEEDED or "\nNEEDED = " not in MODULES[module].read_text(encoding="utf-8")
     else:
         assert used <= PRIVATE_OF_NUMBA.get(module, set())
 
 
 def test_the_tables_name_modules_that_are_there() -> None:
     assert PRIVATE and PRIVATE_OF_NUMBA and {*PRIVATE, *PRIVATE_OF_NUMBA} <= set(MODULES)
+
+
+@pytest.mark.parametrize("module", NEEDED)
+def test_a_module_uses_what_is_in_its_table(module: str) -> None:
+    """By a dot, by name, or as what it imports; of the logger of another module only its name."""
+    tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
+    tree.body = [node for node in tree.body if not isinstance(node, ast.Assign) or ast.unparse(node.targets[0]) != "NEEDED"]
+    words = {word for node in ast.walk(tree) for word in (
+        getattr(node, "attr", None), getattr(node, "arg", None), getattr(node, "id", None), getattr(node, "name", None),
+        getattr(node, "value", None) if isinstance(node, ast.Constant) else None)}
+    assert NEEDED[module] <= words | ({"log"} if module == "app.serve.monitoring.logs" else set())
 
 
 #: Attributes that app/serve/document/changes.py uses of documented classes: Bokeh's documents, models and their events,
@@ -236,26 +253,21 @@ DOCUMENTED_ATTRIBUTES = {
 }
 
 
-def test_the_documentation_names_what_is_used_of_bokeh_without_an_underscore() -> None:
-    """Most attributes without one are documented; those that changes.py uses beyond that are in its row."""
+def test_the_table_names_what_is_used_of_bokeh_without_an_underscore() -> None:
+    """Most attributes without one are documented; those that changes.py uses beyond that are in its table."""
     module = "app.serve.document.changes"
-    (row,) = re.findall(r"^\| ([^|]+) \| `app/serve/document/changes.py` \|", (ROOT / "docs/dashboard.md").read_text(encoding="utf-8"), re.MULTILINE)
     tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
     names = [alias.asname or alias.name for node in tree.body if isinstance(node, ast.Import) for alias in node.names]
     own = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)} | {"arrays", "connection"}
     used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)
-            and ast.unparse(node.value).split(".")[0] not in ({"self", *names} - {"pn"})} | set(private_uses(module))
-    strings = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
-    documented = set(re.findall(r"`(\w+)`", row))
-    assert used - own - DOCUMENTED_ATTRIBUTES <= documented
-    assert documented <= used | strings
-    assert {name for needed in changes.NEEDED.values() for name in needed} <= documented & used
+            and ast.unparse(node.value).split(".")[0] not in ({"self", *names} - {"pn"})}
+    assert used - own - DOCUMENTED_ATTRIBUTES <= NEEDED[module]
 
 
 def test_the_documentation_names_what_is_used_of_numba() -> None:
     """With the names that classes of the core use of the ones of Numba they are derived from."""
-    for module, needed in (("cache", cache._NEEDED), ("link_only", link_only._NEEDED)):
-        private = {name for name in needed if name.startswith("_")}
+    for module, names in (("cache", cache._NEEDED), ("link_only", link_only._NEEDED)):
+        private = {name for name in names if name.startswith("_")}
         assert private <= PRIVATE_OF_NUMBA[f"granchain_core.kernels.compiling.{module}"]
 
 

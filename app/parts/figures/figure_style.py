@@ -7,6 +7,11 @@ from typing import Any
 
 from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
 
+from ...needed import Needed
+
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page can be made"),)
+
 # Borders [px], the same for all time pictures, so that one cursor and the chain fit them exactly.
 TOP = 78
 BOTTOM = 82

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import base64
 import gzip
-import importlib
 import itertools
 import json
 import math
@@ -28,6 +27,8 @@ from bokeh.model import Model
 from tornado.iostream import IOStream, StreamClosedError
 from tornado.locks import Lock
 
+from ...needed import Needed, missing
+
 #: Largest integer that JavaScript represents exactly.
 _LARGEST_SAFE_INTEGER = 2**53 - 1
 #: Types for which BokehJS has arrays, by NumPy's letters.
@@ -35,27 +36,27 @@ _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
 #: Arrays up to this size are written into the text [bytes]: a larger one costs both sides two more frames.
 _LARGEST_INLINE_ARRAY = 8192
 _NUMBERS = itertools.count(1)
-#: What is used of Bokeh's classes that its documentation does not name, by class.
-NEEDED = {
-    "bokeh.document.callbacks.DocumentCallbackManager": ("hold", "unhold", "hold_value", "trigger_on_change"),
-    "bokeh.server.connection.ServerConnection": ("protocol",),
-    "bokeh.protocol.Protocol": ("create",),
-    "bokeh.protocol.message.Message": ("header_json", "metadata_json", "content_json", "buffers"),
-    "bokeh.core.serialization.Buffer": ("ref", "to_bytes"),
-}
+_WITHOUT = "changes leave as Bokeh sends them: a move takes three times as long"
+#: What is used of Bokeh and Tornado beyond their documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.document.callbacks.DocumentCallbackManager",
+           ("_held_events", "hold", "unhold", "hold_value", "trigger_on_change"), _WITHOUT),
+    Needed("bokeh.document.document.Document", ("callbacks",), _WITHOUT),
+    Needed("bokeh.core.has_props.HasProps", ("_property_values",), _WITHOUT),
+    Needed("bokeh.server.session.ServerSession", ("_subscribed_connections",), _WITHOUT),
+    Needed("bokeh.server.connection.ServerConnection", ("_socket", "protocol"), _WITHOUT),
+    Needed("bokeh.protocol.Protocol", ("create",), _WITHOUT),
+    Needed("bokeh.protocol.message.Message", ("header_json", "metadata_json", "content_json", "buffers"), _WITHOUT),
+    Needed("bokeh.core.serialization.Buffer", ("ref", "to_bytes"), _WITHOUT),
+    Needed("bokeh.server.views.ws.WSHandler", ("write_lock",), _WITHOUT),
+    Needed("tornado.websocket.WebSocketHandler", ("ws_connection",), _WITHOUT),
+    Needed("tornado.websocket.WebSocketProtocol", ("stream",), _WITHOUT),
+)
 
 
 def is_complete() -> bool:
-    """Whether this release of Bokeh has all of `NEEDED`."""
-    for path, names in NEEDED.items():
-        module, _, name = path.rpartition(".")
-        try:
-            found = getattr(importlib.import_module(module), name)
-        except (ImportError, AttributeError):
-            return False
-        if not all(hasattr(found, one) for one in names):
-            return False
-    return True
+    """Whether the installed releases have all of `NEEDED`."""
+    return not missing(NEEDED)
 
 
 _COMPLETE = is_complete()

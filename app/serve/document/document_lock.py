@@ -7,6 +7,14 @@ from collections.abc import Callable
 import panel as pn
 from bokeh.document import Document
 
+from ...needed import Needed
+
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.server.session.ServerSession", ("_pending_writes",),
+           "every message waits for the next turn of the event loop"),
+)
+
 
 def has_document_lock(document: Document) -> bool:
     """Whether Bokeh is known to hold the document's lock, without which the document may not be changed.

@@ -11,6 +11,17 @@ import socket
 from bokeh.document import Document
 from tornado.iostream import IOStream
 
+from ...needed import Needed
+
+_WITHOUT = "messages wait for the acknowledgement of earlier ones"
+#: What is used of Bokeh and Tornado beyond their documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.server.session.ServerSession", ("_subscribed_connections",), _WITHOUT),
+    Needed("bokeh.server.connection.ServerConnection", ("_socket",), _WITHOUT),
+    Needed("tornado.websocket.WebSocketHandler", ("ws_connection",), _WITHOUT),
+    Needed("tornado.websocket.WebSocketProtocol", ("stream",), _WITHOUT),
+)
+
 
 def _streams(document: Document) -> list[IOStream]:
     """The streams behind this page's websockets; empty if a release keeps them elsewhere."""

@@ -20,6 +20,7 @@ from bokeh.server.views.ws import WSHandler
 from bokeh.util.token import check_token_signature, get_session_id
 from tornado.web import HTTPError, RequestHandler, StaticFileHandler
 
+from ...needed import Needed
 from ..document.part_messages import dispatch
 from ..monitoring.metrics import METRICS
 from .compressed import CompressedFiles
@@ -27,6 +28,24 @@ from .limits import USUAL_VISITORS
 from .message_rules import LARGEST_HEADER, RefusedMessage, check
 
 log = logging.getLogger("granchain.requests")
+
+_NO_START = "the server does not start"
+_NOT_SAFE = "requests fail, or the promises of docs/security.md are not kept"
+#: What is used of Bokeh and Tornado beyond their documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.server.server.BaseServer", ("_tornado",), _NO_START),
+    Needed("bokeh.server.tornado.BokehTornado", ("websocket_origins",), _NO_START),
+    Needed("tornado.web.Application", ("wildcard_router",), _NO_START),
+    Needed("bokeh.server.views.session_handler", ("SessionHandler",), _NO_START),
+    Needed("bokeh.server.views.ws", ("WSHandler",), _NO_START),
+    Needed("bokeh.util.token", ("get_session_id", "check_token_signature"), _NO_START),
+    Needed("bokeh.server.tornado.BokehTornado", ("secret_key",), _NOT_SAFE),
+    Needed("bokeh.server.views.session_handler.SessionHandler", ("application_context",), _NOT_SAFE),
+    Needed("bokeh.server.contexts.ApplicationContext", ("sessions",), _NOT_SAFE),
+    Needed("bokeh.server.views.ws.WSHandler", ("connection", "send_message"), _NOT_SAFE),
+    Needed("bokeh.server.connection.ServerConnection", ("session",), _NOT_SAFE),
+    Needed("bokeh.server.session.ServerSession", ("request_expiration",), _NOT_SAFE),
+)
 
 #: Websocket frames that a visitor may send, over a long time [1/s]: the rate at which the token bucket of a connection
 #: is filled. A drag sends 60 messages a second, and a message is three frames.

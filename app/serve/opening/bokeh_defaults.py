@@ -2,7 +2,7 @@
 
 Bokeh finds a default anew for each of a page's models, some 8000 times, and makes ten empty lists and dictionaries for
 each model, which takes more than half of the time of making a page. The functions that are replaced here are not public
-in Bokeh; where a release lacks one of them, none is replaced.
+in Bokeh, nor is what their replacements use; where a release lacks anything of it, none is replaced.
 """
 
 from __future__ import annotations
@@ -15,6 +15,23 @@ import bokeh.model.util as references
 from bokeh.core.has_props import HasProps
 from bokeh.core.property.descriptors import PropertyDescriptor
 from bokeh.core.property.wrappers import PropertyValueContainer
+
+from ...needed import Needed, missing
+
+_WITHOUT = "opening a page costs half as much again"
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.core.property.descriptors.PropertyDescriptor",
+           ("_get_default", "has_unstable_default", "instance_default", "get_value"), _WITHOUT),
+    Needed("bokeh.core.has_props.HasProps",
+           ("_overridden_defaults", "query_properties_with_values", "themed_values", "__themed_values__",
+            "_property_values", "_unstable_default_values", "_initialized", "properties_with_refs", "lookup"),
+           _WITHOUT),
+    Needed("bokeh.core.has_props.HasProps.properties", ("_with_props",), _WITHOUT),
+    Needed("bokeh.model.util",
+           ("visit_immediate_value_references", "visit_value_and_its_immediate_references"), _WITHOUT),
+    Needed("bokeh.core.property.wrappers", ("PropertyValueContainer",), "the server does not start"),
+)
 
 #: Types of immutable values: models can share them.
 _CONSTANTS = (type(None), bool, int, float, str, bytes)
@@ -32,16 +49,13 @@ class _Remembered:
 
 def remember_defaults() -> None:
     """Replace the functions by which Bokeh finds the defaults of its models."""
-    find: Any = getattr(PropertyDescriptor, "_get_default", None)
-    unstable: Any = getattr(PropertyDescriptor, "has_unstable_default", None)
-    overridden: Any = getattr(HasProps, "_overridden_defaults", None)
-    query: Any = getattr(HasProps, "query_properties_with_values", None)
-    visit: Any = getattr(references, "visit_immediate_value_references", None)
-    parts = find, unstable, overridden, query, visit, getattr(HasProps, "themed_values", None)
-    if None in parts or hasattr(find, "known"):
+    if missing(NEEDED) or hasattr(PropertyDescriptor._get_default, "known"):
         return
+    find: Any = PropertyDescriptor._get_default
+    overridden: Any = HasProps._overridden_defaults
+    query, visit = HasProps.query_properties_with_values, references.visit_immediate_value_references
     found = _Remembered()
-    is_unstable = _asks_once(unstable, found)
+    is_unstable = _asks_once(PropertyDescriptor.has_unstable_default, found)
     for where, name, ours in (
             (PropertyDescriptor, "has_unstable_default", is_unstable),
             (PropertyDescriptor, "_get_default", _finds_once(find, is_unstable, found)),

@@ -10,6 +10,14 @@ from bokeh.model import Model
 from bokeh.models import ImportedStyleSheet
 from panel.io.resources import patch_stylesheet
 
+from ...needed import Needed
+
+#: What is used of Panel beyond its documentation (`app/needed.py`).
+NEEDED = (
+    Needed("panel.io.server", ("bundle_resources", "patch_model_css"), "a page opens a tenth slower"),
+    Needed("panel.io.resources", ("patch_stylesheet",), "the server does not start"),
+)
+
 
 def remember_resources() -> None:
     """Ask Panel once for the scripts that a page loads, and once per kind of part where its style sheets are.

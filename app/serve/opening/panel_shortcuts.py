@@ -14,6 +14,7 @@ from bokeh.model import Model, collect_models
 from bokeh.models import ImportedStyleSheet
 from panel.reactive import Syncable
 
+from ...needed import Needed
 from ..document.changes import is_batched, send_event, set_properties
 
 try:
@@ -25,6 +26,17 @@ try:
     from panel.models.esm import ESMEvent
 except ImportError:  # nor is this
     ESMEvent = None  # type: ignore[assignment,misc]
+
+_WITHOUT = "Panel's own way is taken, some milliseconds slower"
+#: What is used of Panel and Param beyond their documentation (`app/needed.py`).
+NEEDED = (
+    Needed("panel.custom.JSComponent",
+           ("_get_properties", "_get_children", "_update_properties", "_process_event", "_process_bokeh_event",
+            "_models"), _WITHOUT),
+    Needed("param.parameterized.Parameterized", ("_param__private",), _WITHOUT),
+    Needed("panel.io.state", ("set_curdoc",), _WITHOUT),
+    Needed("panel.models.esm", ("ESMEvent",), _WITHOUT),
+)
 
 
 class _Common(NamedTuple):

@@ -20,9 +20,10 @@ from bokeh.protocol import Protocol
 from bokeh.server.session import ServerSession
 from bokeh.server.views.ws import WSHandler
 from event_loop import in_a_thread
-from missing_attribute import hide
+from missing_attribute import hide, lose
 from panel.models.esm import ESMEvent
 
+from app.needed import Needed
 from app.serve.document import changes
 from app.serve.document.changes import encode_patch, set_properties
 
@@ -126,12 +127,12 @@ def test_of_two_changes_of_a_property_the_last_is_kept_and_an_equal_one_is_none(
     assert events == [("start", 4)] and axis.start == 4
 
 
-@pytest.mark.parametrize("path", changes.NEEDED)
-def test_a_release_without_what_is_needed_is_noticed(path: str, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("row", changes.NEEDED, ids=lambda row: row.owner)
+def test_a_release_without_what_is_needed_is_noticed(row: Needed, monkeypatch: pytest.MonkeyPatch) -> None:
     assert changes.is_complete()
-    for name in changes.NEEDED[path]:
+    for name in row.names:
         with monkeypatch.context() as patch:
-            patch.delattr(f"{path}.{name}")
+            lose(patch, row.owner, name)
             assert not changes.is_complete()
 
 

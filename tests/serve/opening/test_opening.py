@@ -7,13 +7,16 @@ import re
 from contextlib import nullcontext
 
 import pytest
+from bokeh.core.property.descriptors import PropertyDescriptor
 from bokeh.document import Document
 from bokeh.models import ImportedStyleSheet
 from panel.io.state import set_curdoc
+from replaced import REPLACED
 
 from app.dashboard import entry
 from app.parts.status.status_line import StatusLine
 from app.serve.opening import panel_shortcuts
+from app.serve.opening.bokeh_defaults import remember_defaults
 
 
 def content() -> str:
@@ -27,15 +30,28 @@ def content() -> str:
     return re.sub(r"([A-Z][A-Za-z]+)\d{5}", r"\1", text)
 
 
-def test_a_page_without_checks_of_its_properties_and_with_remembered_ones_is_the_same(
-        monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def plain(monkeypatch: pytest.MonkeyPatch) -> str:
+    """The content of a page without shortcuts; those of other tests are forgotten, and Bokeh's ways put back after it.
+    """
+    for where, name in REPLACED:
+        monkeypatch.setattr(where, name, vars(where)[name])
+    assert not hasattr(PropertyDescriptor._get_default, "known")
     monkeypatch.setattr(panel_shortcuts, "_COMMON", {})
-    first = content()  # asks Panel for the properties of each part
-    assert any(panel_shortcuts._COMMON.values())
-    assert content() == first
-    monkeypatch.setattr(entry, "validate", lambda _: nullcontext())
-    assert content() == first
-    assert len(json.loads(first)) > 15
+    monkeypatch.setattr(panel_shortcuts, "_CHILDLESS", set())
+    with monkeypatch.context() as checked:
+        checked.setattr(entry, "validate", lambda _: nullcontext())
+        return content()  # asks Panel for the properties and children of each part
+
+
+def test_a_page_with_every_shortcut_is_the_same(plain: str) -> None:
+    """What `remember_resources` shortens is outside of the document: tests/serve/opening/test_panel_pages.py."""
+    assert len(json.loads(plain)) > 15
+    assert any(panel_shortcuts._COMMON.values()) and panel_shortcuts._CHILDLESS
+    assert content() == plain  # with remembered properties, and without checks of values
+    remember_defaults()
+    assert content() == plain == content()
+    assert PropertyDescriptor._get_default.known  # it is in use
 
 
 def test_each_document_imports_its_own_style_sheets() -> None:
