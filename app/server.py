@@ -132,7 +132,7 @@ def _count_what_is_shared() -> None:
     """The queues and caches of all visitors, for `/metrics`."""
     METRICS.turn_wait = lambda: TURNS.wait
     METRICS.gauges.update(queue=lambda: TURNS.waiting + PICTURES.waiting + SWEEPS.waiting,
-                         computing=lambda: PICTURES.busy + SWEEPS.busy)
+                         computing=lambda: PICTURES.busy_threads + SWEEPS.busy_threads)
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
     for name, cache in shared.items():
         METRICS.gauges.update({f"{name}_cache_hits_total": partial(getattr, cache, "hits"),

@@ -33,7 +33,7 @@ class Calls:
     def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
         """Call `action` in the next turn of the event loop; from any thread."""
         if not self._closed:
-            self._channel.call_soon(partial(self.guarded, action, *arguments))
+            self._channel.next_tick(partial(self.guarded, action, *arguments))
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
         """Call `action` after `seconds`; on the event loop."""

@@ -96,7 +96,7 @@ class Controller:
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.set_theme(message.get("theme"))
         self.pinned.show()
-        self._scenes.opened(self._first_start, self.session.curves)
+        self._scenes.show_preset(self._first_start, self.session.curves)
 
     def _visible(self, message: dict[str, Any]) -> None:
         name, visible = message.get("name"), message.get("value")
@@ -161,11 +161,11 @@ class Controller:
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `Host`."""
-        self._scenes.show(scene, state, mode)
+        self._scenes.turn_knobs(scene, state, mode)
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         """See `Host`."""
-        self._scenes.open(scene, state, curves)
+        self._scenes.open_scene(scene, state, curves)
 
     def address_changed(self) -> None:
         """See `Host`."""
@@ -199,7 +199,7 @@ class Controller:
             page.theme_changed(theme)
 
     def _compute(self) -> None:
-        self._scenes.compute()
+        self._scenes.request_picture()
 
     def _choose_frequency(self, frequency: object) -> None:
         self._scenes.choose_frequency(frequency)

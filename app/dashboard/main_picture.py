@@ -299,5 +299,5 @@ class MainPicture:
 
     def next_live_step(self) -> None:
         """Take the next step of a run that goes on, unless as many of its pictures are in transit as may be."""
-        if self._session.mode == "live" and self._session.playing and not self._pacer.waits:
+        if self._session.mode == "live" and self._session.playing and not self._pacer.is_full:
             self.advance()

@@ -33,7 +33,7 @@ from ..curve.controller import CurveController
 from ..format import given_in_words, in_words, signed_in_words
 from ..serve.compiling.compiler import PICTURE_PIECES
 from ..serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
-from ..serve.work.queues import FILES, LONG
+from ..serve.work.queues import ANALYSES, FILES, LONG
 from ..session.budget import WHOLE_PICTURE, check_first_picture
 from ..session.host import Host
 from ..session.page import Actions
@@ -74,13 +74,13 @@ class MeasurementActions:
         self._series: Series | None = None
         #: What is drawn over the pictures, and goes into their files.
         self.shown: Measured | Series | None = None
-        self._moving = Task(host, FILES, say_nothing, "Moving the series to the picture", host.failed)
+        self._moving = Task(host, ANALYSES, say_nothing, "Moving the series to the picture", host.failed)
         self._reading = Task(host, FILES, say_nothing, "Reading the measurement", host.failed)
         self._recording = Task(host, LONG, say_nothing, "The virtual experiment", host.failed)
         self._name, self._answers = "", Answers()
         #: The file, for as long as a question about it is open.
         self._content = b""
-        curves.compared = self._compared
+        curves.on_compared(self._compared)
         self.actions: Actions = {"csv": self._read, "csv-answer": self._answer, "csv-too-large": self._too_large,
                                  "csv-remove": self._remove, "csv-sample": self._sample,
                                  "csv-virtual": self._virtual}

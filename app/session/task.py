@@ -54,12 +54,12 @@ class Job:
                 raise Cancelled
             COMPILER.load(scene, piece)
 
-    def give_way(self, to: Callable[[], bool] | None = None) -> None:
-        """Wait while the picture for a moved knob is being computed, or while `to` returns True.
+    def give_way(self, while_: Callable[[], bool] | None = None) -> None:
+        """Wait while the picture for a moved knob is being computed, or while `while_` returns True.
 
         The longer this takes, the less often it checks: each check takes the interpreter from all other threads.
         """
-        waits, pause = to or (lambda: self._host.awaiting_picture), PICTURE_POLL
+        waits, pause = while_ or (lambda: self._host.awaiting_picture), PICTURE_POLL
         while waits() and not self.stop:
             time.sleep(pause)
             pause = min(2.0 * pause, LONGEST_PICTURE_POLL)

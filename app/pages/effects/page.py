@@ -118,10 +118,11 @@ class EffectsPage(Page):
             piece = COST_ACCOUNT_KERNELS if variant.account else COST_KERNELS
             if COMPILER.has(variant.scene, piece):
                 continue
-            self._compiling = name
-            compilation = COMPILER.ask(variant.scene, piece)
-            if compilation.done() and compilation.exception() is not None:
+            if COMPILER.failure(variant.scene, piece) is not None:
                 self._failed[name] = "its kernel could not be compiled"
+            else:
+                self._compiling = name
+                COMPILER.ask(variant.scene, piece)
             return False
         return True
 

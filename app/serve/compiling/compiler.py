@@ -79,6 +79,13 @@ class Compiler:
                 asked = self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
             return asked
 
+    def failure(self, scene: Scene, *pieces: str) -> Exception | None:
+        """Why one of these kernels could not be compiled, when the last attempt has failed; otherwise None."""
+        with self._lock:
+            asked = [self._asked.get((structure(scene), piece)) for piece in pieces]
+        failures = (one.exception() for one in asked if one is not None and one.done())
+        return next((error for error in failures if isinstance(error, Exception)), None)
+
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
         """Wait for these kernels; False when the stop flag went up first. Call it from a worker thread."""
         if self.has(scene, piece):

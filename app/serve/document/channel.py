@@ -119,7 +119,7 @@ class Channel:
             timer.cancel()
         self._timers.clear()
 
-    def call_soon(self, action: Callable[[], None]) -> None:
+    def next_tick(self, action: Callable[[], None]) -> None:
         """Call `action` in the next turn of the event loop; from any thread."""
         self._note_session()
         if self._closed or self._is_destroyed():
@@ -146,7 +146,7 @@ class Channel:
 
         def fire() -> None:
             self._timers.discard(timer)
-            self.call_soon(action)
+            self.next_tick(action)
 
         timer: asyncio.TimerHandle = self._loop.asyncio_loop.call_later(seconds, fire)  # type: ignore[attr-defined]
         self._timers.add(timer)

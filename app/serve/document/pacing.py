@@ -31,13 +31,13 @@ class FramePacer(Generic[Frame]):
         self._painted = 0
 
     @property
-    def waits(self) -> bool:
+    def is_full(self) -> bool:
         """Whether as many frames are in transit as may be."""
         return self._sent - self._painted >= _MOST_IN_TRANSIT
 
     def offer(self, frame: Frame) -> None:
         """Send `frame` now, or as soon as the browser is ready, unless a newer one is offered before."""
-        if self.waits:
+        if self.is_full:
             self._waiting = frame
             return
         self._waiting = None
@@ -57,7 +57,7 @@ class FramePacer(Generic[Frame]):
         self._go_on()
 
     def _go_on(self) -> None:
-        if self.waits:
+        if self.is_full:
             return
         if self._waiting is not None:
             self.offer(self._waiting)

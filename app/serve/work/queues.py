@@ -58,7 +58,7 @@ class Queue:
         self._held: dict[object, deque[Callable[[], None]]] = {}  # work of each owner beyond its share
 
     @property
-    def busy(self) -> int:
+    def busy_threads(self) -> int:
         """How many threads are at work."""
         return len(self._threads) - self._free
 

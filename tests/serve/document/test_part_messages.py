@@ -95,7 +95,7 @@ def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(
         channel = Channel(session.document)
         with await session._lock.acquire():
             run_locked(session, [lambda: order.append("later")])
-            await asyncio.to_thread(lambda: [channel.call_soon(lambda n=n: order.append(n)) for n in range(5)])  # type: ignore[misc]
+            await asyncio.to_thread(lambda: [channel.next_tick(lambda n=n: order.append(n)) for n in range(5)])  # type: ignore[misc]
             channel.call_later(0.0, lambda: order.append("timed"))
             await asyncio.sleep(0.01)
             assert order == []
@@ -118,7 +118,7 @@ def test_what_comes_for_a_document_that_bokeh_has_destroyed_is_dropped(monkeypat
         channel = Channel(session.document)
         monkeypatch.setattr(Document, "session_context", None)
         session.document.destroy(session)
-        channel.call_soon(pytest.fail)
+        channel.next_tick(pytest.fail)
         channel.call_later(0.0, pytest.fail)
         await asyncio.sleep(0.01)
 

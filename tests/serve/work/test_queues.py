@@ -27,7 +27,7 @@ def test_work_does_not_wait_for_a_thread_that_has_just_been_given_other_work() -
 def test_what_waits_and_what_is_under_way_is_counted() -> None:
     queue, go_on = Queue("tested", 2), threading.Event()
     ended = [queue.submit(go_on.wait, 120) for _ in range(5)]
-    assert (queue.busy, queue.waiting) == (2, 3)
+    assert (queue.busy_threads, queue.waiting) == (2, 3)
     go_on.set()
     assert all(one.result(20) for one in ended)
     assert queue.waiting == 0
@@ -44,7 +44,7 @@ def test_an_owner_beyond_its_share_waits_behind_others() -> None:
     mine = [queue.submit(work, name, until, owner="me") for name, until in zip("abc", go_on, strict=False)]
     other = queue.submit(work, "another's", go_on[3], owner="another")
     waiting.until(lambda: len(order) == 3)
-    assert set(order) == {"a", "b", "another's"} and queue.busy == 3
+    assert set(order) == {"a", "b", "another's"} and queue.busy_threads == 3
     go_on[1].set()
     waiting.until(lambda: len(order) == 4)
     assert order[-1] == "c" and not mine[0].done()
@@ -52,7 +52,7 @@ def test_an_owner_beyond_its_share_waits_behind_others() -> None:
         one.set()
     for future in (*mine, other):
         future.result(60)
-    waiting.until(lambda: queue.busy == 0)
+    waiting.until(lambda: queue.busy_threads == 0)
     assert not queue._taken and not queue._held, "nothing of a visitor is kept"
 
 
