@@ -14,7 +14,6 @@ from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..pictures.curve import WORDS
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES
-from ..serve.work.delays import CURVE_QUIET
 from ..serve.work.queues import CURVES, LatestWins
 from ..serve.work.turns import TurnFlag
 from ..session.activities import Activity
@@ -30,6 +29,9 @@ from .peak_names import PeakNames, stated_name
 from .reports import Reports
 from .sweep import COARSE, Progress, Sweep, grid
 from .view import CurveFigure
+
+#: Rest of the knobs before a curve is begun [s]: nobody reads a curve while dragging.
+CURVE_QUIET = 0.35
 
 
 class CurveController:

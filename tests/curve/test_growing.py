@@ -8,9 +8,9 @@ import pytest
 
 from app.curve.bar import CurveBar
 from app.curve.controller import CurveController
+from app.curve.reports import CURVE_EVERY
 from app.curve.sweep import Progress
 from app.curve.view import CurveFigure
-from app.serve.work.delays import CURVE_EVERY
 from app.session.session import Session
 from granchain_core import CurvePoint, scene
 from granchain_core.regime import Regime

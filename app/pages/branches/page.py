@@ -13,7 +13,6 @@ from granchain_core.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_K
 from granchain_core.stop import Stop
 
 from ...pictures.branches import BranchRows
-from ...serve.work.delays import BRANCH_EVERY
 from ...serve.work.queues import LONG
 from ...session.budget import curve_affordable
 from ...session.host import Host
@@ -23,6 +22,9 @@ from ...session.progress import Status, StatusWords
 from ...session.session import slider_range, without_frequency
 from ...session.task import Job, Task
 from .view import LONGEST_BRANCH_PERIOD, Branches
+
+#: Time between two messages while a branch grows [s].
+_MESSAGE_EVERY = 0.08
 
 WORDS = StatusWords("the kernels for branches", BRANCH_KERNELS, kept="the orbits found so far")
 NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no branch. Choose a period, and an orbit of "
@@ -157,7 +159,7 @@ class BranchesPage(Page):
         self._task.start(lambda job: self._follow_in_thread(begin, scene, job))
 
     def _follow_in_thread(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
-        """In a worker thread: follow the branches, update the page every `BRANCH_EVERY`, and let pictures go first."""
+        """In a worker thread: follow the branches, report every `_MESSAGE_EVERY` seconds, and let pictures go first."""
         sent = 0.0
         job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, BRANCH_KERNELS)
         job.say("settling")
@@ -165,7 +167,7 @@ class BranchesPage(Page):
             continuation = Continuation(branch, job.stop)
             job.next_tick(self._add, continuation)
             for _ in continuation:
-                if time.monotonic() - sent > BRANCH_EVERY:
+                if time.monotonic() - sent > _MESSAGE_EVERY:
                     sent = time.monotonic()
                     job.next_tick(self._draw)
                 job.give_way()

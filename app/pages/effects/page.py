@@ -14,7 +14,6 @@ from granchain_core.warm import structure
 
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES
-from ...serve.work.delays import ACTIVITIES_EVERY, COST_QUIET
 from ...serve.work.queues import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.debounce import Debounce
@@ -24,6 +23,11 @@ from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, READY, UNDER_WAY
 from ...session.switches import SWITCHES, present, refusal, variants
 from ...session.task import Job, Task
+
+#: Time between two lists of what is being computed, while somebody looks [s].
+_LIST_EVERY = 0.4
+#: Rest of the knobs before the cost of an effect is measured [s].
+_QUIET = 0.7
 
 
 class EffectsPage(Page):
@@ -35,7 +39,7 @@ class EffectsPage(Page):
         self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
         self._visible = False
         self._round = 0
-        self._quiet = Debounce(host, COST_QUIET)
+        self._quiet = Debounce(host, _QUIET)
         self._key: tuple[object, ...] = ()
         self._costs: dict[str, dict[str, EffectCost]] = {}
         self._failed: dict[str, str] = {}
@@ -93,7 +97,7 @@ class EffectsPage(Page):
             return
         self._next()
         self._show()
-        self._host.call_later(ACTIVITIES_EVERY, self._poll, number)
+        self._host.call_later(_LIST_EVERY, self._poll, number)
 
     def _next(self) -> None:
         """Begin the next thing to do: compile the kernels of one effect, or measure it."""

@@ -19,7 +19,6 @@ from ...parts.toolkit.component import Component
 from ...pictures.diagram import now_row
 from ...pictures.theme import THEMES, Theme
 from ...serve.compiling.compiler import PICTURE_PIECES
-from ...serve.work.delays import CELLS_EVERY, MAP_QUIET
 from ...serve.work.queues import LONG
 from ...session.debounce import Debounce
 from ...session.host import Host
@@ -29,6 +28,11 @@ from ...session.progress import Status, StatusWords
 from ...session.session import slider_range
 from ...session.task import Job, Task
 from .view import cells_message, described_attractor, head_message
+
+#: Rest of the knobs before a new map is begun [s].
+_QUIET = 0.7
+#: Time between two messages while a map grows [s].
+_MESSAGE_EVERY = 0.25
 
 #: Cells along f and A0: few enough to be computed in about ten seconds on one core.
 COLUMNS = 60
@@ -62,7 +66,7 @@ class MapPage(Page):
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
         self._shown: list[dict[str, Any]] = []
-        self._quiet = Debounce(host, MAP_QUIET)
+        self._quiet = Debounce(host, _QUIET)
         self._theme = THEMES["light"]
         self._scale: dict[str, Any] = {}
         self._found: list[Attractor] = []
@@ -228,7 +232,7 @@ def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], Non
     last = time.monotonic()
     for result in iter_diagram(grid, missing, stop, 1, pause):
         rows.append(cell_of(result))
-        if time.monotonic() - last > CELLS_EVERY:
+        if time.monotonic() - last > _MESSAGE_EVERY:
             yield np.array(rows)
             rows, last = [], time.monotonic()
     if rows:

@@ -12,7 +12,6 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...pictures.multipliers import plane_state
-from ...serve.work.delays import ANALYSIS_QUIET
 from ...serve.work.queues import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce
@@ -33,6 +32,9 @@ from .view import (
 )
 from .work import PHASES, OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 
+#: Time from a settled picture to its analysis [s]: nothing is analysed while a knob moves.
+_QUIET = 0.12
+
 _LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
 WORDS = StatusWords("the tangent flow", ORBIT_KERNELS)
@@ -46,7 +48,7 @@ class StabilityPage(Page):
         self._view = view
         self._orbits = Task(host, ANALYSES, self._ended, "The analysis")
         self._sections = Task(host, ANALYSES, self._section_ended, "The section")
-        self._quiet = Debounce(host, ANALYSIS_QUIET)
+        self._quiet = Debounce(host, _QUIET)
         self._visible = False
         self._observer = False
         self._rank, self._bead, self._phase = 0, 1, 0

@@ -4,12 +4,12 @@
 import { draw } from "../toolkit/plot.js";
 
 export class BeadLink {
-  constructor(drawing, cursor, redraw) {
-    Object.assign(this, { drawing, cursor, redraw });
+  constructor(drawing, layout, redraw) {
+    Object.assign(this, { drawing, layout, redraw });
     this.line = draw("polyline", {});
     this.column = draw("rect", {});
     this.root = draw("svg", { id: "link", "aria-hidden": "true" }, this.line, this.column);
-    cursor.stage.append(this.root);
+    layout.stage.append(this.root);
     const { canvas } = drawing;
     canvas.addEventListener("pointermove", ({ clientX }) => {
       if (drawing.beads) this.point(drawing.nearest(clientX - this.box().left));
@@ -31,14 +31,14 @@ export class BeadLink {
   }
 
   place() {
-    const { drawing, cursor } = this;
+    const { drawing, layout } = this;
     const bead = drawing.pointed || drawing.chosen;
     const shown = bead >= 1 && bead <= drawing.beads;
     this.root.toggleAttribute("hidden", !shown);
     if (!shown) return;
-    const stage = cursor.stage.getBoundingClientRect();
+    const stage = layout.stage.getBoundingClientRect();
     const { left, top } = this.box();
-    const { columns, area } = cursor;
+    const { columns, area } = layout;
     const wide = columns.width / drawing.beads;
     const from = [left - stage.left + drawing.home(bead), top - stage.top + drawing.middle() + 0.5 * drawing.pitch + 2];
     const to = [columns.left + (bead - 0.5) * wide, area.y];

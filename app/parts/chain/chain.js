@@ -3,8 +3,10 @@
 import { BeadLink } from "./bead_link.js";
 import { ChainDrawing } from "./chain_drawing.js";
 import { unpack } from "./chain_series.js";
-import { Clock, Cursor } from "../time/clock.js";
+import { Clock } from "../time/clock.js";
 import { Crosshair } from "../time/crosshair.js";
+import { Cursor } from "../time/cursor.js";
+import { StageLayout } from "../time/stage_layout.js";
 import { button, element } from "../toolkit/dom.js";
 import { Sound } from "./sound.js";
 import { colourOf, Steel } from "./steel.js";
@@ -31,9 +33,10 @@ class Chain {
     this.canvas = element("canvas");
     this.drawing = new ChainDrawing(this.canvas, model.state.palette);
     this.clock = new Clock(() => this.mark());
-    this.cursor = new Cursor(this.clock);
-    this.link = new BeadLink(this.drawing, this.cursor, () => this.mark());
-    this.crosshair = new Crosshair(this.clock, this.cursor, (bead) => this.link.point(bead));
+    this.layout = new StageLayout();
+    this.cursor = new Cursor(this.clock, this.layout);
+    this.link = new BeadLink(this.drawing, this.layout, () => this.mark());
+    this.crosshair = new Crosshair(this.clock, this.layout, (bead) => this.link.point(bead));
     this.sound = new Sound();
     this.dirty = true;
     this.asked = 0; // number of the requested animation frame
@@ -57,7 +60,7 @@ class Chain {
   measure() {
     const { left, width } = this.canvas.getBoundingClientRect();
     this.drawing.measure({ left: left + DRIVER, width: width - DRIVER - WALL }, 0);
-    this.cursor.measure();
+    this.layout.measure();
     this.placeColumn();
     this.mark();
     if (this.compact === null || this.compact === this.isCompact()) return;
@@ -66,7 +69,7 @@ class Chain {
   }
 
   isCompact() {
-    return this.cursor.isCompact(this.model.state.titles);
+    return this.layout.isCompact(this.model.state.titles);
   }
 
   // The colour bar below the map, and the choice of scale.
@@ -133,13 +136,13 @@ class Chain {
   placeColumn() {
     this.link.place();
     const { chosen, beads } = this.drawing;
-    const { left, width } = this.cursor.columns;
+    const { left, width } = this.layout.columns;
     this.column.hidden = !(chosen >= 1 && chosen <= beads);
     Object.assign(this.column.style, {
       left: `${left + ((chosen - 1) / beads) * width}px`,
       width: `${width / beads}px`,
-      top: `${this.cursor.area.y}px`,
-      height: `${this.cursor.area.height}px`,
+      top: `${this.layout.area.y}px`,
+      height: `${this.layout.area.height}px`,
     });
   }
 

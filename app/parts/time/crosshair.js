@@ -12,8 +12,8 @@ function quantity(value, unit) {
 
 export class Crosshair {
   // `onBead` is called with the bead in whose column the pointer is, 0 for none.
-  constructor(clock, cursor, onBead) {
-    Object.assign(this, { clock, cursor, onBead });
+  constructor(clock, layout, onBead) {
+    Object.assign(this, { clock, layout, onBead });
     this.line = element("div", { id: "cross", hidden: true });
     this.words = {};
     for (const name of ["left", "map", "right"]) {
@@ -24,18 +24,18 @@ export class Crosshair {
     this.tape = draw("svg", { id: "tape", "aria-hidden": "true" });
     this.measured = element("p", { id: "measured", role: "status", hidden: true });
     this.line.ariaHidden = "true"; // the time cursor tells a screen reader the same
-    cursor.stage.append(this.line, this.bead, this.tape, this.measured);
-    for (const picture of cursor.stage.querySelectorAll(".picture")) {
+    layout.stage.append(this.line, this.bead, this.tape, this.measured);
+    for (const picture of layout.stage.querySelectorAll(".picture")) {
       picture.addEventListener("pointermove", (event) => this.moved(event));
       picture.addEventListener("pointerleave", () => this.hide());
     }
-    cursor.map.addEventListener("pointerdown", (event) => event.shiftKey && this.measure(event), true);
+    layout.map.addEventListener("pointerdown", (event) => event.shiftKey && this.measure(event), true);
     document.addEventListener("keydown", ({ key }) => key === "Escape" && this.roll());
   }
 
   // The place of a pointer event: as a part of the time shown and of the beads, and in pixels of the stage.
   at({ clientX, clientY }) {
-    const { stage, area, columns } = this.cursor;
+    const { stage, area, columns } = this.layout;
     const box = stage.getBoundingClientRect();
     const x = clientX - box.left,
       y = clientY - box.top;
@@ -80,7 +80,7 @@ export class Crosshair {
   }
 
   placeWords() {
-    const { stage } = this.cursor;
+    const { stage } = this.layout;
     const from = stage.getBoundingClientRect().left + 8;
     for (const [name, words] of Object.entries(this.words)) {
       const box = document.getElementById(name).getBoundingClientRect();
@@ -90,7 +90,7 @@ export class Crosshair {
   }
 
   placeBead(bead, beads) {
-    const { columns, area } = this.cursor;
+    const { columns, area } = this.layout;
     this.bead.hidden = bead < 0;
     this.onBead(bead + 1);
     const left = `${columns.left + ((bead + 0.5) / beads) * columns.width}px`;
@@ -104,7 +104,7 @@ export class Crosshair {
     event.stopImmediatePropagation();
     event.preventDefault();
     const from = this.at(event);
-    const { map } = this.cursor;
+    const { map } = this.layout;
     map.setPointerCapture(event.pointerId);
     const move = (next) => this.drawTape(from, this.at(next));
     const done = () => {

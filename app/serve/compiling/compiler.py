@@ -20,8 +20,10 @@ from granchain_core.pieces import COMPILE_SECONDS, CURVE_KERNELS, MOTION_KERNELS
 from granchain_core.stop import Stop
 from granchain_core.warm import compile_piece, is_warm, structure
 
-from ..work.delays import STOP_POLL
 from ..work.queues import COMPILATIONS, LOADING
+
+#: Time between two checks of a stop flag while another process compiles [s].
+_STOP_CHECK_INTERVAL = 0.05
 
 log = logging.getLogger("granchain")
 
@@ -91,7 +93,7 @@ class Compiler:
         if self.has(scene, piece):
             return True
         compilation = self.ask(scene, piece)
-        while not wait([compilation], timeout=STOP_POLL).done:
+        while not wait([compilation], timeout=_STOP_CHECK_INTERVAL).done:
             if stop:
                 return False
         compilation.result()
