@@ -24,7 +24,7 @@ from ..session.progress import COMPUTING, OFF, READY
 from ..session.session import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
-from .bar import CHOICES, CurveBar
+from .curve_bar import CHOICES, CurveBar
 from .peak_names import PeakNames, stated_name
 from .reports import Reports
 from .sweep import COARSE, Progress, Sweep, grid

@@ -49,7 +49,7 @@ class Controller:
         self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
         self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
-        self.curves = CurveController(self, views.curve, views.curvebar, self._curve_placed)
+        self.curves = CurveController(self, views.curve, views.curve_bar, self._curve_placed)
         self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self.pictures.redraw)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pinned = Pinned(self, views)

@@ -13,7 +13,7 @@ from bokeh.models import Range1d
 
 from granchain_core.experiment.formats import FORMATS
 
-from ..curve.bar import KINDS, CurveBar
+from ..curve.curve_bar import KINDS, CurveBar
 from ..curve.view import CurveFigure
 from ..parts.chain.chain import SCALES, ChainPart
 from ..parts.equation.equation import EquationPart
@@ -54,7 +54,7 @@ class Views:
         self.trains = ForceTrains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = CurveFigure(choose)
-        self.curvebar = CurveBar(received)
+        self.curve_bar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
             "largest_file": LARGEST_UPLOAD, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
             "pages": watched_pages(), "regimes": KINDS,
@@ -77,7 +77,7 @@ class Views:
         """Make all parts roots of a visitor's document; their layout is a CSS grid in page.css."""
         parts = {
             "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
-            "curvebar": self.curvebar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
+            "curvebar": self.curve_bar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
         }
         plots = self.trains.left, self.energy.figure, self.trains.right, self.curve.figure
         put_into(document, parts, plots, *_page())

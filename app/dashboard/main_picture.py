@@ -24,7 +24,7 @@ from ..serve.work.queues import PICTURES, LatestWins
 from ..serve.work.shared import Shared
 from ..serve.work.turns import TurnFlag
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
-from ..session.energy_residual import with_account
+from ..session.energy_account import with_account
 from ..session.host import Host
 from ..session.live import LivePicture, LiveRun
 from .layout import Views

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import pytest
 
-from app.curve.bar import CurveBar
 from app.curve.controller import CurveController
+from app.curve.curve_bar import CurveBar
 from app.curve.reports import CURVE_EVERY
 from app.curve.sweep import Progress
 from app.curve.view import CurveFigure

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.curve.bar import CurveBar
 from app.curve.controller import CurveController
+from app.curve.curve_bar import CurveBar
 from app.curve.view import CurveFigure
 from app.session.budget import curve_affordable
 from app.session.session import Session

@@ -6,8 +6,8 @@ import pytest
 from waiting import until
 
 from app.curve import controller
-from app.curve.bar import CurveBar
 from app.curve.controller import CurveController
+from app.curve.curve_bar import CurveBar
 from app.curve.view import CurveFigure
 from app.serve.compiling import compiler
 from app.serve.compiling.compiler import Compiler

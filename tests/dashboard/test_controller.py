@@ -194,7 +194,7 @@ def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashbo
     dashboard.received({"do": "scene", "name": "rig"})
     assert dashboard.session.curves == "rest.up.features"
     dashboard.received({"do": "go", "query": "v=1&scene=sec2"})  # two steps back
-    bar = dashboard.views.curvebar.state
+    bar = dashboard.views.curve_bar.state
     assert dashboard.session.curves == "auto" and (bar["rest"], bar["up"], bar["features"]) == (True, False, False)
 
 
