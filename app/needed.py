@@ -1,6 +1,6 @@
 """What is used of libraries beyond their documentation, checked at the start.
 
-Each module that uses any of it has a table `NEEDED`. `python -m tools.update` writes the tables into docs/dashboard.md.
+Each module that uses any of it has a table `NEEDED`. `python -m tools.update` writes the tables into docs/libraries.md.
 """
 
 from __future__ import annotations

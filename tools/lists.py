@@ -1,5 +1,5 @@
 """Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes (README.md), and
-what is used of libraries (docs/dashboard.md).
+what is used of libraries (docs/libraries.md).
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def table_of_scenes() -> str:
 
 
 def table_of_libraries() -> str:
-    """The table of docs/dashboard.md: what is used of libraries beyond their documentation, and where."""
+    """The table of docs/libraries.md: what is used of libraries beyond their documentation, and where."""
     rows = [f"| `{row.owner}`: {', '.join(f'`{name}`' for name in row.names)} | `app/{module.replace('.', '/')}.py` | {row.without} |"
             for module, table in needed.tables().items() for row in table]
     return "\n".join(["| what | where | without it |", "|---|---|---|", *rows])

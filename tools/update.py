@@ -3,7 +3,7 @@
     python -m tools.update
 
 - tables in the docs: thresholds (docs/regimes.md, orbits.md, branches.md, accuracy.md), methods (docs/method.md), knobs
-  (docs/model.md), scenes (README.md), what is used of libraries (docs/dashboard.md);
+  (docs/model.md), scenes (README.md), what is used of libraries (docs/libraries.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -38,7 +38,7 @@ _TABLES = (
     ("docs/method.md", "methods", table_of_methods),
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "scenes", table_of_scenes),
-    ("docs/dashboard.md", "libraries", table_of_libraries),
+    ("docs/libraries.md", "libraries", table_of_libraries),
 )
 
 

@@ -130,12 +130,10 @@ class CurveController:
             self._give_up()
             return
         missing = [piece for piece in PICTURE_PIECES if not COMPILER.has(scene, piece)]
-        failure = COMPILER.failure(scene, *missing)
+        failure = COMPILER.ask_once(scene, *missing)
         if failure is not None:
             self._say_not_compiled(failure)
         elif missing:
-            for piece in missing:
-                COMPILER.ask(scene, piece)
             self._quiet.start(self._begin_when_compiled, scene)  # look again
         else:
             self._uncompiled = None

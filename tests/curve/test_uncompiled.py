@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from waiting import until
 
 from app.curve import controller
 from app.curve.controller import CurveController
@@ -67,13 +66,3 @@ def test_it_is_begun_once_another_attempt_has_succeeded(tries: list[str], monkey
     curves.restart_when_quiet(host.session.scene)
     host.run_callbacks_until(lambda: not host.callbacks)
     assert begun == [host.session.scene]
-
-
-def test_an_attempt_that_is_under_way_has_not_failed(tries: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    one, chain = controller.COMPILER, Session().scene
-    assert one.failure(chain, CURVE_KERNELS) is None
-    one.ask(chain, CURVE_KERNELS)
-    until(lambda: one.failure(chain, CURVE_KERNELS) is not None)
-    monkeypatch.setattr(compiler, "_compile", lambda *_: None)
-    one.ask(chain, CURVE_KERNELS).result(20)
-    assert one.failure(chain, CURVE_KERNELS) is None

@@ -122,11 +122,10 @@ class EffectsPage(Page):
             piece = COST_ACCOUNT_KERNELS if variant.account else COST_KERNELS
             if COMPILER.has(variant.scene, piece):
                 continue
-            if COMPILER.failure(variant.scene, piece) is not None:
-                self._failed[name] = "its kernel could not be compiled"
-            else:
+            if COMPILER.ask_once(variant.scene, piece) is None:
                 self._compiling = name
-                COMPILER.ask(variant.scene, piece)
+            else:
+                self._failed[name] = "its kernel could not be compiled"
             return False
         return True
 

@@ -1,5 +1,5 @@
 // What the page uses of BokehJS beyond its documentation. Only connection.js uses the global as well, so that a new
-// release is checked here (tests/browser/test_bokeh_internals.py); docs/dashboard.md lists the rest.
+// release is checked here (tests/browser/test_bokeh_internals.py); docs/libraries.md lists the rest.
 
 // All models of this name on the page. Each figure has a document of its own.
 export const modelsNamed = (name) => window.Bokeh.documents.map((one) => one.get_model_by_name(name)).filter(Boolean);

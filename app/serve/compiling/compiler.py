@@ -74,18 +74,23 @@ class Compiler:
 
     def ask(self, scene: Scene, piece: str) -> Future[None]:
         """Begin to compile in another process, unless that is under way or done; what failed is tried again."""
+        return self._request(scene, piece, again=True)
+
+    def _request(self, scene: Scene, piece: str, again: bool) -> Future[None]:
         key = structure(scene), piece
         with self._lock:
             asked = self._asked.get(key)
-            if asked is None or (asked.done() and asked.exception() is not None):
+            if asked is None or (again and asked.done() and asked.exception() is not None):
                 asked = self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
             return asked
 
-    def failure(self, scene: Scene, *pieces: str) -> Exception | None:
-        """Why one of these kernels could not be compiled, when the last attempt has failed; otherwise None."""
-        with self._lock:
-            asked = [self._asked.get((structure(scene), piece)) for piece in pieces]
-        failures = (one.exception() for one in asked if one is not None and one.done())
+    def ask_once(self, scene: Scene, *pieces: str) -> Exception | None:
+        """Begin to compile these kernels where nobody has asked for them yet.
+
+        Returns why one of them could not be compiled, when the last attempt has failed; otherwise None.
+        """
+        asked = [self._request(scene, piece, again=False) for piece in pieces]
+        failures = (one.exception() for one in asked if one.done())
         return next((error for error in failures if isinstance(error, Exception)), None)
 
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import logging
 import time
+from threading import Event
 
 import pytest
+from waiting import until
 
 from app.serve.compiling import compiler
 from app.serve.compiling.compiler import Compiler
@@ -56,3 +58,23 @@ def test_a_compilation_that_failed_is_tried_again(monkeypatch: pytest.MonkeyPatc
     second = one.ask(scene("sec2"), "a piece")
     second.result(timeout=20)
     assert one.ask(scene("sec2"), "a piece") is second and tries == ["a piece"] * 2
+
+
+def test_what_is_asked_for_once_is_not_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As long as an attempt is under way, it has not failed."""
+    one, tries, finish = Compiler(), [], Event()
+
+    def fails(_: object, piece: str) -> None:
+        tries.append(piece)
+        finish.wait(20)
+        raise OSError("no space left")
+
+    monkeypatch.setattr(compiler, "_compile", fails)
+    assert one.ask_once(scene("sec2"), "a piece") is None
+    assert one.ask_once(scene("sec2"), "a piece") is None
+    finish.set()
+    until(lambda: isinstance(one.ask_once(scene("sec2"), "a piece"), OSError))
+    assert tries == ["a piece"]
+    monkeypatch.setattr(compiler, "_compile", lambda *_: None)
+    one.ask(scene("sec2"), "a piece").result(20)
+    assert one.ask_once(scene("sec2"), "a piece") is None

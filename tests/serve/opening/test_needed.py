@@ -17,7 +17,7 @@ ROWS = [row for table in needed.tables().values() for row in table]
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.owner)
 def test_the_installed_releases_have_what_is_used(row: Needed) -> None:
-    """Fails with the name where one has not: docs/dashboard.md says what happens then."""
+    """Fails with the name where one has not: docs/libraries.md says what happens then."""
     assert missing([row]) == []
 
 
