@@ -265,7 +265,7 @@ class CurveController:
         stated = stated_features() if self._wanted["features"] else ()
         self._figure.features(stated)
         self._bar.update_state(**self._wanted, rig=scene.pattern == rig_beads(),
-                               stated=[stated_name(one) for one in stated])
+                               stated=[stated_name(feature) for feature in stated])
 
     def _draw(self, reports: list[Progress]) -> None:
         """Draw the points of these reports, and note which directions they complete."""

@@ -91,7 +91,7 @@ def _extremum_names(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
 
 
 #: Names for all visitors: a class that looks at one curve settles its dozen extrema once, which takes a second.
-NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda one: 1000, turns=False)
+NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda name: 1000, turns=False)
 
 
 class PeakNames:
@@ -121,6 +121,6 @@ class PeakNames:
                     job.give_way(lambda: self._host.busy)
                     job.stop.check()
                     found += [name] if name else []
-            job.next_tick(self._show, sorted(found, key=lambda one: float(one["f"])))
+            job.next_tick(self._show, sorted(found, key=lambda place: float(place["f"])))
 
         self._task.start(work)

@@ -82,7 +82,8 @@ class CurveFigure:
 
     def _bring_forward(self) -> None:
         """Draw what the paper states in front of the curves, in whichever order they came."""
-        self.figure.renderers = [*(one for one in self.figure.renderers if one is not self._stated), self._stated]
+        others = [renderer for renderer in self.figure.renderers if renderer is not self._stated]
+        self.figure.renderers = [*others, self._stated]
 
     def _marks(self) -> None:
         """Stated features and the current point, in front of the curves."""

@@ -100,10 +100,10 @@ class Controller:
 
     def _visible(self, message: dict[str, Any]) -> None:
         name, visible = message.get("name"), message.get("value")
-        one = self._looked_at.get(name) if isinstance(name, str) else None
-        if one is None or not isinstance(visible, bool):
+        looked_at = self._looked_at.get(name) if isinstance(name, str) else None
+        if looked_at is None or not isinstance(visible, bool):
             raise BadInput(f"There is no page {quoted(name)} to look at.")
-        one.visibility_changed(visible)
+        looked_at.visibility_changed(visible)
 
     # What the pages ask for
 

@@ -58,7 +58,7 @@ class Views:
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
             "largest_file": LARGEST_UPLOAD, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
             "pages": watched_pages(), "regimes": KINDS,
-            "endings": [ending for one in FORMATS for ending in one.endings]})
+            "endings": [ending for form in FORMATS for ending in form.endings]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
 

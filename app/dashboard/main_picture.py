@@ -34,7 +34,7 @@ from .show import show_live, show_regime, show_settled
 def size_of(picture: Settled) -> int:
     """Memory of a picture [bytes], which is that of its arrays and a little."""
     arrays = [*vars(picture.run).values(), picture.state.displacement, picture.state.velocity]
-    return 4096 + sum(one.nbytes for one in arrays if isinstance(one, np.ndarray))
+    return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
 
 #: Pictures of all visitors. The last picture of each scene is kept for the next visitor who asks, in at most 100 MB.

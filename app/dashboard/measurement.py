@@ -109,7 +109,8 @@ class MeasurementActions:
     def _answer(self, message: dict[str, Any]) -> None:
         """What the visitor chose: columns as [quantity, number, unit], and words."""
         columns = message.get("columns", [])
-        if not isinstance(columns, list) or not all(isinstance(one, list) and len(one) == 3 for one in columns):
+        if not isinstance(columns, list) or not all(isinstance(column, list) and len(column) == 3
+                                                    for column in columns):
             raise BadInput("The choice of columns could not be read; choose the file again.")
         words = [f"{str(quantity)[:20]}={str(number)[:6]}:{str(unit)[:30]}" for quantity, number, unit in columns]
         given = answers_of(words, _word(message, "decimal"), None, _word(message, "dataset"))
@@ -133,8 +134,9 @@ class MeasurementActions:
         self._content = content
         self._tabs.update_state(question={
             "reason": question.reason, "about": list(question.about), "datasets": list(question.datasets),
-            "columns": [[one.number, one.title, one.quantity if one.quantity in CHOICES else "", one.likely_unit]
-                        for one in question.columns],
+            "columns": [[column.number, column.title, column.quantity if column.quantity in CHOICES else "",
+                         column.likely_unit]
+                        for column in question.columns],
             "rows": [[line, list(fields)] for line, fields in question.rows],
             "quantities": list(CHOICES.items()),
             "units": {name: list(UNITS[QUANTITIES[name]]) for name in CHOICES}})

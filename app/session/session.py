@@ -130,7 +130,7 @@ class Session:
     def set_speed(self, speed: object) -> None:
         """Set the drive periods shown in a second to one of `SPEEDS`."""
         if not is_number(speed) or speed not in SPEEDS:
-            known = ", ".join(f"{one:g}" for one in sorted(SPEEDS))
+            known = ", ".join(f"{speed:g}" for speed in sorted(SPEEDS))
             raise BadInput(f"speed {quoted(speed)} is not one of {known} drive periods a second.")
         self.speed = float(speed)
 

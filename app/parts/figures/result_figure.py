@@ -54,6 +54,6 @@ class ResultFigure(Component):
                 self._send_figure(place)
 
     def _send_figure(self, place: str) -> None:
-        one = self._drawn[place]
-        figure = figure_item(one.draw(self._theme))
-        self.send(type="figure", place=place, figure=figure, words=one.words, shape=one.shape)
+        drawn = self._drawn[place]
+        figure = figure_item(drawn.draw(self._theme))
+        self.send(type="figure", place=place, figure=figure, words=drawn.words, shape=drawn.shape)

@@ -17,8 +17,8 @@ MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
 #: Knobs of unequal beads and of an impact, with the values at which they have no effect. A scene with other values
 #: shows these knobs among the main ones.
-_NEUTRAL = {one.name: one.default for one in fields(Scene)
-            if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike", "end")}
+_NEUTRAL = {field.name: field.default for field in fields(Scene)
+            if field.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike", "end")}
 #: What a knob is without a drive: its label and its meaning.
 _UNDRIVEN = {
     "f": ("time shown = 1/f", "This chain has no drive: 1/f is only the time that is shown."),

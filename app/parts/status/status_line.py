@@ -86,7 +86,7 @@ def regime_hint(regime: Regime, pushed: tuple[int, int] | None, place: Place | N
     if regime.evidence:
         meanings.append(_CONTRACTION if regime.multiplier is None else
                         multiplier_words(regime.multiplier, regime.period or regime.approaches or 1))
-    return " ".join(one for one in meanings if one)
+    return " ".join(meaning for meaning in meanings if meaning)
 
 
 def multiplier_words(modulus: float, period: int) -> str:

@@ -90,7 +90,7 @@ class Compiler:
         Returns why one of them could not be compiled, when the last attempt has failed; otherwise None.
         """
         asked = [self._request(scene, piece, again=False) for piece in pieces]
-        failures = (one.exception() for one in asked if one.done())
+        failures = (compilation.exception() for compilation in asked if compilation.done())
         return next((error for error in failures if isinstance(error, Exception)), None)
 
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:

@@ -99,9 +99,9 @@ class _Message:
         if isinstance(value, int) and abs(value) <= _LARGEST_SAFE_INTEGER:
             return int(value)
         if isinstance(value, (list, tuple)):
-            return [self.value(one) for one in value]
+            return [self.value(item) for item in value]
         if isinstance(value, dict):
-            return {"type": "map", "entries": [[self.value(key), self.value(one)] for key, one in value.items()]}
+            return {"type": "map", "entries": [[self.value(key), self.value(item)] for key, item in value.items()]}
         if isinstance(value, np.ndarray) and value.shape and value.dtype.char in _ARRAYS:
             return self._array(value)
         raise _NotPlainValue
@@ -147,8 +147,8 @@ def encode_patch(events: list[DocumentPatchedEvent]) -> bytes | None:
     if message.arrays:
         header["num_buffers"] = len(message.arrays)
     parts: list[bytes | memoryview] = []
-    for one in (header, {}, content):
-        parts.extend(_frame(json.dumps(one, separators=(",", ":")).encode()))
+    for part in (header, {}, content):
+        parts.extend(_frame(json.dumps(part, separators=(",", ":")).encode()))
     for name, data in message.arrays:
         parts.extend(_frame(json.dumps({"id": name}).encode()))
         parts.extend(_frame(data, binary=True))
@@ -205,11 +205,11 @@ class _Socket:
 def _send(document: Document, session: Any, events: list[Any]) -> None:
     """Send held events: those for the browser as one message; Bokeh handles the rest."""
     patches = [event for event in events if isinstance(event, DocumentPatchedEvent)]
-    sockets = [_Socket(one) for one in getattr(session, "_subscribed_connections", ())]
-    if patches and sockets and all(one.usable for one in sockets):
+    sockets = [_Socket(connection) for connection in getattr(session, "_subscribed_connections", ())]
+    if patches and sockets and all(socket.usable for socket in sockets):
         data = encode_patch(patches)
-        for one in sockets:
-            one.write(_encoded(document, patches, one.connection) if data is None else data)
+        for socket in sockets:
+            socket.write(_encoded(document, patches, socket.connection) if data is None else data)
         events = [event for event in events if not isinstance(event, DocumentPatchedEvent)]
     for event in events:
         document.callbacks.trigger_on_change(event)
@@ -267,8 +267,8 @@ def set_properties(model: Model, **values: Any) -> None:
 
 def _keep_last(events: list[Any], event: Any) -> None:
     """Keep an event; it replaces an earlier one of the same property, which is out of date."""
-    for place, one in enumerate(events):
-        if type(one) is type(event) and one.model is event.model and one.attr == event.attr:
+    for place, kept in enumerate(events):
+        if type(kept) is type(event) and kept.model is event.model and kept.attr == event.attr:
             events[place] = event
             return
     events.append(event)

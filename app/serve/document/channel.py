@@ -94,8 +94,8 @@ def _act(session: Any, actions: list[Callable[[], None]]) -> list[Any]:
 
 async def _finish(pending: list[Any], release: Any) -> None:
     with release:
-        for one in pending:
-            await one
+        for write in pending:
+            await write
 
 
 class Channel:

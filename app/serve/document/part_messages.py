@@ -64,17 +64,17 @@ def _plain(value: Any) -> Any:
     if value is None or isinstance(value, (str, bool, int, float)):
         return value
     if isinstance(value, list):
-        return [_plain(one) for one in value]
+        return [_plain(item) for item in value]
     match value:
         case {"type": "map", "entries": [*entries]} if len(value) == 2:
-            return dict(_entry(one) for one in entries)
+            return dict(_entry(entry) for entry in entries)
         case {"type": "number", "value": str(name)} if len(value) == 2 and name in _NUMBERS:
             return _NUMBERS[name]
     raise _NotAPartMessage
 
 
-def _entry(one: Any) -> tuple[str, Any]:
-    match one:
+def _entry(entry: Any) -> tuple[str, Any]:
+    match entry:
         case [str(key), value]:
             return key, _plain(value)
     raise _NotAPartMessage

@@ -27,8 +27,9 @@ def _streams(document: Document) -> list[IOStream]:
     """The streams behind this page's websockets; empty if a release keeps them elsewhere."""
     session = getattr(document.session_context, "session", None)
     connections = getattr(session, "_subscribed_connections", ())
-    sockets = [getattr(getattr(connection, "_socket", None), "ws_connection", None) for connection in connections]
-    streams = [getattr(one, "stream", None) for one in sockets]
+    ws_connections = [getattr(getattr(connection, "_socket", None), "ws_connection", None)
+                      for connection in connections]
+    streams = [getattr(ws_connection, "stream", None) for ws_connection in ws_connections]
     return [stream for stream in streams if isinstance(stream, IOStream) and not stream.closed()]
 
 

@@ -94,7 +94,7 @@ class Rules:
     def claim_connection(self, session: str) -> bool:
         """Give the session its one connection; False if it had one before."""
         now = time.monotonic()
-        for old in [one for one, at in self.connected.items() if at < now - _SESSIONS_REMEMBERED]:
+        for old in [session_id for session_id, at in self.connected.items() if at < now - _SESSIONS_REMEMBERED]:
             del self.connected[old]
         first = session not in self.connected
         self.connected[session] = now

@@ -94,5 +94,5 @@ def _check_value(value: Any, deepest: int) -> None:
         if "type" in value and value["type"] not in TYPES:
             raise RefusedMessage("a value of a kind that no page sends")
         value = list(value.values())
-    for one in value:
-        _check_value(one, deepest - 1)
+    for item in value:
+        _check_value(item, deepest - 1)

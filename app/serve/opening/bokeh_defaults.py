@@ -152,7 +152,7 @@ def _visits_what_is_there(visit: Any, found: _Remembered) -> Callable[[Any, Any]
         there = value._property_values, value._unstable_default_values, themed
         for name in value.properties_with_refs():
             key = (kind, name)
-            if (key in found.known or found.empty.get(key)) and not any(name in one for one in there):
+            if (key in found.known or found.empty.get(key)) and not any(name in values for values in there):
                 continue
             references.visit_value_and_its_immediate_references(getattr(value, name), visitor)
 

@@ -57,10 +57,10 @@ class _Common(NamedTuple):
         data, sheets = properties.pop("data", None), properties.pop("stylesheets", [])
         if not isinstance(data, Model) or collect_models(properties):
             return None
-        if not all(isinstance(one, (str, ImportedStyleSheet)) for one in sheets):
+        if not all(isinstance(sheet, (str, ImportedStyleSheet)) for sheet in sheets):
             return None
         own = frozenset(name for name in data.properties() - Model.properties() if name in part.param)
-        return cls(properties, tuple((isinstance(one, str), str(getattr(one, "url", one))) for one in sheets),
+        return cls(properties, tuple((isinstance(sheet, str), str(getattr(sheet, "url", sheet))) for sheet in sheets),
                    type(data), own | {"name"})
 
     def properties_of(self, part: Any, imported: dict[str, ImportedStyleSheet]) -> dict[str, Any]:

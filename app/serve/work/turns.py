@@ -113,9 +113,9 @@ class FairScheduler:
     def stopped(self, stop: Stop) -> None:
         """Release the thread that waits with this stop flag, which has been set."""
         with self._lock:
-            for one in [one for one in self._waiting if one.stop is stop]:
-                self._waiting.remove(one)
-                one.granted.set()
+            for turn in [turn for turn in self._waiting if turn.stop is stop]:
+                self._waiting.remove(turn)
+                turn.granted.set()
 
     def end(self, turn: _Turn) -> None:
         """End a turn."""
@@ -143,31 +143,31 @@ class FairScheduler:
             if any(other.claim(now) < mine for other in self._waiting):
                 return True
             too_many = len(self._running) - self._at_once
-            more = sum(one.cpu_time.used > turn.cpu_time.used for one in self._running if not one.is_new)
+            more = sum(other.cpu_time.used > turn.cpu_time.used for other in self._running if not other.is_new)
             return more < too_many
 
     def _grant(self) -> None:
         """With the lock held: give turns to those with the best claims."""
         self._checked_at = now = self._clock()
         # Mostly there is room for none, and finding that out is cheaper than sorting.
-        if not any(self._has_room(one, now) for one in self._waiting):
+        if not any(self._has_room(turn, now) for turn in self._waiting):
             return
-        for one in sorted(self._waiting, key=lambda one: one.claim(now)):
-            if not self._has_room(one, now):
+        for turn in sorted(self._waiting, key=lambda turn: turn.claim(now)):
+            if not self._has_room(turn, now):
                 continue
-            if one.is_new:
-                self._waits.append((now, now - one.at))
-            self._waiting.remove(one)
-            self._running.add(one)
-            one.at = now
-            one.granted.set()
+            if turn.is_new:
+                self._waits.append((now, now - turn.at))
+            self._waiting.remove(turn)
+            self._running.add(turn)
+            turn.at = now
+            turn.granted.set()
 
-    def _has_room(self, one: _Turn, now: float) -> bool:
+    def _has_room(self, turn: _Turn, now: float) -> bool:
         """Whether a turn could begin beside those that are held."""
         young = [other.is_new for other in self._running if now - other.at < _LONGEST_TURN]
-        if one.is_new:
+        if turn.is_new:
             return sum(young) < self._at_once
-        waited = now - one.at >= _LONGEST_WAIT and young.count(False) < self._at_once
+        waited = now - turn.at >= _LONGEST_WAIT and young.count(False) < self._at_once
         return len(young) < self._at_once or waited
 
 

@@ -13,7 +13,7 @@ from bokeh.models import CustomJS, InlineStyleSheet, Select
 from bokeh.plotting import figure
 from bokeh.themes import Theme
 from missing_attribute import lose
-from replaced import REPLACED
+from replaced import OWN, REPLACED
 
 from app.serve.opening.bokeh_defaults import NEEDED, remember_defaults
 
@@ -22,9 +22,9 @@ CHANGES = Theme(json={"attrs": {"Axis": {"axis_label_text_font_size": "31px"}, "
 
 @pytest.fixture(autouse=True)
 def restored(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Bokeh's own ways are put back at the end."""
-    for where, name in REPLACED:
-        monkeypatch.setattr(where, name, vars(where)[name])
+    """Bokeh's own ways are there, and what was there before is at the end."""
+    for where, name, own in OWN:
+        monkeypatch.setattr(where, name, own)
     yield
 
 

@@ -11,7 +11,7 @@ from bokeh.core.property.descriptors import PropertyDescriptor
 from bokeh.document import Document
 from bokeh.models import ImportedStyleSheet
 from panel.io.state import set_curdoc
-from replaced import REPLACED
+from replaced import OWN
 
 from app.dashboard import entry
 from app.parts.status.status_line import StatusLine
@@ -32,10 +32,9 @@ def content() -> str:
 
 @pytest.fixture
 def plain(monkeypatch: pytest.MonkeyPatch) -> str:
-    """The content of a page without shortcuts; those of other tests are forgotten, and Bokeh's ways put back after it.
-    """
-    for where, name in REPLACED:
-        monkeypatch.setattr(where, name, vars(where)[name])
+    """The content of a page without shortcuts; those of other tests are forgotten, and put back after it."""
+    for where, name, own in OWN:
+        monkeypatch.setattr(where, name, own)
     assert not hasattr(PropertyDescriptor._get_default, "known")
     monkeypatch.setattr(panel_shortcuts, "_COMMON", {})
     monkeypatch.setattr(panel_shortcuts, "_CHILDLESS", set())
