@@ -13,7 +13,7 @@ from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..pictures.curve import WORDS
-from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES
+from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
 from ..serve.work.queues import CURVES, LatestWins
 from ..serve.work.turns import TurnFlag
 from ..session.activities import Activity
@@ -68,6 +68,7 @@ class CurveController:
         self._done = -1.0
         #: Why the kernels of the present knobs could not be compiled.
         self._uncompiled: Exception | None = None
+        self._kernels = Requests(COMPILER)
         self._names = PeakNames(host, self._show_names)
         host.on_close(self._drafts.close)
 
@@ -130,7 +131,7 @@ class CurveController:
             self._give_up()
             return
         missing = [piece for piece in PICTURE_PIECES if not COMPILER.has(scene, piece)]
-        failure = COMPILER.ask_once(scene, *missing)
+        failure = self._kernels.failure(scene, *missing)
         if failure is not None:
             self._say_not_compiled(failure)
         elif missing:
@@ -140,7 +141,7 @@ class CurveController:
             self._begin(scene)
 
     def _say_not_compiled(self, failure: Exception) -> None:
-        """Show no new curve, and say why, once for each attempt to compile: the next picture makes another."""
+        """Show no new curve, and say why, once for the same kernels."""
         self.stop()
         if failure is not self._uncompiled:
             self._uncompiled = failure

@@ -13,7 +13,7 @@ from granchain_core.scene.effects import ALWAYS
 from granchain_core.warm import structure
 
 from ...parts.toolkit.component import Component
-from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES
+from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
 from ...serve.work.queues import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.debounce import Debounce
@@ -44,6 +44,7 @@ class EffectsPage(Page):
         self._costs: dict[str, dict[str, EffectCost]] = {}
         self._failed: dict[str, str] = {}
         self._compiling = ""
+        self._kernels = Requests(COMPILER)
         self.measuring = ""
         self.actions: Actions = {"switch": self._switch}
 
@@ -122,7 +123,7 @@ class EffectsPage(Page):
             piece = COST_ACCOUNT_KERNELS if variant.account else COST_KERNELS
             if COMPILER.has(variant.scene, piece):
                 continue
-            if COMPILER.ask_once(variant.scene, piece) is None:
+            if self._kernels.failure(variant.scene, piece) is None:
                 self._compiling = name
             else:
                 self._failed[name] = "its kernel could not be compiled"

@@ -74,24 +74,12 @@ class Compiler:
 
     def ask(self, scene: Scene, piece: str) -> Future[None]:
         """Begin to compile in another process, unless that is under way or done; what failed is tried again."""
-        return self._request(scene, piece, again=True)
-
-    def _request(self, scene: Scene, piece: str, again: bool) -> Future[None]:
         key = structure(scene), piece
         with self._lock:
             asked = self._asked.get(key)
-            if asked is None or (again and asked.done() and asked.exception() is not None):
+            if asked is None or (asked.done() and asked.exception() is not None):
                 asked = self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
             return asked
-
-    def ask_once(self, scene: Scene, *pieces: str) -> Exception | None:
-        """Begin to compile these kernels where nobody has asked for them yet.
-
-        Returns why one of them could not be compiled, when the last attempt has failed; otherwise None.
-        """
-        asked = [self._request(scene, piece, again=False) for piece in pieces]
-        failures = (compilation.exception() for compilation in asked if compilation.done())
-        return next((error for error in failures if isinstance(error, Exception)), None)
 
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
         """Wait for these kernels; False when the stop flag went up first. Call it from a worker thread."""
@@ -123,6 +111,27 @@ class Compiler:
             if not self.has(scene, piece):
                 self.ask(scene, piece).result()
             self.load(scene, piece)
+
+
+class Requests:
+    """What one visitor's work asks for: each piece once, so that one that cannot be compiled is not tried for ever.
+
+    Another visitor's work, or a picture, may try it again.
+    """
+
+    def __init__(self, compiler: Compiler) -> None:
+        self._compiler = compiler
+        self._asked: dict[tuple[str, str], Future[None]] = {}
+
+    def failure(self, scene: Scene, *pieces: str) -> Exception | None:
+        """Ask for these kernels; returns why one of them could not be compiled, None as long as that is not known."""
+        for piece in pieces:
+            key = structure(scene), piece
+            asked = self._asked.get(key) or self._asked.setdefault(key, self._compiler.ask(scene, piece))
+            error = asked.exception() if asked.done() else None
+            if isinstance(error, Exception):
+                return error
+        return None
 
 
 COMPILER = Compiler()

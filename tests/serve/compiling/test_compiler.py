@@ -10,7 +10,7 @@ import pytest
 from waiting import until
 
 from app.serve.compiling import compiler
-from app.serve.compiling.compiler import Compiler
+from app.serve.compiling.compiler import Compiler, Requests
 from granchain_core import scene
 
 
@@ -60,7 +60,7 @@ def test_a_compilation_that_failed_is_tried_again(monkeypatch: pytest.MonkeyPatc
     assert one.ask(scene("sec2"), "a piece") is second and tries == ["a piece"] * 2
 
 
-def test_what_is_asked_for_once_is_not_tried_again(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_work_of_one_visitor_tries_a_piece_once_and_that_of_another_again(monkeypatch: pytest.MonkeyPatch) -> None:
     """As long as an attempt is under way, it has not failed."""
     one, tries, finish = Compiler(), [], Event()
 
@@ -70,11 +70,13 @@ def test_what_is_asked_for_once_is_not_tried_again(monkeypatch: pytest.MonkeyPat
         raise OSError("no space left")
 
     monkeypatch.setattr(compiler, "_compile", fails)
-    assert one.ask_once(scene("sec2"), "a piece") is None
-    assert one.ask_once(scene("sec2"), "a piece") is None
+    requests, others = Requests(one), Requests(one)
+    assert requests.failure(scene("sec2"), "a piece") is None
+    assert requests.failure(scene("sec2"), "a piece") is None
     finish.set()
-    until(lambda: isinstance(one.ask_once(scene("sec2"), "a piece"), OSError))
+    until(lambda: isinstance(requests.failure(scene("sec2"), "a piece"), OSError))
     assert tries == ["a piece"]
-    monkeypatch.setattr(compiler, "_compile", lambda *_: None)
-    one.ask(scene("sec2"), "a piece").result(20)
-    assert one.ask_once(scene("sec2"), "a piece") is None
+    monkeypatch.setattr(compiler, "_compile", lambda *_: tries.append("again"))
+    assert others.failure(scene("sec2"), "a piece") is None
+    until(lambda: tries == ["a piece", "again"])
+    assert others.failure(scene("sec2"), "a piece") is None
