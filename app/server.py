@@ -20,16 +20,17 @@ from tornado.web import ErrorHandler
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
-from .serve import logs
-from .serve.bokeh_defaults import remember_defaults
-from .serve.compiler import COMPILER
-from .serve.guard import Rules, guard_handlers, guarded
-from .serve.limits import LARGEST_UPLOAD, USUAL_VISITORS
-from .serve.metrics import METRICS, Liveness, MetricsPage
-from .serve.panel_pages import remember_resources
-from .serve.queues import PICTURES, SWEEPS
-from .serve.shared import Shared
-from .serve.turns import TURNS
+from .needed import warn_of_missing
+from .serve.compiling.compiler import COMPILER
+from .serve.http.guard import Rules, guard_handlers, guarded
+from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
+from .serve.monitoring import logs
+from .serve.monitoring.metrics import METRICS, Liveness, MetricsPage
+from .serve.opening.bokeh_defaults import remember_defaults
+from .serve.opening.panel_pages import remember_resources
+from .serve.work.queues import PICTURES, SWEEPS
+from .serve.work.shared import Shared
+from .serve.work.turns import TURNS
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
@@ -86,6 +87,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     `before` is called when the server is about to listen.
     """
     logs.configure(log_level)
+    warn_of_missing()
     before()
     server = server_at(port, address, access)
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else _in_url(address)
@@ -130,7 +132,7 @@ def _count_what_is_shared() -> None:
     """The queues and caches of all visitors, for `/metrics`."""
     METRICS.turn_wait = lambda: TURNS.wait
     METRICS.gauges.update(queue=lambda: TURNS.waiting + PICTURES.waiting + SWEEPS.waiting,
-                         computing=lambda: PICTURES.busy + SWEEPS.busy)
+                         computing=lambda: PICTURES.busy_threads + SWEEPS.busy_threads)
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
     for name, cache in shared.items():
         METRICS.gauges.update({f"{name}_cache_hits_total": partial(getattr, cache, "hits"),

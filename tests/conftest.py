@@ -42,7 +42,7 @@ def current_document(request: pytest.FixtureRequest) -> None:
     A server or an error leaves that of a page behind, and then Panel puts off whatever a test asks of its dashboard,
     until that page is loaded.
     """
-    if "bokeh.io.doc" in sys.modules and request.path.parent.name not in SERVERS and _names_the_app(request.path):
+    if "bokeh.io.doc" in sys.modules and request.path.relative_to(HERE).parts[0] not in SERVERS and _names_the_app(request.path):
         from bokeh.document import Document
         from bokeh.io import doc
 

@@ -18,3 +18,16 @@ def hide(monkeypatch: pytest.MonkeyPatch, module: ModuleType, owner: type, name:
         return object.__getattribute__(self, attribute)
 
     monkeypatch.setattr(owner, "__getattribute__", found)
+
+
+def lose(monkeypatch: pytest.MonkeyPatch, owner: str, name: str) -> None:
+    """Take away what a row of a table `NEEDED` names: from the class or module, and from what its instances set."""
+    from app import needed
+
+    found = needed._find(owner)
+    for one in found.__mro__ if isinstance(found, type) else [found]:
+        if name in vars(one):
+            monkeypatch.delattr(one, name)
+    attributes, keywords = needed._attributes, needed._keywords
+    monkeypatch.setattr(needed, "_attributes", lambda one: attributes(one) - {name})
+    monkeypatch.setattr(needed, "_keywords", lambda one: {*keywords(one)} - {name})

@@ -1,5 +1,5 @@
 """Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes and commands that
-draw (README.md).
+draw (README.md), and what is used of libraries (docs/libraries.md).
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import math
 import textwrap
 from importlib import import_module
 
+from app import needed
 from app.cli.commands import COMMANDS
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
@@ -61,3 +62,10 @@ def _help(command: str) -> str:
     parser = argparse.ArgumentParser()
     import_module(f"app.cli.{command}").add_options(parser)
     return parser.format_help()
+
+
+def table_of_libraries() -> str:
+    """The table of docs/libraries.md: what is used of libraries beyond their documentation, and where."""
+    rows = [f"| `{row.owner}`: {', '.join(f'`{name}`' for name in row.names)} | `app/{module.replace('.', '/')}.py` | {row.without} |"
+            for module, table in needed.tables().items() for row in table]
+    return "\n".join(["| what | where | without it |", "|---|---|---|", *rows])

@@ -3,7 +3,8 @@
     python -m tools.update
 
 - tables in the docs: thresholds (docs/regimes.md, orbits.md, branches.md, accuracy.md), methods (docs/method.md), knobs
-  (docs/model.md), scenes (README.md), and the list of commands with pictures (README.md);
+  (docs/model.md), scenes and the list of commands with pictures (README.md), what is used of libraries
+  (docs/libraries.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -17,7 +18,13 @@ from pathlib import Path
 
 from tools import gallery, links, scales
 from tools.generated import with_part
-from tools.lists import commands_with_pictures, table_of_knobs, table_of_methods, table_of_scenes
+from tools.lists import (
+    commands_with_pictures,
+    table_of_knobs,
+    table_of_libraries,
+    table_of_methods,
+    table_of_scenes,
+)
 from tools.thresholds import (
     table_of_branches,
     table_of_regimes,
@@ -39,6 +46,7 @@ _TABLES = (
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "scenes", table_of_scenes),
     ("README.md", "commands with pictures", commands_with_pictures),
+    ("docs/libraries.md", "libraries", table_of_libraries),
 )
 
 

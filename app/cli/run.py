@@ -1,4 +1,4 @@
-"""`granchain run`: one run of a scene, with forces, regime, error reached, energy balance and cost."""
+"""`granchain run`: one run of a scene, with forces, regime, error reached, energy residual and cost."""
 
 from __future__ import annotations
 

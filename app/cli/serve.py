@@ -12,7 +12,7 @@ from pathlib import Path
 
 from granchain_core import BadInput
 
-from ..serve.limits import MOST_VISITORS, USUAL_VISITORS
+from ..serve.http.limits import MOST_VISITORS, USUAL_VISITORS
 from .options import whole
 from .waiting import Waiting
 

@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from functools import partial
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Difference, Measured, stated_features
 from granchain_core.pieces import CURVE_KERNELS
@@ -15,10 +13,9 @@ from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..pictures.curve import WORDS
-from ..serve.compiler import COMPILER, PICTURE_PIECES
-from ..serve.delays import CURVE_QUIET
-from ..serve.queues import CURVES, LatestWins
-from ..serve.turns import TurnFlag
+from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
+from ..serve.work.queues import CURVES, LatestWins
+from ..serve.work.turns import TurnFlag
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
@@ -27,18 +24,21 @@ from ..session.progress import COMPUTING, OFF, READY
 from ..session.session import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
-from .bar import CHOICES, CurveBar
+from .curve_bar import CHOICES, CurveBar
 from .peak_names import PeakNames, stated_name
 from .reports import Reports
 from .sweep import COARSE, Progress, Sweep, grid
 from .view import CurveFigure
+
+#: Rest of the knobs before a curve is begun [s]: nobody reads a curve while dragging.
+CURVE_QUIET = 0.35
 
 
 class CurveController:
     """Computes the selected curves while they are on the screen, each once for the same knobs.
 
     `placed` is called when a curve from rest is complete, and when one that was expected is not computed: it shows
-    where on the curve the present motion lies. `compared` is called with the visitor's data beside a complete curve.
+    where on the curve the present motion lies.
     """
 
     def __init__(self, host: Host, figure: CurveFigure, bar: CurveBar, placed: Callable[[], None]) -> None:
@@ -46,7 +46,7 @@ class CurveController:
         self._figure = figure
         self._bar = bar
         self._placed = placed
-        self.compared: Callable[[Difference | None], None] = lambda _: None
+        self._compared: list[Callable[[Difference | None], None]] = []
         self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
         self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed),
                                   host.session.cpu_time)
@@ -66,6 +66,9 @@ class CurveController:
         #: 1; -1 if nothing is under way.
         self._missing: list[str] = []
         self._done = -1.0
+        #: Why the kernels of the present knobs could not be compiled.
+        self._uncompiled: Exception | None = None
+        self._kernels = Requests(COMPILER)
         self._names = PeakNames(host, self._show_names)
         host.on_close(self._drafts.close)
 
@@ -74,7 +77,7 @@ class CurveController:
         chosen = {name for name, wanted in self._wanted.items() if wanted}
         return "auto" if chosen == _own(scene) else joined(chosen)
 
-    def open(self, scene: Scene, selected: str) -> str:
+    def show_preset(self, scene: Scene, selected: str) -> str:
         """Show an empty figure over the frequencies of another scene, with the curves of a link; return which.
 
         An empty text leaves the directions as they are, and shows the stated features of the paper's rig.
@@ -87,15 +90,15 @@ class CurveController:
             return self.select(scene, selected)
         self._wanted["features"] = scene.pattern == rig_beads()
         self._show_features(scene)
-        self.changed(scene)
+        self.restart_when_quiet(scene)
         return self.selection(scene)
 
-    def moved(self, scene: Scene) -> None:
+    def knob_moved(self, scene: Scene) -> None:
         """A knob moved. Any knob but f changes the curve: a draft comes at once, the curve when the knobs rest."""
         if without_frequency(scene) == self._wanted_for:
             return
         self._names.forget()
-        self.changed(scene)
+        self.restart_when_quiet(scene)
         if self._visible and self._wanted["rest"] and curve_affordable(scene) and COMPILER.has(scene, CURVE_KERNELS):
             self._drafts.submit(partial(self._draft, scene, self._begun))
 
@@ -108,10 +111,9 @@ class CurveController:
     def _draw_draft(self, drafted: tuple[int, list[CurvePoint]]) -> None:
         begun, points = drafted
         if points and begun == self._begun:  # otherwise the curve itself is on its way
-            with unlocked():
-                self._figure.redraw("rest", points)
+            self._figure.redraw("rest", points)
 
-    def changed(self, scene: Scene) -> None:
+    def restart_when_quiet(self, scene: Scene) -> None:
         """The scene or the selection has changed: cancel the curve, and start again when the knobs rest."""
         self._cancel()
         self._wanted_for = without_frequency(scene)
@@ -127,17 +129,30 @@ class CurveController:
     def _begin_when_compiled(self, scene: Scene) -> None:
         if not curve_affordable(scene):
             self._give_up()
-        elif COMPILER.has(scene, *PICTURE_PIECES):
+            return
+        missing = [piece for piece in PICTURE_PIECES if not COMPILER.has(scene, piece)]
+        failure = self._kernels.failure(scene, *missing)
+        if failure is not None:
+            self._say_not_compiled(failure)
+        elif missing:
+            self._quiet.start(self._begin_when_compiled, scene)  # look again
+        else:
+            self._uncompiled = None
             self._begin(scene)
-        else:  # look again
-            self._quiet.start(self._begin_when_compiled, scene)
+
+    def _say_not_compiled(self, failure: Exception) -> None:
+        """Show no new curve, and say why, once for the same kernels."""
+        self.stop()
+        if failure is not self._uncompiled:
+            self._uncompiled = failure
+            self._host.report_fault(failure, "The resonance curve is not computed: its kernels could not be compiled "
+                                             f"({type(failure).__name__}).")
 
     def _give_up(self) -> None:
         """Show no curve: this chain has none, or it would take too long, and another chain's belongs to no picture."""
         self.stop()
         self._complete_for.clear()
-        with unlocked():
-            self._figure.clear()
+        self._figure.clear()
         self._placed()
 
     def visibility_changed(self, visible: bool) -> None:
@@ -146,7 +161,7 @@ class CurveController:
             return
         self._visible = visible
         if visible:
-            self.changed(self._host.session.scene)
+            self.restart_when_quiet(self._host.session.scene)
         else:
             self.stop()
 
@@ -155,10 +170,10 @@ class CurveController:
         chosen = _own(scene) if selected == "auto" else set(selected.split("."))
         self._wanted = {name: name in chosen for name in self._wanted}
         self._show_features(scene)
-        self.changed(scene)
+        self.restart_when_quiet(scene)
         return self.selection(scene)
 
-    def choose(self, name: str, wanted: bool, scene: Scene) -> None:
+    def switch(self, name: str, wanted: bool, scene: Scene) -> None:
         """Switch a direction or the stated features on or off."""
         if name not in self._wanted:
             return
@@ -167,7 +182,7 @@ class CurveController:
         if name == "features":
             self._show_features(scene)
         else:
-            self.changed(scene)
+            self.restart_when_quiet(scene)
 
     def stop(self) -> None:
         """Stop computing; the points computed so far stay."""
@@ -198,6 +213,8 @@ class CurveController:
                 found.append((title, OFF, "nothing drives the chain"))
             elif self._wanted_for is not None and not curve_affordable(self._wanted_for):
                 found.append((title, OFF, "it would take too long; granchain curve computes it"))
+            elif self._uncompiled is not None:
+                found.append((title, OFF, "its kernels could not be compiled"))
             elif name in self._missing and self.computing:
                 found.append((title, COMPUTING, f"{100 * self._done:.0f} % of what is asked for"))
             else:
@@ -208,6 +225,14 @@ class CurveController:
         """Show the visitor's own data, or none; returns them beside the curve from rest, once that is there."""
         self._figure.measured(measured)
         return self._figure.difference
+
+    def on_compared(self, action: Callable[[Difference | None], None]) -> None:
+        """Call `action` with the visitor's data beside each complete curve from rest; with None when one is begun."""
+        self._compared.append(action)
+
+    def _tell_compared(self, difference: Difference | None) -> None:
+        for action in self._compared:
+            action(difference)
 
     def complete(self, scene: Scene) -> dict[str, list[CurvePoint]]:
         """The curves of a scene that are drawn and complete, by their starts."""
@@ -224,13 +249,12 @@ class CurveController:
             self._complete_for.pop(name, None)
         self._begun_for = key
         shown = [name for name in CURVE_STARTS if self._wanted[name]]
-        with unlocked():
-            self._figure.show_directions(shown)
-            self._figure.begin(missing)
-            self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
+        self._figure.show_directions(shown)
+        self._figure.begin(missing)
+        self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
         self._begun += bool(missing)
         if "rest" in missing:
-            self.compared(None)
+            self._tell_compared(None)
         self._missing, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
             self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
@@ -242,7 +266,7 @@ class CurveController:
         stated = stated_features() if self._wanted["features"] else ()
         self._figure.features(stated)
         self._bar.update_state(**self._wanted, rig=scene.pattern == rig_beads(),
-                               stated=[stated_name(one) for one in stated])
+                               stated=[stated_name(feature) for feature in stated])
 
     def _draw(self, reports: list[Progress]) -> None:
         """Draw the points of these reports, and note which directions they complete."""
@@ -250,19 +274,18 @@ class CurveController:
         for progress in reports:
             points.setdefault(progress.direction, []).extend(progress.points)
         covers = {progress.direction for progress in reports if progress.covers}
-        with unlocked():
-            for direction, new in points.items():
-                self._figure.add(direction, new, direction in covers)
-            for progress in reports:
-                if progress.complete and self._begun_for is not None:
-                    self._complete_for[progress.direction] = self._begun_for
-                    self._figure.finished(progress.direction)
-                    self._placed()
-                    if progress.direction == "rest":
-                        self._names.name(self._figure.points("rest"), self._begun_for)
-                    self.compared(self._figure.difference)
-            self._done = self._overall(reports[-1])
-            self._bar.update_state(done=self._done)
+        for direction, new in points.items():
+            self._figure.add(direction, new, direction in covers)
+        for progress in reports:
+            if progress.complete and self._begun_for is not None:
+                self._complete_for[progress.direction] = self._begun_for
+                self._figure.finished(progress.direction)
+                self._placed()
+                if progress.direction == "rest":
+                    self._names.name(self._figure.points("rest"), self._begun_for)
+                self._tell_compared(self._figure.difference)
+        self._done = self._overall(reports[-1])
+        self._bar.update_state(done=self._done)
 
     def _overall(self, progress: Progress) -> float:
         """Progress over all directions of this request."""

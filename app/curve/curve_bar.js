@@ -1,6 +1,6 @@
 // Which curves are shown, how far they are, and a button to stop them.
 
-import { button, element, meter } from "../parts/dom.js";
+import { button, element, meter } from "../parts/toolkit/dom.js";
 import { PeakNames } from "./peak_names.js";
 
 function choiceBox(model, name) {

@@ -2,8 +2,8 @@
 // at their lines. A name that would lie on another one moves up, and is left out where there is no room: what the paper
 // states and strong peaks come first. A valley's name and a stated one keep off the points of the curve if they can.
 
-import { frameOf, marksOf, modelsNamed, onLayout, viewOf } from "../parts/bokeh.js";
-import { button, element } from "../parts/dom.js";
+import { frameOf, marksOf, modelsNamed, onLayout, viewOf } from "../parts/figures/bokeh.js";
+import { button, element } from "../parts/toolkit/dom.js";
 
 const FIGURE = "resonance curve"; // the name of its model
 const ABOVE = { peak: 11, band: 5, valley: 9 }; // px between a point and its name; on a peak there is the ring's place

@@ -28,10 +28,10 @@ from granchain_core.steady.curve.resonance import (
 from granchain_core.stop import Stop
 
 from ..frames import samples_for
-from ..serve.cpu_time import CpuTime
-from ..serve.queues import ANALYSES, SWEEPS
-from ..serve.shared import Shared
-from ..serve.turns import TurnFlag
+from ..serve.work.cpu_time import CpuTime
+from ..serve.work.queues import ANALYSES, SWEEPS
+from ..serve.work.shared import Shared
+from ..serve.work.turns import TurnFlag
 from ..session.host import Host
 from ..session.session import without_frequency
 from ..session.task import Job, Task, say_nothing
@@ -91,7 +91,7 @@ def _extremum_names(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
 
 
 #: Names for all visitors: a class that looks at one curve settles its dozen extrema once, which takes a second.
-NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda one: 1000, turns=False)
+NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda name: 1000, turns=False)
 
 
 class PeakNames:
@@ -121,6 +121,6 @@ class PeakNames:
                     job.give_way(lambda: self._host.busy)
                     job.stop.check()
                     found += [name] if name else []
-            job.next_tick(self._show, sorted(found, key=lambda one: float(one["f"])))
+            job.next_tick(self._show, sorted(found, key=lambda place: float(place["f"])))
 
         self._task.start(work)

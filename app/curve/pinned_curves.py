@@ -9,7 +9,7 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot, Scatter, T
 
 from granchain_core import CurvePoint
 
-from ..parts.pinned_trains import DASHES
+from ..parts.stage.pinned_trains import DASHES
 from ..pictures.theme import GREY
 
 

@@ -7,9 +7,11 @@ import threading
 import time
 from collections.abc import Callable
 
-from ..serve.delays import CURVE_EVERY
 from ..session.host import Host
 from .sweep import Progress
+
+#: Time between two drawings of a curve that grows [s]: each has all its points.
+CURVE_EVERY = 0.1
 
 
 class Reports:

@@ -14,12 +14,12 @@ from granchain_core.steady.curve.resonance import Place, place_of
 
 from ..format import prefixed
 from ..frames import round_up
-from ..parts.figure_style import quiet_axis, quiet_plot, together
+from ..parts.figures.figure_style import quiet_axis, quiet_plot, together
 from ..pictures.axes import knob_scale
 from ..pictures.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
 from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..pictures.theme import GREY, OUTPUT_COLOUR
-from ..serve.changes import set_properties
+from ..serve.document.changes import set_properties
 from .pinned_curves import PinnedCurves
 
 
@@ -82,7 +82,8 @@ class CurveFigure:
 
     def _bring_forward(self) -> None:
         """Draw what the paper states in front of the curves, in whichever order they came."""
-        self.figure.renderers = [*(one for one in self.figure.renderers if one is not self._stated), self._stated]
+        others = [renderer for renderer in self.figure.renderers if renderer is not self._stated]
+        self.figure.renderers = [*others, self._stated]
 
     def _marks(self) -> None:
         """Stated features and the current point, in front of the curves."""

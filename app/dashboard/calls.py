@@ -8,10 +8,10 @@ from functools import partial
 
 from bokeh.document import Document
 
-from ..serve.changes import batched_changes
-from ..serve.channel import Channel
-from ..serve.document_lock import with_document_lock
-from ..serve.metrics import METRICS
+from ..serve.document.changes import batched_changes
+from ..serve.document.channel import Channel
+from ..serve.document.document_lock import with_document_lock
+from ..serve.monitoring.metrics import METRICS
 
 log = logging.getLogger("granchain.page")
 
@@ -33,7 +33,7 @@ class Calls:
     def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
         """Call `action` in the next turn of the event loop; from any thread."""
         if not self._closed:
-            self._channel.call_soon(partial(self.guarded, action, *arguments))
+            self._channel.next_tick(partial(self.guarded, action, *arguments))
 
     def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
         """Call `action` after `seconds`; on the event loop."""

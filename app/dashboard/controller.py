@@ -12,12 +12,12 @@ from granchain_core import BadInput, CurvePoint, Scene, Settled, State
 
 from ..curve.controller import CurveController
 from ..pictures.theme import Theme
-from ..serve.compiler import COMPILER
-from ..serve.metrics import METRICS
-from ..serve.socket_tuning import disable_nagle
+from ..serve.compiling.compiler import COMPILER
+from ..serve.document.socket_tuning import disable_nagle
+from ..serve.monitoring.metrics import METRICS
 from ..session.activities import Activity, account_activity, picture_activities
-from ..session.hooks import Actions, Page, all_actions
 from ..session.message_checks import quoted
+from ..session.page import Actions, Page, all_actions
 from ..session.session import Session
 from .calls import Calls
 from .display_choices import DisplayChoices
@@ -49,7 +49,7 @@ class Controller:
         self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)
         self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
-        self.curves = CurveController(self, views.curve, views.curvebar, self._curve_placed)
+        self.curves = CurveController(self, views.curve, views.curve_bar, self._curve_placed)
         self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self.pictures.redraw)
         self.files = LinksAndFiles(self, views, self.curves, self.pictures)
         self.pinned = Pinned(self, views)
@@ -96,14 +96,14 @@ class Controller:
         COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
         self.choices.set_theme(message.get("theme"))
         self.pinned.show()
-        self._scenes.opened(self._first_start, self.session.curves)
+        self._scenes.show_preset(self._first_start, self.session.curves)
 
     def _visible(self, message: dict[str, Any]) -> None:
         name, visible = message.get("name"), message.get("value")
-        one = self._looked_at.get(name) if isinstance(name, str) else None
-        if one is None or not isinstance(visible, bool):
+        looked_at = self._looked_at.get(name) if isinstance(name, str) else None
+        if looked_at is None or not isinstance(visible, bool):
             raise BadInput(f"There is no page {quoted(name)} to look at.")
-        one.visibility_changed(visible)
+        looked_at.visibility_changed(visible)
 
     # What the pages ask for
 
@@ -161,11 +161,11 @@ class Controller:
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `Host`."""
-        self._scenes.show(scene, state, mode)
+        self._scenes.turn_knobs(scene, state, mode)
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         """See `Host`."""
-        self._scenes.open(scene, state, curves)
+        self._scenes.open_scene(scene, state, curves)
 
     def address_changed(self) -> None:
         """See `Host`."""
@@ -199,7 +199,7 @@ class Controller:
             page.theme_changed(theme)
 
     def _compute(self) -> None:
-        self._scenes.compute()
+        self._scenes.request_picture()
 
     def _choose_frequency(self, frequency: object) -> None:
         self._scenes.choose_frequency(frequency)

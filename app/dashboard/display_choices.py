@@ -7,7 +7,7 @@ from typing import Any
 
 from ..curve.controller import CurveController
 from ..pictures.theme import THEMES, Theme
-from ..session.hooks import Actions
+from ..session.page import Actions
 from ..session.session import Session
 from .layout import Views
 
@@ -44,6 +44,6 @@ class DisplayChoices:
         self._redraw()
 
     def _curve(self, message: dict[str, Any]) -> None:
-        self._curves.choose(str(message.get("name")), bool(message.get("value")), self._session.scene)
+        self._curves.switch(str(message.get("name")), bool(message.get("value")), self._session.scene)
         self._session.curves = self._curves.selection(self._session.scene)
         self._views.header.show_session(self._session)

@@ -10,9 +10,13 @@ import panel as pn
 from bokeh.core.property.validation import validate
 from bokeh.document import Document
 
+from ..needed import Needed
 from ..session.session import Session
 from .addresses import apply_address
 from .controller import Controller
+
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (Needed("bokeh.core.property.validation", ("validate",), "the server does not start"),)
 
 
 def page() -> None:

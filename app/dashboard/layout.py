@@ -10,26 +10,25 @@ from typing import Any
 
 from bokeh.document import Document
 from bokeh.models import Range1d
-from panel.io import unlocked
 
 from granchain_core.experiment.formats import FORMATS
 
-from ..curve.bar import KINDS, CurveBar
+from ..curve.curve_bar import KINDS, CurveBar
 from ..curve.view import CurveFigure
-from ..parts.chain import SCALES, ChainPart
-from ..parts.component import text
-from ..parts.energy import EnergyMap
-from ..parts.equation import EquationPart
-from ..parts.figure_style import BOTTOM, GAP, LEFT, TOP
-from ..parts.header import Header
-from ..parts.knobs import Knobs
-from ..parts.status_line import StatusLine
-from ..parts.trains import WIDEST_TITLES, ForceTrains
+from ..parts.chain.chain import SCALES, ChainPart
+from ..parts.equation.equation import EquationPart
+from ..parts.figures.figure_style import BOTTOM, GAP, LEFT, TOP
+from ..parts.header.header import Header
+from ..parts.knobs.knobs import Knobs
+from ..parts.stage.energy import EnergyMap
+from ..parts.stage.trains import WIDEST_TITLES, ForceTrains
+from ..parts.status.status_line import StatusLine
+from ..parts.toolkit.component import text
 from ..pictures.curve import KEY
 from ..pictures.energies import ENERGY_COLOURS
 from ..pictures.theme import Theme, style_sheet
 from ..scripts import IN_PAGE, modules
-from ..serve.limits import LARGEST_UPLOAD
+from ..serve.http.limits import LARGEST_UPLOAD
 from ..session.session import Session
 from ..session.terms import definitions
 from .scales import PictureScales
@@ -55,20 +54,19 @@ class Views:
         self.trains = ForceTrains(self.time)
         self.energy = EnergyMap(self.time)
         self.curve = CurveFigure(choose)
-        self.curvebar = CurveBar(received)
+        self.curve_bar = CurveBar(received)
         self.tabs = Tabs(received, sizing_mode="stretch_both", state={
             "largest_file": LARGEST_UPLOAD, "lines": KEY, "tabs": described_tabs(), "groups": GROUPS,
             "pages": watched_pages(), "regimes": KINDS,
-            "endings": [ending for one in FORMATS for ending in one.endings]})
+            "endings": [ending for form in FORMATS for ending in form.endings]})
         self.overlays = {row.name: row.view(received, sizing_mode="stretch_both") for row in PAGES if row.view}
         self.status_line = StatusLine(received)
 
     def set_compact(self, compact: bool) -> None:
         """Shorten titles and leave out numbers on the axes over time if there is little room for them."""
-        with unlocked():  # sent like the pictures, which write the same titles, so that neither overtakes the other
-            self.trains.set_compact(compact)
-            self.energy.set_compact(compact)
-            self.curve.set_compact(compact)
+        self.trains.set_compact(compact)
+        self.energy.set_compact(compact)
+        self.curve.set_compact(compact)
 
     def apply_theme(self, theme: Theme) -> None:
         """Draw the figures of all pages in another theme."""
@@ -79,7 +77,7 @@ class Views:
         """Make all parts roots of a visitor's document; their layout is a CSS grid in page.css."""
         parts = {
             "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
-            "curvebar": self.curvebar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
+            "curvebar": self.curve_bar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
         }
         plots = self.trains.left, self.energy.figure, self.trains.right, self.curve.figure
         put_into(document, parts, plots, *_page())

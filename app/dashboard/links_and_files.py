@@ -13,11 +13,11 @@ from granchain_core.experiment import Measured, Series
 from granchain_core.store import save
 
 from ..curve.controller import CurveController
-from ..serve.queues import FILES
+from ..serve.work.queues import FILES
 from ..session.export import EXPORTS, TEXTS, Screen
-from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.message_checks import quoted
+from ..session.page import Actions
 from ..session.task import Job, Task, say_nothing
 from .layout import Views
 from .main_picture import MainPicture

@@ -17,14 +17,14 @@ from granchain_core import Cancelled, OverBudget, Run, Scene, Settled, State, se
 from granchain_core.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
 
 from ..frames import Frames, prepared_frames, samples_for
-from ..serve.compiler import COMPILER, PICTURE_PIECES, compiling_words
-from ..serve.metrics import METRICS
-from ..serve.pacing import FramePacer
-from ..serve.queues import PICTURES, LatestWins
-from ..serve.shared import Shared
-from ..serve.turns import TurnFlag
+from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words
+from ..serve.document.pacing import FramePacer
+from ..serve.monitoring.metrics import METRICS
+from ..serve.work.queues import PICTURES, LatestWins
+from ..serve.work.shared import Shared
+from ..serve.work.turns import TurnFlag
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
-from ..session.energy_residual import with_account
+from ..session.energy_account import with_account
 from ..session.host import Host
 from ..session.live import LivePicture, LiveRun
 from .layout import Views
@@ -34,7 +34,7 @@ from .show import show_live, show_regime, show_settled
 def size_of(picture: Settled) -> int:
     """Memory of a picture [bytes], which is that of its arrays and a little."""
     arrays = [*vars(picture.run).values(), picture.state.displacement, picture.state.velocity]
-    return 4096 + sum(one.nbytes for one in arrays if isinstance(one, np.ndarray))
+    return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
 
 #: Pictures of all visitors. The last picture of each scene is kept for the next visitor who asks, in at most 100 MB.
@@ -299,5 +299,5 @@ class MainPicture:
 
     def next_live_step(self) -> None:
         """Take the next step of a run that goes on, unless as many of its pictures are in transit as may be."""
-        if self._session.mode == "live" and self._session.playing and not self._pacer.waits:
+        if self._session.mode == "live" and self._session.playing and not self._pacer.is_full:
             self.advance()

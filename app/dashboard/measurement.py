@@ -31,12 +31,12 @@ from granchain_core.stop import Stop
 
 from ..curve.controller import CurveController
 from ..format import given_in_words, in_words, signed_in_words
-from ..serve.compiler import PICTURE_PIECES
-from ..serve.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
-from ..serve.queues import FILES, LONG
+from ..serve.compiling.compiler import PICTURE_PIECES
+from ..serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
+from ..serve.work.queues import ANALYSES, FILES, LONG
 from ..session.budget import WHOLE_PICTURE, check_first_picture
-from ..session.hooks import Actions
 from ..session.host import Host
+from ..session.page import Actions
 from ..session.task import Job, Task, say_nothing
 from .layout import Views
 
@@ -74,13 +74,13 @@ class MeasurementActions:
         self._series: Series | None = None
         #: What is drawn over the pictures, and goes into their files.
         self.shown: Measured | Series | None = None
-        self._moving = Task(host, FILES, say_nothing, "Moving the series to the picture", host.failed)
+        self._moving = Task(host, ANALYSES, say_nothing, "Moving the series to the picture", host.failed)
         self._reading = Task(host, FILES, say_nothing, "Reading the measurement", host.failed)
         self._recording = Task(host, LONG, say_nothing, "The virtual experiment", host.failed)
         self._name, self._answers = "", Answers()
         #: The file, for as long as a question about it is open.
         self._content = b""
-        curves.compared = self._compared
+        curves.on_compared(self._compared)
         self.actions: Actions = {"csv": self._read, "csv-answer": self._answer, "csv-too-large": self._too_large,
                                  "csv-remove": self._remove, "csv-sample": self._sample,
                                  "csv-virtual": self._virtual}
@@ -109,7 +109,8 @@ class MeasurementActions:
     def _answer(self, message: dict[str, Any]) -> None:
         """What the visitor chose: columns as [quantity, number, unit], and words."""
         columns = message.get("columns", [])
-        if not isinstance(columns, list) or not all(isinstance(one, list) and len(one) == 3 for one in columns):
+        if not isinstance(columns, list) or not all(isinstance(column, list) and len(column) == 3
+                                                    for column in columns):
             raise BadInput("The choice of columns could not be read; choose the file again.")
         words = [f"{str(quantity)[:20]}={str(number)[:6]}:{str(unit)[:30]}" for quantity, number, unit in columns]
         given = answers_of(words, _word(message, "decimal"), None, _word(message, "dataset"))
@@ -133,8 +134,9 @@ class MeasurementActions:
         self._content = content
         self._tabs.update_state(question={
             "reason": question.reason, "about": list(question.about), "datasets": list(question.datasets),
-            "columns": [[one.number, one.title, one.quantity if one.quantity in CHOICES else "", one.likely_unit]
-                        for one in question.columns],
+            "columns": [[column.number, column.title, column.quantity if column.quantity in CHOICES else "",
+                         column.likely_unit]
+                        for column in question.columns],
             "rows": [[line, list(fields)] for line, fields in question.rows],
             "quantities": list(CHOICES.items()),
             "units": {name: list(UNITS[QUANTITIES[name]]) for name in CHOICES}})

@@ -6,20 +6,18 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import BadInput, CurvePoint, Run, Scene, Settled, settle
 
 from ..curve.sweep import Progress, Sweep
 from ..frames import samples_for
-from ..parts.pinned_trains import SIGNS
-from ..serve.compiler import PICTURE_PIECES
-from ..serve.cpu_time import CpuTime
-from ..serve.queues import ANALYSES, CURVES
+from ..parts.stage.pinned_trains import SIGNS
+from ..serve.compiling.compiler import PICTURE_PIECES
+from ..serve.work.cpu_time import CpuTime
+from ..serve.work.queues import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
-from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.message_checks import listed
+from ..session.page import Actions
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
 from ..session.session import without_frequency
 from ..session.starts import MOST_BEADS
@@ -60,8 +58,7 @@ class Pinned:
             self._curve_task.start(partial(self._sweep, missing, self._session.cpu_time))
         elif self._session.pins:
             self._curve_task.cancel()
-        with unlocked():
-            self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
+        self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
 
     def picture_ready(self, picture: Settled) -> None:
         """Compare the pins with another picture."""
@@ -144,10 +141,9 @@ class Pinned:
 
     def _draw(self) -> None:
         runs = self._found()
-        with unlocked():
-            self._views.trains.pin(runs)
-            self._views.curve.pin([(name, run.scene.f, run.max_output_force)
-                                   for name, run in zip(NAMES, runs, strict=False) if run is not None])
+        self._views.trains.pin(runs)
+        self._views.curve.pin([(name, run.scene.f, run.max_output_force)
+                               for name, run in zip(NAMES, runs, strict=False) if run is not None])
         self._tell()
 
     def _tell(self) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ..parts.header import Header
-from ..session.hooks import Actions
+from ..parts.header.header import Header
+from ..session.page import Actions
 from ..session.session import Session
 from ..session.starts import MOST_BEADS
 from .main_picture import MainPicture

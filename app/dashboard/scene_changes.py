@@ -8,8 +8,8 @@ from typing import Any
 from granchain_core import Scene, State
 
 from ..curve.controller import CurveController
-from ..parts.knobs import beside_knobs, knob_state
-from ..session.hooks import Actions, Page
+from ..parts.knobs.knobs import beside_knobs, knob_state
+from ..session.page import Actions, Page
 from ..session.session import Session, clicked_frequency
 from .addresses import apply_address
 from .layout import Views
@@ -31,14 +31,14 @@ class SceneChanges:
         self._show_message = show_message
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
-    def show(self, scene: Scene, state: State | None, mode: str) -> None:
+    def turn_knobs(self, scene: Scene, state: State | None, mode: str) -> None:
         """Turn the knobs to `scene` and show its motion; see `Host.show`."""
         self._session.set_mode(mode)
         self._session.scene = scene
         self._follow_mode(state)
-        self._knobs_turned(state)
+        self._show_turned_knobs(state)
 
-    def open(self, scene: Scene, state: State | None, curves: str) -> None:
+    def open_scene(self, scene: Scene, state: State | None, curves: str) -> None:
         """Open a scene, maybe another preset; see `Host.open`."""
         session = self._session
         another = scene.name != session.scene.name
@@ -46,13 +46,13 @@ class SceneChanges:
         self._pictures.end_live()
         self._show_message("")
         if another:
-            self.opened(state, curves)
+            self.show_preset(state, curves)
             return
         if curves:
             session.curves = self._curves.select(scene, curves)
-        self._knobs_turned(state)
+        self._show_turned_knobs(state)
 
-    def opened(self, start: State | None, curves: str) -> None:
+    def show_preset(self, start: State | None, curves: str) -> None:
         """Another preset is the session's scene: the whole dashboard shows it, its motion from `start`.
 
         `curves` are those of a link; an empty text leaves them as they are.
@@ -61,20 +61,20 @@ class SceneChanges:
         self._views.scales.forget()
         self._views.knobs.state = knob_state(scene)
         self._views.tabs.update_state(look_at=scene.look_at, paper=scene.paper)
-        self._tell_pages()
-        self._session.curves = self._curves.open(scene, curves)
+        self._tell_of_scene()
+        self._session.curves = self._curves.show_preset(scene, curves)
         self._views.header.show_session(self._session)
         if self._session.mode == "live":
             self._pictures.begin_live()
-        self.compute(start)
+        self.request_picture(start)
 
     def choose_frequency(self, frequency: object) -> None:
         """Turn the knob f to a place on the curve."""
         self._session.change("f", clicked_frequency(self._session.scene, frequency))
         self._send_knob_values()
-        self._changed()
+        self._follow_knobs()
 
-    def compute(self, start: State | None = None) -> None:
+    def request_picture(self, start: State | None = None) -> None:
         """Request a picture of the knobs as they are."""
         for page in self._pages:
             page.picture_requested()
@@ -85,19 +85,19 @@ class SceneChanges:
     def _set(self, message: dict[str, Any]) -> None:
         try:
             self._session.change(str(message.get("name")), message.get("value"))
-            self._changed()
+            self._follow_knobs()
         finally:
             self._send_knob_values(message.get("seq"))
 
     def _restore(self, message: dict[str, Any]) -> None:
         self._session.restore(str(message.get("name")))
         self._send_knob_values(message.get("seq"))
-        self._changed()
+        self._follow_knobs()
 
     def _scene(self, message: dict[str, Any]) -> None:
         self._session.choose(message.get("name"))
         self._show_message("")
-        self.opened(None, "")
+        self.show_preset(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
         """A step back or forward: the session becomes what the address says, its picture to the last digit."""
@@ -108,11 +108,11 @@ class SceneChanges:
             page.address_applied()
         self._pinned.show()
         if session.scene.name != name:
-            self.opened(start, session.curves)
+            self.show_preset(start, session.curves)
         else:
             if session.curves != curves:
                 session.curves = self._curves.select(session.scene, session.curves)
-            self._knobs_turned(start)
+            self._show_turned_knobs(start)
         self._show_message(" ".join(refused))
         self._views.header.send(type="address-applied", query=session.link)
 
@@ -125,20 +125,22 @@ class SceneChanges:
         elif state is not None or self._pictures.live is None:
             self._pictures.begin_live(state)
 
-    def _knobs_turned(self, start: State | None) -> None:
+    def _show_turned_knobs(self, start: State | None) -> None:
         """The knobs were turned, but not by the visitor: the bar and the knobs show it, too."""
         self._views.header.show_session(self._session)
         self._send_knob_values()
-        self._changed(start)
+        self._follow_knobs(start)
 
-    def _changed(self, start: State | None = None) -> None:
-        self.compute(start)
+    def _follow_knobs(self, start: State | None = None) -> None:
+        """The knobs were turned: request a picture first, then inform the pages and the curve."""
+        self.request_picture(start)
         if self._session.sentence:
             self._show_message("")
-        self._tell_pages()
-        self._curves.moved(self._session.scene)
+        self._tell_of_scene()
+        self._curves.knob_moved(self._session.scene)
 
-    def _tell_pages(self) -> None:
+    def _tell_of_scene(self) -> None:
+        """Inform pins, pages, equation and tabs of the session's scene."""
         scene = self._session.scene
         self._pinned.scene_changed()
         for page in self._pages:

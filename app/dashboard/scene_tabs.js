@@ -1,6 +1,6 @@
 // Two tabs without a page: what to look at, and what the marks of the curve mean.
 
-import { element, paragraph } from "../parts/dom.js";
+import { element, paragraph } from "../parts/toolkit/dom.js";
 
 export const lookAtTab = ({ state }) => ({
   content: [paragraph(state.look_at ?? ""), paragraph(state.paper ?? "", "soft")],

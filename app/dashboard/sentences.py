@@ -8,10 +8,10 @@ from typing import Any
 
 from granchain_core import BadInput, NumbersFailed, Scene
 
-from ..parts.status_line import StatusLine
-from ..serve.metrics import METRICS
+from ..parts.status.status_line import StatusLine
+from ..serve.monitoring.metrics import METRICS
 from ..session.budget import RefusedPicture
-from ..session.hooks import Actions
+from ..session.page import Actions
 from ..session.session import Session
 
 log = logging.getLogger("granchain")

@@ -10,9 +10,9 @@ from granchain_core import Run, Scene, Settled
 
 from ..format import prefixed
 from ..frames import PERIODS, Frames, prepared_frames, round_up
-from ..parts.chain import frames_message
-from ..parts.status_line import run_entries, settled_entries
-from ..serve.changes import set_properties
+from ..parts.chain.chain import frames_message
+from ..parts.status.status_line import run_entries, settled_entries
+from ..serve.document.changes import set_properties
 from ..session.live import LivePicture
 from .layout import Views
 

@@ -26,9 +26,9 @@ from ..pages.probe.view import Probe
 from ..pages.stability.page import StabilityPage
 from ..pages.stability.view import Stability
 from ..pages.stories.page import StoriesPage
-from ..parts.component import Component
-from ..session.hooks import Page
+from ..parts.toolkit.component import Component
 from ..session.host import Host
+from ..session.page import Page
 
 
 @dataclass(frozen=True)

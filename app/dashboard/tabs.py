@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..parts.component import Component, text
+from ..parts.toolkit.component import Component, text
 from ..scripts import module
 
 

@@ -11,8 +11,15 @@ from bokeh.models import Plot
 from jinja2 import Template
 from panel.io.resources import BASE_TEMPLATE
 
-from ..parts.component import Component
-from ..serve.part_messages import register
+from ..needed import Needed
+from ..parts.toolkit.component import Component
+from ..serve.document.part_messages import register
+
+#: What is used of Bokeh and Panel beyond their documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page can be made"),
+    Needed("panel.io.resources", ("BASE_TEMPLATE",), "the server does not start"),
+)
 
 
 def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable[Plot], template: str,

@@ -1,8 +1,8 @@
 // Terms that explain themselves: hover, focus or touch shows a term's definition from docs/glossary.md. In each text
 // only the first use of a term does so.
 
-import { hideMeaning, showMeaning } from "../parts/bubble.js";
-import { element } from "../parts/dom.js";
+import { hideMeaning, showMeaning } from "../parts/toolkit/bubble.js";
+import { element } from "../parts/toolkit/dom.js";
 
 const TEXTS = "p, h3, dd, .explained";
 

@@ -1,6 +1,6 @@
 // Which pages somebody looks at, since most of them compute and move only then.
 
-import { onScreen, PHONE } from "../parts/dom.js";
+import { onScreen, PHONE } from "../parts/toolkit/dom.js";
 
 const CURVE_NAME = "curve"; // stands for the curve among the names of the pages
 

@@ -1,1 +1,1 @@
-"""The parts that are always on the screen: chain, knobs, force trains, energy map, status line."""
+"""What is always on the page, a folder for each part, and what all parts and pages are made of."""

@@ -1,1 +1,1 @@
-"""The server's machinery: document lock, sockets, guards, logs, metrics, pace, turns, shared results, compiling."""
+"""The server's machinery: requests, documents, computing for many visitors, compiling, opening, log and metrics."""

@@ -51,7 +51,8 @@ def trains_csv(run: Run) -> str:
     titles = ["time_s", "drive_displacement_m", "input_force_N", "output_force_N", "elastic_part"]
     rows = zip(run.time - run.time[0], run.drive_displacement, run.input_force, run.output_force,
                run.output_force_elastic, strict=True)
-    return "".join(f"{line}\n" for line in comments) + _csv(titles, ([repr(float(one)) for one in row] for row in rows))
+    return "".join(f"{line}\n" for line in comments) + _csv(
+        titles, ([repr(float(value)) for value in row] for row in rows))
 
 
 def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
@@ -68,7 +69,7 @@ def curve_csv(curves: Mapping[str, Sequence[CurvePoint]]) -> str:
         claim = point.force_errors.output
         return [start, repr(point.frequency), repr(point.max_output_force), repr(point.max_output_force_elastic),
                 repr(point.max_input_force), "" if claim is None else repr(claim), point.regime.name,
-                str(point.regime.period or ""), *("" if np.isnan(one) else repr(one) for one in known)]
+                str(point.regime.period or ""), *("" if np.isnan(value) else repr(value) for value in known)]
 
     rows = zip(*(column.values.tolist() for column in evidence.values()), strict=True)
     return _csv(titles, (row(start, point, known) for (start, point), known in zip(all_points, rows, strict=True)))

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from granchain_core.pieces import FIXED_STEP_KERNELS
 
-from ..serve.compiler import compiling_words
+from ..serve.compiling.compiler import compiling_words
 
 #: State of an entry in the list of what is computed now: nobody asked for it.
 OFF = "off"

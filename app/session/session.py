@@ -13,7 +13,7 @@ from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
 from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
 
-from ..serve.cpu_time import CpuTime
+from ..serve.work.cpu_time import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
 from .share import BROWSER_FIELDS, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in
@@ -130,7 +130,7 @@ class Session:
     def set_speed(self, speed: object) -> None:
         """Set the drive periods shown in a second to one of `SPEEDS`."""
         if not is_number(speed) or speed not in SPEEDS:
-            known = ", ".join(f"{one:g}" for one in sorted(SPEEDS))
+            known = ", ".join(f"{speed:g}" for speed in sorted(SPEEDS))
             raise BadInput(f"speed {quoted(speed)} is not one of {known} drive periods a second.")
         self.speed = float(speed)
 

@@ -9,12 +9,17 @@ from typing import Any
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
 from granchain_core.stop import Stop
 
-from ..serve.compiler import COMPILER
-from ..serve.delays import LONGEST_PICTURE_POLL, PICTURE_POLL
-from ..serve.queues import Queue
-from ..serve.turns import Flag
+from ..serve.compiling.compiler import COMPILER
+from ..serve.work.queues import Queue
+from ..serve.work.turns import Flag
 from .host import Host
 from .progress import Status
+
+#: Time between the first two checks whether the main picture is done [s]. Long work waits for the picture, so that it
+#: never competes with a knob.
+_PICTURE_CHECK_INTERVAL = 0.01
+#: Longest time between two such checks [s].
+_LONGEST_CHECK_INTERVAL = 0.2
 
 #: Called with a status and a sentence, which is empty unless the status is "failed".
 Say = Callable[[Status, str], None]
@@ -54,15 +59,15 @@ class Job:
                 raise Cancelled
             COMPILER.load(scene, piece)
 
-    def give_way(self, to: Callable[[], bool] | None = None) -> None:
-        """Wait while the picture for a moved knob is being computed, or while `to` returns True.
+    def give_way(self, while_: Callable[[], bool] | None = None) -> None:
+        """Wait while the picture for a moved knob is being computed, or while `while_` returns True.
 
         The longer this takes, the less often it checks: each check takes the interpreter from all other threads.
         """
-        waits, pause = to or (lambda: self._host.awaiting_picture), PICTURE_POLL
+        waits, pause = while_ or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
         while waits() and not self.stop:
             time.sleep(pause)
-            pause = min(2.0 * pause, LONGEST_PICTURE_POLL)
+            pause = min(2.0 * pause, _LONGEST_CHECK_INTERVAL)
 
     def progress(self, report: Callable[[float], None], steps: int = 50) -> Callable[[float], None]:
         """For work that tells how much of it is done, from 0 to 1: what it calls, which then gives way.

@@ -14,10 +14,11 @@ from panel.custom import JSComponent
 from source import ROOT, imports_in
 
 import app.dashboard.layout  # noqa: F401  (makes every component known)
-from app.parts.component import Component
-from app.parts.figure_part import FigurePart
-from app.parts.result_figure import ResultFigure
-from app.serve import changes
+from app import needed
+from app.parts.figures.figure_part import FigurePart
+from app.parts.figures.result_figure import ResultFigure
+from app.parts.toolkit.component import Component
+from app.scripts import FILES
 from granchain_core.kernels.compiling import cache, link_only
 
 
@@ -80,19 +81,37 @@ def test_no_import_goes_in_a_circle() -> None:
 USES = {folder.replace("/", "."): re.findall(r"`(\w+)`", uses) for folder, uses in re.findall(
     r"^\| `app/([\w/]+)` \| [^|]+ \| ([^|]+) \|$", (ROOT / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)}
 #: Modules beside the folders that any folder may use; the others are above all.
-SHARED = {"format", "frames", "scripts"}
+SHARED = {"format", "frames", "needed", "scripts"}
+
+
+#: Folders whose own folders the map orders. Others may use all of them; of a folder of `pages`, `dashboard` alone.
+FAMILIES = {folder.split(".")[0] for folder in USES if "." in folder} - {"pictures"}
 
 
 def layer(module: str) -> str:
-    """The folder of a module of `app`, with a page's own; of one beside the folders its name."""
+    """The folder of a module of `app`, with that inside a family; of a module beside the folders its name."""
     parts = module.split(".")[1:]
-    return ".".join(parts[:2]) if parts[0] == "pages" and len(parts) > 2 else parts[0]
+    return ".".join(parts[:2]) if parts[0] in FAMILIES and len(parts) > 2 else parts[0]
 
 
 def allowed(folder: str) -> set[str]:
-    """The folders that a folder may import: itself, what it uses, and what those use; a page uses what `pages` does."""
-    used = [*USES[folder], *(USES["pages"] if folder.startswith("pages.") else ())]
+    """The folders that a folder may import: itself, what it uses, and what those use.
+
+    One of a family uses what its family does, too, and others of the family by their last name.
+    """
+    family, _, inside = folder.partition(".")
+    used = [f"{family}.{one}" if inside and f"{family}.{one}" in USES else one for one in USES[folder]]
+    used += USES[family] if inside else [one for one in USES if one.startswith(f"{folder}.") and folder != "pages"]
     return {folder}.union(*(allowed(one) for one in used))
+
+
+def test_the_order_of_the_map_is_read() -> None:
+    """A family's own folders, and those that other folders use with it."""
+    assert {"serve", "parts", "pages"} == FAMILIES
+    assert allowed("serve.compiling") == {"serve.compiling", "serve.work", "serve.monitoring"}
+    assert {"parts.toolkit", "serve.document", "pictures"} <= allowed("parts.stage")
+    assert not {"parts.chain", "curve", "pages"} & allowed("parts.stage")
+    assert {"parts.chain", "serve.work"} <= allowed("pages.map") and "pages.probe" not in allowed("pages.map")
 
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app.")])
@@ -106,10 +125,20 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None
             assert theirs in SHARED, f"{module} imports {name}"
         elif module == "app.cli.serve":
             assert name in ("app.server", "app.cli.common", "app.cli.options", "app.cli.waiting",
-                            "app.serve.limits"), f"{module} imports {name}"
+                            "app.serve.http.limits"), f"{module} imports {name}"
         elif mine in USES:
             fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
             assert theirs in fits | SHARED, f"{module} imports {name}"
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_a_script_imports_only_from_folders_that_the_map_allows(name: str) -> None:
+    """As the Python beside it; what puts the dashboard together may import pages, too."""
+    folder = FILES[name].parent
+    theirs = {(folder / url).resolve().parent.relative_to(ROOT / "app").as_posix().replace("/", ".")
+              for url in re.findall(r'^import [^"]*"([^"]+)";$', FILES[name].read_text(encoding="utf-8"), re.MULTILINE)}
+    mine = folder.relative_to(ROOT / "app").as_posix().replace("/", ".")
+    assert theirs <= allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
 
 
 def components(of: type) -> Iterator[type]:
@@ -150,6 +179,10 @@ DOCUMENTED = {"_esm", "_stylesheets", "_handle_msg", "_send_msg"}
 _OF_NAMED_TUPLES = {"_fields", "_replace", "_asdict", "_make"}
 
 
+#: Private names that are passed as keyword arguments, where `private_uses` does not look.
+PARAMETERS = {"_with_props"}
+
+
 def private_uses(module: str) -> Iterator[str]:
     """Private attributes of other objects than a class's own, by a dot or by name."""
     for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
@@ -177,19 +210,21 @@ def documented(page: str, folder: str) -> dict[str, set[str]]:
     return rows
 
 
-#: Private attributes of Tornado, Bokeh and Panel, by the only modules that use them. Each module goes on without them
-#: in the libraries' public way, and says how; without `_tornado` the server does not start.
-PRIVATE = documented("dashboard.md", "app")
+#: What is used of Tornado, Bokeh, Panel and Param beyond their documentation, by the only modules that use it.
+NEEDED = {f"app.{module}": {name for row in table for name in row.names} for module, table in needed.tables().items()}
+#: Those of these names that are private.
+PRIVATE = {module: {name for name in names if re.match("_[a-z]", name)} for module, names in NEEDED.items()}
 #: Those of Numba, by the modules of the core; among them names that a class uses of the one it is derived from, which
 #: `private_uses` does not find.
 PRIVATE_OF_NUMBA = {f"granchain_core.{module}": names for module, names in documented("compiling.md", "kernels").items()}
 
 
 @pytest.mark.parametrize("module", MODULES)
-def test_private_attributes_of_others_are_used_where_a_table_says(module: str) -> None:
+def test_private_attributes_of_others_are_in_the_table_of_the_module_that_uses_them(module: str) -> None:
     used = set(private_uses(module))
     if module.startswith("app."):
-        assert used == PRIVATE.get(module, set())
+        assert used | PARAMETERS & PRIVATE.get(module, set()) == PRIVATE.get(module, set())
+        assert module in NEEDED or "\nNEEDED = " not in MODULES[module].read_text(encoding="utf-8")
     else:
         assert used <= PRIVATE_OF_NUMBA.get(module, set())
 
@@ -198,8 +233,19 @@ def test_the_tables_name_modules_that_are_there() -> None:
     assert PRIVATE and PRIVATE_OF_NUMBA and {*PRIVATE, *PRIVATE_OF_NUMBA} <= set(MODULES)
 
 
-#: Attributes that app/serve/changes.py uses of documented classes: Bokeh's documents, models and their events, Panel's
-#: state, Tornado's streams and locks, NumPy's arrays and what Python has.
+@pytest.mark.parametrize("module", NEEDED)
+def test_a_module_uses_what_is_in_its_table(module: str) -> None:
+    """By a dot, by name, or as what it imports; of the logger of another module only its name."""
+    tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
+    tree.body = [node for node in tree.body if not isinstance(node, ast.Assign) or ast.unparse(node.targets[0]) != "NEEDED"]
+    words = {word for node in ast.walk(tree) for word in (
+        getattr(node, "attr", None), getattr(node, "arg", None), getattr(node, "id", None), getattr(node, "name", None),
+        getattr(node, "value", None) if isinstance(node, ast.Constant) else None)}
+    assert NEEDED[module] <= words | ({"log"} if module == "app.serve.monitoring.logs" else set())
+
+
+#: Attributes that app/serve/document/changes.py uses of documented classes: Bokeh's documents, models and their events,
+#: Panel's state, Tornado's streams and locks, NumPy's arrays and what Python has.
 DOCUMENTED_ATTRIBUTES = {
     "acquire", "add_done_callback", "append", "closed", "done", "result", "rpartition", "write", "state", "loaded",
     "char", "dtype", "nbytes", "shape", "tobytes", "attr", "cols", "data", "document", "event_name", "id", "model",
@@ -207,26 +253,21 @@ DOCUMENTED_ATTRIBUTES = {
 }
 
 
-def test_the_documentation_names_what_is_used_of_bokeh_without_an_underscore() -> None:
-    """Most attributes without one are documented; those that changes.py uses beyond that are in its row."""
-    module = "app.serve.changes"
-    (row,) = re.findall(r"^\| ([^|]+) \| `app/serve/changes.py` \|", (ROOT / "docs/dashboard.md").read_text(encoding="utf-8"), re.MULTILINE)
+def test_the_table_names_what_is_used_of_bokeh_without_an_underscore() -> None:
+    """Most attributes without one are documented; those that changes.py uses beyond that are in its table."""
+    module = "app.serve.document.changes"
     tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
     names = [alias.asname or alias.name for node in tree.body if isinstance(node, ast.Import) for alias in node.names]
     own = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)} | {"arrays", "connection"}
     used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)
-            and ast.unparse(node.value).split(".")[0] not in ({"self", *names} - {"pn"})} | set(private_uses(module))
-    strings = {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
-    documented = set(re.findall(r"`(\w+)`", row))
-    assert used - own - DOCUMENTED_ATTRIBUTES <= documented
-    assert documented <= used | strings
-    assert {name for needed in changes.NEEDED.values() for name in needed} <= documented & used
+            and ast.unparse(node.value).split(".")[0] not in ({"self", *names} - {"pn"})}
+    assert used - own - DOCUMENTED_ATTRIBUTES <= NEEDED[module]
 
 
 def test_the_documentation_names_what_is_used_of_numba() -> None:
     """With the names that classes of the core use of the ones of Numba they are derived from."""
-    for module, needed in (("cache", cache._NEEDED), ("link_only", link_only._NEEDED)):
-        private = {name for name in needed if name.startswith("_")}
+    for module, names in (("cache", cache._NEEDED), ("link_only", link_only._NEEDED)):
+        private = {name for name in names if name.startswith("_")}
         assert private <= PRIVATE_OF_NUMBA[f"granchain_core.kernels.compiling.{module}"]
 
 

@@ -1,5 +1,5 @@
-"""What the page needs of BokehJS beyond its documentation: one module has it (app/parts/bokeh.js), and the release has
-it.
+"""What the page needs of BokehJS beyond its documentation: one module has it (app/parts/figures/bokeh.js), and the
+release has it.
 """
 
 from __future__ import annotations

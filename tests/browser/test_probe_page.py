@@ -7,7 +7,7 @@ from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
 from server import until
 
-from app.parts.figure_style import BOTTOM, GAP, TOP
+from app.parts.figures.figure_style import BOTTOM, GAP, TOP
 
 # Where on the screen a bead of the chain rests.
 BEAD = """(bead) => {

@@ -8,7 +8,7 @@ from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
 from server import ROOT, at_rest
 
-from app.parts.figure_style import BOTTOM, GAP, TOP
+from app.parts.figures.figure_style import BOTTOM, GAP, TOP
 
 #: A visitor who has not asked for less motion.
 MOVING = {"reduced_motion": "no-preference"}
@@ -83,7 +83,7 @@ def test_a_bead_glows_as_its_column_and_one_at_rest_is_steel(visit: Visit) -> No
 
 def places_of_the_chain() -> list[float]:
     """The room for the driver and for the wall [px], and the height of the beads' middle as a part of the chain's."""
-    parts = ROOT / "app" / "parts"
+    parts = ROOT / "app" / "parts" / "chain"
     text = (parts / "chain.js").read_text(encoding="utf-8") + (parts / "chain_drawing.js").read_text(encoding="utf-8")
     return [float(re.findall(pattern, text)[0]) for pattern in
             (r"\bDRIVER = (\d+)", r"\bWALL = (\d+)", r"return ([\d.]+) \* this\.height")]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from app.curve.bar import CurveBar
 from app.curve.controller import CurveController
+from app.curve.curve_bar import CurveBar
 from app.curve.view import CurveFigure
 from app.session.budget import curve_affordable
 from app.session.session import Session
@@ -32,10 +32,10 @@ def test_a_curve_does_not_stay_beside_the_picture_of_a_chain_that_has_none() -> 
     assert curve_affordable(before) and not curve_affordable(after)
     host, figure, bar, placed = Host(), CurveFigure(lambda _: None), CurveBar(lambda _: None), []
     curves = CurveController(host, figure, bar, lambda: placed.append(figure.whole))  # type: ignore[arg-type]
-    curves.open(before, "auto")
+    curves.show_preset(before, "auto")
     complete(figure, before)
     assert not bar.state["too_long"]
-    curves.moved(after)
+    curves.knob_moved(after)
     host.callbacks.pop()()  # the knobs rest
     assert figure.points("rest") == []
     assert placed == [False]  # the status line no longer names a place on it

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from headless_dashboard import Dashboard
 
-from app.serve.metrics import METRICS
+from app.serve.monitoring.metrics import METRICS
 
 
 def test_a_visitor_who_leaves_ends_everything_although_one_end_fails(dashboard: Dashboard, caplog: pytest.LogCaptureFixture) -> None:

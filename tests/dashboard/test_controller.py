@@ -21,11 +21,11 @@ from app.dashboard import links_and_files, main_picture, measurement
 from app.dashboard.table import PAGES, watched_pages
 from app.frames import Extremes, settled_frames
 from app.pictures.theme import THEMES, Theme
-from app.serve.compiler import COMPILER, Compiler
-from app.serve.limits import LARGEST_UPLOAD
-from app.serve.metrics import METRICS
+from app.serve.compiling.compiler import COMPILER, Compiler
+from app.serve.http.limits import LARGEST_UPLOAD
+from app.serve.monitoring.metrics import METRICS
 from app.session.budget import RefusedPicture
-from app.session.hooks import all_actions
+from app.session.page import all_actions
 from app.session.starts import MOST_BEADS
 from granchain_core import BadInput, run, scene, settle
 from granchain_core.result import GIVEN_STATE
@@ -194,7 +194,7 @@ def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashbo
     dashboard.received({"do": "scene", "name": "rig"})
     assert dashboard.session.curves == "rest.up.features"
     dashboard.received({"do": "go", "query": "v=1&scene=sec2"})  # two steps back
-    bar = dashboard.views.curvebar.state
+    bar = dashboard.views.curve_bar.state
     assert dashboard.session.curves == "auto" and (bar["rest"], bar["up"], bar["features"]) == (True, False, False)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from app.dashboard.scales import DIGEST, FILE, PictureScales
 from app.frames import samples_for, settled_frames
-from app.parts.chain import energy_labels, frames_message
+from app.parts.chain.chain import energy_labels, frames_message
 from app.session.session import Session
 from granchain_core import Scene, scene, scene_names, settle
 from tools.scales import digest_of, over_frequencies

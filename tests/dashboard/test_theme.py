@@ -14,7 +14,7 @@ from app.pictures.theme import THEMES, Theme, style_sheet
 from app.session.share import BROWSER_FIELDS, VIEW_VALUES
 from granchain import figure
 
-PARTS = Path(app.__file__).parent / "parts"
+SCRIPTS = Path(app.__file__).parent / "parts" / "page_scripts"
 
 
 def properties(name: str) -> dict[str, str]:
@@ -51,7 +51,7 @@ def test_no_style_uses_a_role_that_no_theme_has(path: Path) -> None:
 
 def names_in(script: str, constant: str) -> tuple[str, ...]:
     """The names that a script has as this constant."""
-    (names,) = re.findall(rf"const {constant} = \[([^\]]+)\]", (PARTS / script).read_text(encoding="utf-8"))
+    (names,) = re.findall(rf"const {constant} = \[([^\]]+)\]", (SCRIPTS / script).read_text(encoding="utf-8"))
     return tuple(name.strip('" ') for name in names.split(","))
 
 

@@ -47,7 +47,7 @@ def test_the_new_law_is_seen(tree: Path) -> None:
     """A choice of the knob on the page, a term of the equation, a name among the effects and in the kernel's name."""
     printed = follow(tree, "-c", """
 from app.cli.explain import explanation
-from app.parts.knobs import knob_state
+from app.parts.knobs.knobs import knob_state
 from granchain_core import scene
 from granchain_core.warm import structure
 one = scene("sec2").evolve(dissipation="three-quarters")

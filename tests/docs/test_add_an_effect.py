@@ -146,7 +146,7 @@ def test_the_new_effect_has_a_switch_in_the_panel_a_slider_a_cost_and_axes(tree:
     printed = follow(tree, "-c", """
 from app.session.session import Session
 from app.session.switches import SWITCHES, present, variants
-from app.parts.knobs import knob_state
+from app.parts.knobs.knobs import knob_state
 from granchain_core import scene
 from granchain_core.parameter_map.grid import KNOBS
 from granchain_core.orbits import CONTINUOUS

@@ -8,7 +8,7 @@ import pytest
 
 from app.cli import main
 from app.cli.foundation import kept_along, kept_spring
-from app.parts.foundation import beside_kappa
+from app.parts.knobs.foundation import beside_kappa
 from granchain_core import scene, settled
 
 RIG = scene("rig")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from app.frames import samples_for
-from app.parts.knobs import knob_state
+from app.parts.knobs.knobs import knob_state
 from app.session.budget import curve_affordable
 from granchain_core import scene, scene_names
 

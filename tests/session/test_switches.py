@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from app.session.energy_residual import with_account
+from app.session.energy_account import with_account
 from app.session.session import Session
 from app.session.switches import ACCOUNT_SWITCH, SWITCHES, changes, present, variants
 from granchain_core import BadInput, scene, scene_names, settle

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import pytest
 from host import FakeHost
 
-from app.serve.queues import Queue
+from app.serve.work.queues import Queue
 from app.session.task import Job, Task, say_nothing
 from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 

@@ -111,7 +111,7 @@ async def run(server: Started, count: int, seed: int) -> int:
             sent[await attacker.attack()] += 1
         except Exception as closed:  # by the server, between the look and the message
             sent[f"closed: {type(closed).__name__}"] += 1
-        await asyncio.sleep(0.01)  # below the limit of messages a second, whose own test is tests/serve/test_security.py
+        await asyncio.sleep(0.01)  # below the limit of messages a second, whose own test is tests/serve/http/test_security.py
     await attacker.leave()
     last = Visitor(server.address)
     await last.open()

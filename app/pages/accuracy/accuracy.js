@@ -1,7 +1,7 @@
 // The Accuracy page, over the pictures: what accuracy costs for this scene, and the force that naive steps would draw.
 
-import { button, element, meter, pageHead, paragraph, table, unbroken } from "../../parts/dom.js";
-import { BokehFigure } from "../../parts/bokeh_figure.js";
+import { button, element, meter, pageHead, paragraph, table, unbroken } from "../../parts/toolkit/dom.js";
+import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 import { fillAccuracy, showAccuracy } from "./accuracy_tab.js";
 import { NaiveForces } from "./naive_forces.js";
 

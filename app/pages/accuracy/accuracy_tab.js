@@ -1,8 +1,8 @@
 // The Accuracy tab: a small picture of error against time, and the way to the page, whose figure the same function
 // fills.
 
-import { element, openButton, paragraph } from "../../parts/dom.js";
-import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
+import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
+import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
 const STALE = "The knobs have moved; open the page to measure again.";
 

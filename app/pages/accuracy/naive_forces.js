@@ -1,7 +1,7 @@
 // The accurate output force and, over it, the force that a naive method with few steps would have drawn.
 
-import { element } from "../../parts/dom.js";
-import { BokehFigure } from "../../parts/bokeh_figure.js";
+import { element } from "../../parts/toolkit/dom.js";
+import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 
 // Steps in a drive period that are chosen first.
 const USUAL_STEPS = 200;

@@ -6,8 +6,6 @@ import math
 from functools import partial
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.kernels.batch_size import machine
@@ -15,11 +13,11 @@ from granchain_core.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP
 
 from ...format import duration, short_error
 from ...pictures.accuracy import Annotations
-from ...serve.queues import MEASUREMENTS
+from ...serve.work.queues import MEASUREMENTS
 from ...session.active_setting import PlacedSetting, locate, page_setting
 from ...session.activities import Activity
-from ...session.hooks import Actions, Page
 from ...session.host import Host
+from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
 from .view import Accuracy, described_methods, described_reference
@@ -119,12 +117,11 @@ class AccuracyPage(Page):
     def _show(self, rows: list[Row], naive: Lesson | None, reference: dict[str, Any], agreement: float) -> None:
         self.rows = rows
         self._agreement = agreement if math.isfinite(agreement) else None
-        with unlocked():
-            self._view.measured(rows, reference)
-            if naive is not None and self._naive is None:
-                self._naive = naive
-                self._view.show_naive(naive)
-            self.describe()
+        self._view.measured(rows, reference)
+        if naive is not None and self._naive is None:
+            self._naive = naive
+            self._view.show_naive(naive)
+        self.describe()
 
     def _progress(self, done: float) -> None:
         self.done = done

@@ -12,8 +12,8 @@ import numpy as np
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, compared_methods
 
 from ...format import prefixed, short_error
-from ...parts.component import text
-from ...parts.figure_part import FigurePart, page_and_small
+from ...parts.figures.figure_part import FigurePart, page_and_small
+from ...parts.toolkit.component import text
 from ...pictures.accuracy import Annotations, accuracy, marks, points
 from ...pictures.item import figure_item
 from ...pictures.naive_forces import naive_forces

@@ -1,7 +1,7 @@
 // The Analysis page, over the pictures: a question about the present scene, its fields, and its answer.
 
-import { button, element, meter, pageHead } from "../../parts/dom.js";
-import { ResultFigure } from "../../parts/result_figure.js";
+import { button, element, meter, pageHead } from "../../parts/toolkit/dom.js";
+import { ResultFigure } from "../../parts/figures/result_figure.js";
 
 const ABOUT =
   "Four questions about the motion of the present scene. Choose one; it is computed when you press “compute”.";

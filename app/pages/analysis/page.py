@@ -7,9 +7,9 @@ from typing import Any
 from granchain_core import BadInput, Settled
 from granchain_core.pieces import ORBIT_KERNELS
 
-from ...serve.queues import LONG
-from ...session.hooks import Actions, Page
+from ...serve.work.queues import LONG
 from ...session.host import Host
+from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .questions import (

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
-from ...parts.component import text
-from ...parts.result_figure import ResultFigure
+from ...parts.figures.result_figure import ResultFigure
+from ...parts.toolkit.component import text
 from ...scripts import module
 from .questions import QUESTIONS, AnalysisQuestion, Field, Plan
 

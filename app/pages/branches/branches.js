@@ -1,7 +1,7 @@
 // The Branches page, over the pictures: a branch of periodic orbits grows, and a click loads one of them.
 
-import { button, element, pageHead, paragraph } from "../../parts/dom.js";
-import { BokehFigure, StreamedData } from "../../parts/bokeh_figure.js";
+import { button, element, pageHead, paragraph } from "../../parts/toolkit/dom.js";
+import { BokehFigure, StreamedData } from "../../parts/figures/bokeh_figure.js";
 
 const WORDS = "largest elastic output force of periodic orbits over drive frequency";
 // px; a narrower picture has its legend in two columns.

@@ -1,7 +1,7 @@
 // The Branches tab: a small version of the picture, and a button that opens the page.
 
-import { element, openButton, paragraph } from "../../parts/dom.js";
-import { BokehFigure } from "../../parts/bokeh_figure.js";
+import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
+import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 
 export function branchesTab(_, { placeholder }) {
   const known = () => window.granchain.pages.get("branches");

@@ -7,24 +7,24 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import Scene, Settled
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
 from granchain_core.stop import Stop
 
 from ...pictures.branches import BranchRows
-from ...serve.delays import BRANCH_EVERY
-from ...serve.queues import LONG
+from ...serve.work.queues import LONG
 from ...session.budget import curve_affordable
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import listed, whole
+from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.session import slider_range, without_frequency
 from ...session.task import Job, Task
 from .view import LONGEST_BRANCH_PERIOD, Branches
+
+#: Time between two messages while a branch grows [s].
+_MESSAGE_EVERY = 0.08
 
 WORDS = StatusWords("the kernels for branches", BRANCH_KERNELS, kept="the orbits found so far")
 NOT_PERIODIC = ("The motion on the screen does not repeat, so it lies on no branch. Choose a period, and an orbit of "
@@ -159,7 +159,7 @@ class BranchesPage(Page):
         self._task.start(lambda job: self._follow_in_thread(begin, scene, job))
 
     def _follow_in_thread(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
-        """In a worker thread: follow the branches, update the page every `BRANCH_EVERY`, and let pictures go first."""
+        """In a worker thread: follow the branches, report every `_MESSAGE_EVERY` seconds, and let pictures go first."""
         sent = 0.0
         job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, BRANCH_KERNELS)
         job.say("settling")
@@ -167,7 +167,7 @@ class BranchesPage(Page):
             continuation = Continuation(branch, job.stop)
             job.next_tick(self._add, continuation)
             for _ in continuation:
-                if time.monotonic() - sent > BRANCH_EVERY:
+                if time.monotonic() - sent > _MESSAGE_EVERY:
                     sent = time.monotonic()
                     job.next_tick(self._draw)
                 job.give_way()
@@ -190,24 +190,22 @@ class BranchesPage(Page):
         if added is not None:
             self._scene = self._scene or now
             self.scene_changed()
-            with unlocked():
-                self._view.need_figures()
-                self._view.send(type="add", **added)
+            self._view.need_figures()
+            self._view.send(type="add", **added)
 
     def _draw(self) -> None:
         """Send what is new; a special point goes before the orbit that follows it on its arm."""
-        with unlocked():
-            for number, drawn in enumerate(self._drawn):
-                points = drawn.arm.points[drawn.points :]
-                special = drawn.arm.special[drawn.special :]
-                if not points:
-                    continue
-                self._special.extend((drawn.branch, s) for s in special)
-                drawn.points += len(points)
-                drawn.special += len(special)
-                self._view.need_figures()
-                self._view.send(type="add", **self._rows.add(number, drawn.branch, points, special))
-            self._say(self.status if self.status in ("stopped", "done") else "following")
+        for number, drawn in enumerate(self._drawn):
+            points = drawn.arm.points[drawn.points :]
+            special = drawn.arm.special[drawn.special :]
+            if not points:
+                continue
+            self._special.extend((drawn.branch, s) for s in special)
+            drawn.points += len(points)
+            drawn.special += len(special)
+            self._view.need_figures()
+            self._view.send(type="add", **self._rows.add(number, drawn.branch, points, special))
+        self._say(self.status if self.status in ("stopped", "done") else "following")
 
     def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status

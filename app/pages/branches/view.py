@@ -6,8 +6,8 @@ from collections.abc import Callable
 from functools import cache
 from typing import Any
 
-from ...parts.component import text
-from ...parts.figure_part import FigurePart, page_and_small
+from ...parts.figures.figure_part import FigurePart, page_and_small
+from ...parts.toolkit.component import text
 from ...pictures.branches import SPECIAL, branches
 from ...pictures.theme import Theme
 from ...scripts import module

@@ -1,6 +1,6 @@
 // The Effects tab: a switch for every effect, its slot in the compiled kernel and its cost, and what is computed now.
 
-import { element, paragraph } from "../../parts/dom.js";
+import { element, paragraph } from "../../parts/toolkit/dom.js";
 
 const INVITES =
   "Tick an effect to add its term to the equations. The numbers say how much time a time step takes for it.";

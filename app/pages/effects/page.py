@@ -12,18 +12,22 @@ from granchain_core.scaling import slots_of
 from granchain_core.scene.effects import ALWAYS
 from granchain_core.warm import structure
 
-from ...parts.component import Component
-from ...serve.compiler import COMPILER, PICTURE_PIECES
-from ...serve.delays import ACTIVITIES_EVERY, COST_QUIET
-from ...serve.queues import MEASUREMENTS
+from ...parts.toolkit.component import Component
+from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
+from ...serve.work.queues import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.debounce import Debounce
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import quoted
+from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, READY, UNDER_WAY
 from ...session.switches import SWITCHES, present, refusal, variants
 from ...session.task import Job, Task
+
+#: Time between two lists of what is being computed, while somebody looks [s].
+_LIST_EVERY = 0.4
+#: Rest of the knobs before the cost of an effect is measured [s].
+_QUIET = 0.7
 
 
 class EffectsPage(Page):
@@ -35,11 +39,12 @@ class EffectsPage(Page):
         self._task = Task(host, MEASUREMENTS, self._ended, "The cost measurement")
         self._visible = False
         self._round = 0
-        self._quiet = Debounce(host, COST_QUIET)
+        self._quiet = Debounce(host, _QUIET)
         self._key: tuple[object, ...] = ()
         self._costs: dict[str, dict[str, EffectCost]] = {}
         self._failed: dict[str, str] = {}
         self._compiling = ""
+        self._kernels = Requests(COMPILER)
         self.measuring = ""
         self.actions: Actions = {"switch": self._switch}
 
@@ -93,7 +98,7 @@ class EffectsPage(Page):
             return
         self._next()
         self._show()
-        self._host.call_later(ACTIVITIES_EVERY, self._poll, number)
+        self._host.call_later(_LIST_EVERY, self._poll, number)
 
     def _next(self) -> None:
         """Begin the next thing to do: compile the kernels of one effect, or measure it."""
@@ -118,9 +123,9 @@ class EffectsPage(Page):
             piece = COST_ACCOUNT_KERNELS if variant.account else COST_KERNELS
             if COMPILER.has(variant.scene, piece):
                 continue
-            self._compiling = name
-            compilation = COMPILER.ask(variant.scene, piece)
-            if compilation.done() and compilation.exception() is not None:
+            if self._kernels.failure(variant.scene, piece) is None:
+                self._compiling = name
+            else:
                 self._failed[name] = "its kernel could not be compiled"
             return False
         return True

@@ -1,7 +1,7 @@
 // The Hard cases page, over the pictures: a card for each case, which runs when the visitor asks for it.
 
-import { button, element, meter, pageHead, table } from "../../parts/dom.js";
-import { ResultFigure } from "../../parts/result_figure.js";
+import { button, element, meter, pageHead, table } from "../../parts/toolkit/dom.js";
+import { ResultFigure } from "../../parts/figures/result_figure.js";
 
 // Text in which powers such as "10^5" and "F^{1/6}" are raised, and what is between backticks is code.
 const raised = (text) =>

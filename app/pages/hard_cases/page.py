@@ -8,11 +8,11 @@ from typing import Any
 from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard_cases import CASES, Case, Check, Picture
 
-from ...serve.queues import MEASUREMENTS
+from ...serve.work.queues import MEASUREMENTS
 from ...session.activities import Activity
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import quoted
+from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
 from .view import HardCases, described_results, summary

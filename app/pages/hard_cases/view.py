@@ -10,8 +10,8 @@ from typing import Any
 from granchain_core.hard_cases import CASES, Check, Picture
 
 from ...format import duration
-from ...parts.component import text
-from ...parts.result_figure import ResultFigure
+from ...parts.figures.result_figure import ResultFigure
+from ...parts.toolkit.component import text
 from ...pictures.check import check
 from ...scripts import module
 

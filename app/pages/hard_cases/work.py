@@ -13,7 +13,9 @@ from granchain_core.child_processes import end_with_parent, starting
 from granchain_core.hard_cases import CASES, Case, Check, Picture, run_case
 from granchain_core.stop import Stop
 
-from ...serve.delays import STOP_POLL
+#: Time between two checks of the stop flag while the process of a case works [s].
+_STOP_CHECK_INTERVAL = 0.05
+
 
 #: Niceness: the page's pictures come first when cores are scarce.
 _NICENESS = 5
@@ -57,7 +59,7 @@ class CaseProcess:
         try:
             asked.send(case.name)
             for _ in range(2):
-                while not asked.poll(STOP_POLL):
+                while not asked.poll(_STOP_CHECK_INTERVAL):
                     if stop:
                         raise Cancelled
                 yield asked.recv()

@@ -1,7 +1,7 @@
 // The table of all attractors of the present setting, below the map.
 
-import { button, element, paragraph, table } from "../../parts/dom.js";
-import { MAP } from "./cells.js";
+import { button, element, paragraph, table } from "../../parts/toolkit/dom.js";
+import { MAP } from "./map_state.js";
 
 const swatch = (colour) => {
   const square = element("i", { className: "swatch" });

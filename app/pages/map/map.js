@@ -1,9 +1,9 @@
 // The Map tab: regime or largest force over two knobs, coarse first, and all attractors of the present setting.
 
-import { button, element, meter, paragraph } from "../../parts/dom.js";
-import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
+import { button, element, meter, paragraph } from "../../parts/toolkit/dom.js";
+import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 import { attractorList } from "./attractor_list.js";
-import { cellAt, finest, MAP, valuesOf } from "./cells.js";
+import { cellAt, finest, MAP, valuesOf } from "./map_state.js";
 
 const WORDS = "regime and largest force over drive frequency and amplitude; arrow keys move, Enter chooses";
 const SHOWN = [

@@ -8,7 +8,6 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from panel.io import unlocked
 
 from granchain_core import Scene
 from granchain_core.attractors import Attractor, attractors
@@ -17,20 +16,24 @@ from granchain_core.parameter_map.cells import cell_of, empty_cells
 from granchain_core.pieces import ORBIT_KERNELS
 from granchain_core.stop import Stop
 
-from ...parts.component import Component
+from ...parts.toolkit.component import Component
 from ...pictures.diagram import now_row
 from ...pictures.theme import THEMES, Theme
-from ...serve.compiler import PICTURE_PIECES
-from ...serve.delays import CELLS_EVERY, MAP_QUIET
-from ...serve.queues import LONG
+from ...serve.compiling.compiler import PICTURE_PIECES
+from ...serve.work.queues import LONG
 from ...session.debounce import Debounce
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import listed
+from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.session import slider_range
 from ...session.task import Job, Task
 from .view import cells_message, described_attractor, head_message
+
+#: Rest of the knobs before a new map is begun [s].
+_QUIET = 0.7
+#: Time between two messages while a map grows [s].
+_MESSAGE_EVERY = 0.25
 
 #: Cells along f and A0: few enough to be computed in about ten seconds on one core.
 COLUMNS = 60
@@ -64,7 +67,7 @@ class MapPage(Page):
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
         self._shown: list[dict[str, Any]] = []
-        self._quiet = Debounce(host, MAP_QUIET)
+        self._quiet = Debounce(host, _QUIET)
         self._theme = THEMES["light"]
         self._scale: dict[str, Any] = {}
         self._found: list[Attractor] = []
@@ -180,8 +183,7 @@ class MapPage(Page):
             message["models"] = {}
         else:
             self._scale = message["models"]
-        with unlocked():
-            self._send(**message)
+        self._send(**message)
 
     def _choose(self, message: dict[str, Any]) -> None:
         """A place of the map was clicked: set f and A0 to its values."""
@@ -231,7 +233,7 @@ def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], Non
     last = time.monotonic()
     for result in iter_diagram(grid, missing, stop, 1, pause):
         rows.append(cell_of(result))
-        if time.monotonic() - last > CELLS_EVERY:
+        if time.monotonic() - last > _MESSAGE_EVERY:
             yield np.array(rows)
             rows, last = [], time.monotonic()
     if rows:

@@ -1,6 +1,6 @@
 // Up to three pinned pictures in the Numbers tab: their numbers, and how much the present picture differs from them.
 
-import { button, element, paragraph } from "../../parts/dom.js";
+import { button, element, paragraph } from "../../parts/toolkit/dom.js";
 
 const INVITES = "Pin a picture and move a knob: its lines stay, dashed and grey, and the differences are listed here.";
 

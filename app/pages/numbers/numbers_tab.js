@@ -1,8 +1,8 @@
 // The Numbers tab: the pictures in words, in tables, and compared with pinned ones. The words also describe the
 // pictures to a screen reader.
 
-import { modelsNamed } from "../../parts/bokeh.js";
-import { element, paragraph, table, unbroken } from "../../parts/dom.js";
+import { modelsNamed } from "../../parts/figures/bokeh.js";
+import { element, paragraph, table, unbroken } from "../../parts/toolkit/dom.js";
 import { compared } from "./compared.js";
 
 const TABLES = {

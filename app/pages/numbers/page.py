@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from granchain_core import Settled
 
-from ...parts.component import Component
-from ...session.hooks import Actions, Page
+from ...parts.toolkit.component import Component
 from ...session.host import Host
+from ...session.page import Actions, Page
 from .words import beads, forces_over_time, summary
 
 

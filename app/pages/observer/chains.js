@@ -1,7 +1,7 @@
 // The drawings of the Observer page: the chain, its observer, and between them the force from one to the other.
 
-import { ChainDrawing } from "../../parts/chain_drawing.js";
-import { element } from "../../parts/dom.js";
+import { ChainDrawing } from "../../parts/chain/chain_drawing.js";
+import { element } from "../../parts/toolkit/dom.js";
 
 // A chain on a canvas of its own, without the words of the main picture.
 class WholeChain extends ChainDrawing {

@@ -1,7 +1,7 @@
 // The Observer page: the chain, below it its observer, the force that couples them, and their distance.
 
-import { button, element, pageHead } from "../../parts/dom.js";
-import { BokehFigure } from "../../parts/bokeh_figure.js";
+import { button, element, pageHead } from "../../parts/toolkit/dom.js";
+import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 import { Chains } from "./chains.js";
 import { fillDistance, showDistance } from "./observer_tab.js";
 import { Replay } from "./replay.js";

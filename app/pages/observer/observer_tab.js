@@ -1,7 +1,7 @@
 // The Observer tab: a small picture of the distance, and the way to the page, whose figure the same function fills.
 
-import { element, openButton, paragraph } from "../../parts/dom.js";
-import { BokehFigure } from "../../parts/bokeh_figure.js";
+import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
+import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 
 // The distance over time, and its prediction by the multipliers; each point is [drive period, distance].
 export function fillDistance(figure, { history, prediction }) {

@@ -8,9 +8,9 @@ from functools import partial
 from granchain_core import Scene, Settled
 from granchain_core.pieces import ADAPTIVE_KERNELS, OBSERVER_KERNELS
 
-from ...serve.queues import PICTURES
-from ...session.hooks import Actions, Page
+from ...serve.work.queues import PICTURES
 from ...session.host import Host
+from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
 from ...session.task import Job, Task
 from .view import Observer

@@ -1,6 +1,6 @@
 // Periods that the server computes for the Observer page. They are requested ahead, queued, and replayed one by one.
 
-import { unpack } from "../../parts/chain_series.js";
+import { unpack } from "../../parts/chain/chain_series.js";
 
 const PERIODS_A_SECOND = 4;
 const AHEAD = 2; // periods that wait in the queue

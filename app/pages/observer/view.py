@@ -12,9 +12,9 @@ from granchain_core import Scene, scene
 
 from ...format import prefixed
 from ...frames import chain_series
-from ...parts.chain import drawn_chain
-from ...parts.component import text
-from ...parts.figure_part import FigurePart, page_and_small
+from ...parts.chain.chain import drawn_chain
+from ...parts.figures.figure_part import FigurePart, page_and_small
+from ...parts.toolkit.component import text
 from ...pictures.energies import ENERGY_COLOURS
 from ...pictures.observer import observer, prediction
 from ...pictures.theme import Theme

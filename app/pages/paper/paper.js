@@ -1,7 +1,7 @@
 // The page of the paper, over the pictures: a chosen figure is computed; it has a caption and rows of the table.
 
-import { button, element, meter, pageHead, paragraph, table } from "../../parts/dom.js";
-import { ResultFigure } from "../../parts/result_figure.js";
+import { button, element, meter, pageHead, paragraph, table } from "../../parts/toolkit/dom.js";
+import { ResultFigure } from "../../parts/figures/result_figure.js";
 
 const ABOUT =
   "The figures of Zhang et al. (2016), computed here from the presets. Choose one; what the paper states and where we differ stands under it.";

@@ -8,8 +8,8 @@ from typing import Any
 
 from granchain_core.paper import FIGURES, PaperFigure, Result, statements
 
-from ...parts.component import text
-from ...parts.result_figure import ResultFigure
+from ...parts.figures.result_figure import ResultFigure
+from ...parts.toolkit.component import text
 from ...pictures.paper import paper_figure, size_of
 from ...scripts import module
 

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import Settled
 
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import whole
+from ...session.page import Actions, Page
 from .view import Probe
 
 
@@ -40,5 +38,4 @@ class ProbePage(Page):
     def _draw(self, picture: Settled | None) -> None:
         if self._visible and picture is not None:
             self._bead = min(self._bead, picture.run.scene.N)
-            with unlocked():
-                self._view.fill(picture.run, self._bead)
+            self._view.fill(picture.run, self._bead)

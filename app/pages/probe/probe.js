@@ -1,7 +1,7 @@
 // The Probe page, over the pictures: one bead in six pictures. A click on a bead or its column of the map chooses it.
 
-import { button, element, fillBeads, pageHead, paragraph } from "../../parts/dom.js";
-import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
+import { button, element, fillBeads, pageHead, paragraph } from "../../parts/toolkit/dom.js";
+import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
 const TITLES = {
   displacement: "displacement",

@@ -1,7 +1,7 @@
 // The Probe tab: a small phase portrait of the chosen bead, and the way to the page.
 
-import { element, openButton, paragraph } from "../../parts/dom.js";
-import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
+import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
+import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
 const INVITES = "Click a bead in the chain or in the map: its motion, its contacts, its spectrum.";
 

@@ -9,8 +9,8 @@ from typing import Any
 from granchain_core import Run
 
 from ...format import in_words
-from ...parts.component import text
-from ...parts.figure_part import FigurePart
+from ...parts.figures.figure_part import FigurePart
+from ...parts.toolkit.component import text
 from ...pictures.item import figure_item
 from ...pictures.probe import PICTURES, closed_spells, probe_state, without_points
 from ...pictures.theme import Theme

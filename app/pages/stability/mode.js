@@ -1,8 +1,8 @@
 // One Floquet mode as a motion of the chain: how a small disturbance of the orbit moves every bead.
 
-import { ChainDrawing } from "../../parts/chain_drawing.js";
-import { element } from "../../parts/dom.js";
-import { draw, frame, round3, ticks, words } from "../../parts/plot.js";
+import { ChainDrawing } from "../../parts/chain/chain_drawing.js";
+import { element } from "../../parts/toolkit/dom.js";
+import { draw, frame, round3, ticks, words } from "../../parts/toolkit/plot.js";
 
 class DisturbedChain extends ChainDrawing {
   // A mode has no size of its own: its largest displacement is drawn as this part of the distance of two beads.

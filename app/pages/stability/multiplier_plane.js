@@ -1,7 +1,7 @@
 // The multipliers in the complex plane. A click on one, or an arrow key, chooses the disturbance that is shown.
 
-import { element } from "../../parts/dom.js";
-import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
+import { element } from "../../parts/toolkit/dom.js";
+import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
 const OBSERVER = "the observer: a second chain pushed by this one's input force";
 

@@ -1,6 +1,6 @@
 // The row with the search for an unstable orbit nearby, and the way back from an orbit that was found.
 
-import { button, element } from "../../parts/dom.js";
+import { button, element } from "../../parts/toolkit/dom.js";
 
 export class OrbitSearch {
   constructor(send, longest) {

@@ -5,8 +5,6 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from panel.io import unlocked
-
 from granchain_core import BadInput, Scene, Settled, State
 from granchain_core.orbits.stroboscopic_map import refuse_cut
 from granchain_core.pieces import ORBIT_KERNELS
@@ -14,13 +12,12 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...pictures.multipliers import plane_state
-from ...serve.delays import ANALYSIS_QUIET
-from ...serve.queues import ANALYSES
+from ...serve.work.queues import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce
-from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import whole
+from ...session.page import Actions, Page
 from ...session.progress import COMPUTING, OFF, READY, Status, StatusWords
 from ...session.task import Job, Task
 from .trail import Trail
@@ -35,6 +32,9 @@ from .view import (
 )
 from .work import PHASES, OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 
+#: Time from a settled picture to its analysis [s]: nothing is analysed while a knob moves.
+_QUIET = 0.12
+
 _LIVE = "Only a motion that repeats has multipliers, and a live run is under way: choose “settled” above."
 
 WORDS = StatusWords("the tangent flow", ORBIT_KERNELS)
@@ -48,7 +48,7 @@ class StabilityPage(Page):
         self._view = view
         self._orbits = Task(host, ANALYSES, self._ended, "The analysis")
         self._sections = Task(host, ANALYSES, self._section_ended, "The section")
-        self._quiet = Debounce(host, ANALYSIS_QUIET)
+        self._quiet = Debounce(host, _QUIET)
         self._visible = False
         self._observer = False
         self._rank, self._bead, self._phase = 0, 1, 0
@@ -159,29 +159,26 @@ class StabilityPage(Page):
     def _arrived(self, found: OrbitAnalysis | OrbitTarget | Section) -> None:
         if self._picture is None:
             return
-        with unlocked():
-            if isinstance(found, OrbitAnalysis):
-                self._show(found)
-            elif isinstance(found, OrbitTarget):
-                self._rank = 0
-                self._follow(found)
-            else:
-                self._section = found
-                self._show_section()
-            self._show_evidence()
+        if isinstance(found, OrbitAnalysis):
+            self._show(found)
+        elif isinstance(found, OrbitTarget):
+            self._rank = 0
+            self._follow(found)
+        else:
+            self._section = found
+            self._show_section()
+        self._show_evidence()
 
     def _ended(self, status: Status, sentence: str) -> None:
         """Report a failure or a state such as "compiling"; results have arrived by themselves."""
         if status != "done":
-            with unlocked():
-                self._say(status, sentence)
-                self._show_evidence()
+            self._say(status, sentence)
+            self._show_evidence()
 
     def _section_ended(self, status: Status, sentence: str) -> None:
         """Report a failure; it says nothing about the analysis."""
         if status == "failed":
-            with unlocked():
-                self._view.update_state(failure=sentence)
+            self._view.update_state(failure=sentence)
 
     def _show(self, analysis: OrbitAnalysis) -> None:
         self._analysis, self.status = analysis, "done"

@@ -1,7 +1,7 @@
 // The Poincaré section of the page: its picture, and the choice of bead and drive phase.
 
-import { element, fillBeads } from "../../parts/dom.js";
-import { BokehFigure } from "../../parts/bokeh_figure.js";
+import { element, fillBeads } from "../../parts/toolkit/dom.js";
+import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
 
 export class SectionView {
   constructor(send, phases) {

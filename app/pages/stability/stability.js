@@ -1,6 +1,6 @@
 // The Stability page, over the pictures: whether a disturbance dies out, how it grows if not, and the evidence.
 
-import { element, pageHead } from "../../parts/dom.js";
+import { element, pageHead } from "../../parts/toolkit/dom.js";
 import { ModeView } from "./mode.js";
 import { MultiplierPlane } from "./multiplier_plane.js";
 import { OrbitSearch } from "./orbit_search.js";

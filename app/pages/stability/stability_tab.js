@@ -1,7 +1,7 @@
 // The Stability tab: the unit circle and the sentence, both from the Stability page.
 
-import { element, openButton, paragraph } from "../../parts/dom.js";
-import { BokehFigure, fillModels } from "../../parts/bokeh_figure.js";
+import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
+import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
 export function stabilityTab() {
   const known = () => window.granchain.pages.get("stability") ?? { state: {} };

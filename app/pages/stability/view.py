@@ -18,9 +18,9 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...format import UNSURE_FIGURES, duration, figures_of, prefixed, short_error, with_figures
-from ...parts.chain import drawn_chain
-from ...parts.component import text
-from ...parts.figure_part import FigurePart
+from ...parts.chain.chain import drawn_chain
+from ...parts.figures.figure_part import FigurePart
+from ...parts.toolkit.component import text
 from ...pictures.item import figure_item
 from ...pictures.multipliers import multiplier_words, plane, plane_state
 from ...pictures.section import SectionPoints, close_up, section, section_state

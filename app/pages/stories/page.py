@@ -7,12 +7,12 @@ from typing import Any
 
 from granchain_core import BadInput, Settled, State
 
-from ...parts.component import Component
-from ...serve.compiler import PICTURE_PIECES
-from ...serve.queues import ANALYSES
-from ...session.hooks import Actions, Page
+from ...parts.toolkit.component import Component
+from ...serve.compiling.compiler import PICTURE_PIECES
+from ...serve.work.queues import ANALYSES
 from ...session.host import Host
 from ...session.message_checks import whole
+from ...session.page import Actions, Page
 from ...session.stories import Story, StoryStep, state_before, stories, told_words
 from ...session.task import Job, Task, say_nothing
 

@@ -1,6 +1,6 @@
 // The Stories tab: the list of stories, or one step: what to see, a question, and its answer on demand.
 
-import { button, element, paragraph, PHONE } from "../../parts/dom.js";
+import { button, element, paragraph, PHONE } from "../../parts/toolkit/dom.js";
 
 const INVITES = "A story turns the knobs, says where to look, and asks. All controls stay available.";
 

@@ -1,0 +1,35 @@
+"""The bar over the resonance curve."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from granchain_core.steady.curve.resonance import STRONG_PART
+
+from ..parts.toolkit.component import Component, text
+from ..pictures.curve import LABELS
+from ..pictures.regimes import REGIME_MARKS, SYMBOLS
+from ..scripts import module
+
+_MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency rising, the state carried along.",
+             "down": "Frequency falling, the state carried along."}
+#: What may be shown: name, label and meaning.
+CHOICES = (*((name, label, _MEANINGS[name]) for name, label in LABELS.items()),
+           ("features", "paper’s features ┊", "Frequencies the paper states for its rig; it gives no forces."))
+#: Every mark that a curve may have, for the key and for the tab “regimes”.
+KINDS = [{"name": name, "symbol": SYMBOLS[marker], "colour": colour}
+         for name, (marker, colour, _) in REGIME_MARKS.items()]
+
+
+class CurveBar(Component):
+    """Which curves are shown, their progress, and a button that stops them."""
+
+    _esm = module("curve_bar.js")
+    _stylesheets = [text("controls.css"), text("curve_bar.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "names": [], "stated": [],
+                                          "kinds": KINDS, "strong": STRONG_PART, "driven": True, "too_long": False,
+                                          "rig": False},
+                         **params)

@@ -1,0 +1,100 @@
+"""What is used of libraries beyond their documentation, checked at the start.
+
+Each module that uses any of it has a table `NEEDED`. `python -m tools.update` writes the tables into docs/libraries.md.
+"""
+
+from __future__ import annotations
+
+import dis
+import importlib
+import inspect
+import logging
+from collections.abc import Iterable, Iterator
+from functools import cache
+from types import CodeType
+from typing import Any, NamedTuple
+
+log = logging.getLogger("granchain")
+
+#: The modules that have a table.
+WITH_TABLES = (
+    "serve.http.guard", "serve.http.compressed", "serve.monitoring.logs", "serve.document.document_lock",
+    "serve.document.channel", "serve.document.changes", "serve.document.socket_tuning", "serve.opening.bokeh_defaults",
+    "serve.opening.panel_shortcuts", "serve.opening.panel_pages", "parts.figures.figure_style", "dashboard.template",
+    "dashboard.entry",
+)
+
+
+class Needed(NamedTuple):
+    """Names that a library does not document, and what happens where a release lacks one of them.
+
+    `owner` is the dotted name of the module, class or method that has them: attributes of the class or of its
+    instances, or keyword arguments of the method.
+    """
+
+    owner: str
+    names: tuple[str, ...]
+    without: str
+
+
+def tables() -> dict[str, tuple[Needed, ...]]:
+    """The table of each module that has one, by its path below `app`."""
+    return {name: importlib.import_module(f".{name}", __package__).NEEDED for name in WITH_TABLES}
+
+
+def warn_of_missing() -> None:
+    """Write into the log what the installed releases lack, a line for each row of a table."""
+    for row, name in [found for table in tables().values() for found in missing(table)]:
+        log.warning("a library has no %s: %s", name, row.without)
+
+
+def missing(table: Iterable[Needed]) -> list[tuple[Needed, str]]:
+    """The rows of which the installed release lacks something, with the dotted name of the first that it lacks."""
+    found = ((row, next(_missing(row), None)) for row in table)
+    return [(row, name) for row, name in found if name is not None]
+
+
+def _missing(row: Needed) -> Iterator[str]:
+    owner = _find(row.owner)
+    if owner is None:
+        yield from (f"{row.owner}.{name}" for name in row.names)
+        return
+    others = _attributes(owner) if isinstance(owner, type) else _keywords(owner) if callable(owner) else ()
+    yield from (f"{row.owner}.{name}" for name in row.names if name not in others and not hasattr(owner, name))
+
+
+def _find(path: str) -> Any:
+    """What a dotted name means: a module, or something in one; None where there is nothing."""
+    parts = path.split(".")
+    for length in range(len(parts), 0, -1):
+        try:
+            found: Any = importlib.import_module(".".join(parts[:length]))
+        except ImportError:
+            continue
+        for name in parts[length:]:
+            found = getattr(found, name, None)
+        return found
+    return None
+
+
+@cache
+def _attributes(owner: type) -> frozenset[str]:
+    """The attributes that instances of a class have beside those of the class itself, as far as its code shows them."""
+    found: set[str] = set()
+    for one in owner.__mro__:
+        found.update(vars(one).get("__annotations__", ()))
+        for method in vars(one).values():
+            found.update(_set_by(getattr(method, "__code__", None)))
+    return frozenset(found)
+
+
+def _set_by(code: CodeType | None) -> Iterator[str]:
+    """The attributes that a method sets, by a dot or by `setattr`."""
+    if code is not None:
+        yield from (step.argval for step in dis.get_instructions(code) if step.opname == "STORE_ATTR")
+        if "setattr" in code.co_names:
+            yield from (value for value in code.co_consts if isinstance(value, str))
+
+
+def _keywords(function: Any) -> tuple[str, ...]:
+    return tuple(inspect.signature(function).parameters)

@@ -1,0 +1,1 @@
+"""The chain, drawn in the browser, and its sound."""

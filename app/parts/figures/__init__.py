@@ -1,0 +1,1 @@
+"""Bokeh figures in components: base classes, style, and what the browser does with them."""

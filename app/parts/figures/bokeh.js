@@ -1,0 +1,53 @@
+// What the page uses of BokehJS beyond its documentation. Only connection.js uses the global as well, so that a new
+// release is checked here (tests/browser/test_bokeh_internals.py); docs/libraries.md lists the rest.
+
+// All models of this name on the page. Each figure has a document of its own.
+export const modelsNamed = (name) => window.Bokeh.documents.map((one) => one.get_model_by_name(name)).filter(Boolean);
+
+// What draws a model, if it is drawn.
+export const viewOf = (model) => window.Bokeh.index.find_one(model);
+
+// The box of a figure's frame in its element, and its scales from data to pixels; null before its layout.
+export const frameOf = (view) => view?.frame ?? null;
+
+// The points of all marks of a figure that can be seen, in the units of its axes.
+export const marksOf = ({ renderers }) =>
+  renderers
+    .filter(({ visible, glyph, level }) => visible && glyph.type === "Scatter" && level !== "overlay")
+    .flatMap(({ data_source: { data } }) => Array.from(data.frequency ?? [], (f, i) => [f, data.force[i]]));
+
+// Calls `act` when the ranges or the size of a figure change.
+export function onLayout({ x_range, y_range, properties }, act) {
+  for (const signal of [y_range.change, x_range.change, properties.inner_width.change]) signal.connect(act);
+}
+
+// Types of the figures of the main page, and of those that functions of app/pictures return.
+const FIGURES = new Set(["Plot", "Figure", "Row", "Column", "GridPlot"]);
+const holds = (host, node) => {
+  for (let at = node; at; at = at.parentNode ?? at.host) if (at === host) return true;
+  return false;
+};
+
+// The views of the figures in an element that are on the screen.
+export const figuresIn = (host) =>
+  window.Bokeh.documents
+    .flatMap((one) => one.roots())
+    .filter(({ type }) => FIGURES.has(type))
+    .map(viewOf)
+    .filter((view) => view?.el.getClientRects().length && holds(host, view.el));
+
+// A canvas context that writes SVG, and the element that it has written.
+export function svgContext(width, height) {
+  const { SVGRenderingContext2D } = window.Bokeh.require("core/util/svg");
+  return new SVGRenderingContext2D({ width, height, document });
+}
+export const writtenSvg = (context) =>
+  new DOMParser().parseFromString(context.get_serialized_svg(true), "image/svg+xml").documentElement;
+
+// A figure as SVG.
+export const svgOf = (view) => writtenSvg(view.export("svg", true).ctx);
+
+// Draws Bokeh's JSON in an element as a document of its own, and removes it again.
+export const documentOf = ({ doc }) => window.Bokeh.require("document").Document.from_json(doc);
+export const drawDocument = (one, host) => window.Bokeh.embed.add_document_standalone(one, host);
+export const forgetDocument = (one) => window.Bokeh.documents.splice(window.Bokeh.documents.indexOf(one), 1);

@@ -1,0 +1,50 @@
+"""Base class of components that contain figures of app/pictures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import param
+from bokeh.models import LayoutDOM
+
+from ...pictures.item import figure_item
+from ...pictures.theme import THEMES, Theme
+from ..toolkit.component import Component
+
+
+def page_and_small(draw: Callable[[bool], LayoutDOM]) -> dict[str, Any]:
+    """Bokeh's JSON of a figure for a page and, compact, for its tab; `draw` is told whether it is to be compact."""
+    return {"page": figure_item(draw(False)), "small": figure_item(draw(True))}
+
+
+class FigurePart(Component):
+    """A component with figures. They are sent without data when first needed, and again when the theme changes.
+
+    `figures` are Bokeh's JSON by name, kept out of `state` because each change sends all of that. Data come as
+    messages, and the browser puts them into the figures: each is a `BokehFigure` (bokeh_figure.js), loaded when
+    `figures` arrives or changes and while its page is open, and so also when the page is opened.
+    """
+
+    figures = param.Dict(default={})
+
+    empty_figures: ClassVar[staticmethod[[Theme], dict[str, Any]]]
+    """Makes the figures without points; every subclass has its own."""
+
+    __abstract = True
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, **params)
+        self.theme = THEMES["light"]
+
+    def apply_theme(self, theme: Theme) -> None:
+        """Draw the figures anew in another theme."""
+        if theme != self.theme:
+            self.theme = theme
+            if self.figures:
+                self.figures = self.empty_figures(theme)
+
+    def need_figures(self) -> None:
+        """Send the figures if they have not been sent; to be called before the first data."""
+        if not self.figures:
+            self.figures = self.empty_figures(self.theme)

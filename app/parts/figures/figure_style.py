@@ -1,0 +1,62 @@
+"""The style of the plots over time and of the curve: plain Bokeh plots with exact borders."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+from typing import Any
+
+from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
+
+from ...needed import Needed
+
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page can be made"),)
+
+# Borders [px], the same for all time pictures, so that one cursor and the chain fit them exactly.
+TOP = 78
+BOTTOM = 82
+LEFT = 60
+GAP = 6
+
+
+def quiet_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str, str | None],
+               grids: tuple[int, ...] = (0, 1), **options: Any) -> Plot:
+    """A plot without toolbar that fills its cell; its colours come from the page's CSS.
+
+    `borders` are its least left and right ones [px], `ticks` about how many there are along x and y, `axes` the places
+    of the axes, and `grids` the dimensions across which there are grid lines. It is no `figure`, because
+    `bokeh.plotting` makes ranges, scales, axes and glyphs that are replaced or never shown: a fifth of an opening.
+    """
+    plot = Plot(
+        sizing_mode="stretch_both", toolbar_location=None, background_fill_color=None, border_fill_color=None,
+        outline_line_color=None, min_border_left=borders[0], min_border_right=borders[1], min_border_top=TOP,
+        min_border_bottom=BOTTOM, output_backend="canvas", **options,
+    )
+    for dimension, (place, count) in enumerate(zip(axes, ticks, strict=True)):
+        ticker = BasicTicker(desired_num_ticks=count, num_minor_ticks=0)
+        if dimension in grids:
+            plot.add_layout(Grid(dimension=dimension, ticker=ticker, grid_line_alpha=1.0))
+        if place is not None:
+            axis = LinearAxis(ticker=ticker)
+            quiet_axis(axis)
+            plot.add_layout(axis, place)
+    return plot
+
+
+def quiet_axis(axis: Any, colour: str | None = None) -> None:
+    """No tick marks, no lines, large upright labels; the label in `colour` when it names a quantity."""
+    axis.axis_line_color = None
+    axis.major_tick_line_color = None
+    axis.minor_tick_line_color = None
+    axis.axis_label_text_font_style = "bold" if colour else "normal"
+    axis.axis_label_text_font_size = "14px"
+    axis.major_label_text_font_size = "13px"
+    axis.axis_label_standoff = 2
+    axis.major_label_standoff = 2
+    if colour:
+        axis.css_variables = {"--bk-axis-label-text-color": colour}
+
+
+def together(plot: Plot) -> AbstractContextManager[None]:
+    """Collect the document's models once for all that is added to a plot inside, not for each change."""
+    return plot.document.models.freeze() if plot.document is not None else nullcontext()

@@ -1,0 +1,59 @@
+"""Base class of components whose figure is sent whole, as one message with all its points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from bokeh.models import LayoutDOM
+
+from ...pictures.item import figure_item
+from ...pictures.theme import THEMES, Theme
+from ..toolkit.component import Component
+
+
+@dataclass(frozen=True)
+class _Drawn:
+    """A figure: how it is drawn, words for those who cannot see it, width over height (0 for that of its place)."""
+
+    draw: Callable[[Theme], LayoutDOM]
+    words: str
+    shape: float
+
+
+class ResultFigure(Component):
+    """A component whose figures come whole, with all their points: when there is a result, and again in another theme.
+
+    Each has a place on the page, whose name its `ResultFigure` of result_figure.js has, too. A figure that grows, or is
+    filled in the browser, is a `FigurePart` instead.
+    """
+
+    __abstract = True
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, **params)
+        self._theme = THEMES["light"]
+        self._drawn: dict[str, _Drawn] = {}
+
+    def show_figure(self, draw: Callable[[Theme], LayoutDOM], words: str, shape: float = 0.0, place: str = "") -> None:
+        """Show a figure in its place instead of an earlier one."""
+        self._drawn[place] = _Drawn(draw, words, shape)
+        self._send_figure(place)
+
+    def clear_figure(self, place: str = "") -> None:
+        """Take the figure away."""
+        self._drawn.pop(place, None)
+        self.send(type="clear", place=place)
+
+    def apply_theme(self, theme: Theme) -> None:
+        """Draw all figures anew in another theme."""
+        if theme != self._theme:
+            self._theme = theme
+            for place in self._drawn:
+                self._send_figure(place)
+
+    def _send_figure(self, place: str) -> None:
+        drawn = self._drawn[place]
+        figure = figure_item(drawn.draw(self._theme))
+        self.send(type="figure", place=place, figure=figure, words=drawn.words, shape=drawn.shape)

@@ -1,0 +1,1 @@
+"""The bar on top, and what it opens: gallery, exports, help, tour."""

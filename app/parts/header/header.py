@@ -1,0 +1,50 @@
+"""The bar on top: scene, controls of time, mode, share, export, help and theme."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from ...scripts import module
+from ...session.export import EXPORTS
+from ...session.session import Session, presets
+from ...session.share import SPEEDS, VIEW_VALUES
+from ..toolkit.component import Component, text
+
+_MODES = {
+    "settled": "The steady state for these knobs, replayed",
+    "live": "The run goes on while you move the knobs",
+}
+_STARTS = {"rest": "start: from rest", "previous": "start: previous state"}
+#: Replaces the first of these while the motion on the screen began elsewhere: in a story, a map or a branch.
+_STARTED_ELSEWHERE = "start: a given state"
+
+
+class Header(Component):
+    """Buttons and lists of choices, each of which sends one message."""
+
+    _esm = module("header.js")
+    _stylesheets = [text("controls.css"), text("header.css"), text("gallery.css")]  # noqa: RUF012
+
+    def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
+        super().__init__(received, state={
+            "modes": [(mode, _MODES[mode]) for mode in VIEW_VALUES["mode"]],
+            "starts": [(start, _STARTS[start]) for start in VIEW_VALUES["start"]],
+            "started_elsewhere": _STARTED_ELSEWHERE,
+            "files": list(EXPORTS.items()),
+            "speeds": sorted(SPEEDS), "view_fields": list(VIEW_VALUES),
+        }, **params)
+        self._origin = "rest"
+
+    def began_from(self, origin: str, session: Session) -> None:
+        """The picture on the screen has another start, as `Settled.start` names it."""
+        if origin != self._origin:
+            self._origin = origin
+            self.show_session(session)
+
+    def show_session(self, session: Session) -> None:
+        """Show what the session chose, and the start of the picture on the screen."""
+        self.update_state(
+            scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
+            origin=self._origin, driven=session.scene.is_driven, speed=session.speed, playing=session.playing,
+            query=session.link)

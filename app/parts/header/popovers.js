@@ -1,0 +1,97 @@
+// The boxes that the bar on top opens over the pictures: the help, and the link to the picture.
+
+import { button, element } from "../toolkit/dom.js";
+import { exportMenu } from "./export_menu.js";
+
+const HELP = [
+  ["knobs", "Drag, type, or use the arrow keys (Shift: larger steps); double-click for the scene's value."],
+  ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
+  [
+    "values",
+    "Point at a picture: a line through all of them, with the values there. Shift and drag in the map: a measuring tape for time, distance and speed.",
+  ],
+  ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
+  ["status", "The line at the bottom: a click on an entry says what it means."],
+  ["live", "The run goes on while you move the knobs: transients, jumps, hysteresis."],
+  [
+    "accuracy",
+    "Click the error in the status line: that of each quantity, and a page that measures what accuracy costs on this machine.",
+  ],
+  ["effects", "In the tab “effects”: switch an effect on or off and see what it costs."],
+  ["curve", "Click a frequency to go there. Shape and colour of a point show its regime."],
+];
+
+const KEYS = [
+  ["?", "this help"],
+  ["Space", "play or pause"],
+  ["Ctrl-Z", "undo; Ctrl-Shift-Z: redo; so do the browser's back and forward"],
+  ["Tab", "to the next control; Shift-Tab: back"],
+  ["← →", "on a knob: fine steps, with Shift coarse; on tabs: the next tab; on the map: the next cell"],
+  ["↑ ↓", "on the time cursor: one sample; Page ↑ and ↓: one drive period; Home and End: the ends"],
+  ["Enter", "on the name of a peak: go there; on a knob's number: take it"],
+  ["Esc", "closes what is open"],
+];
+
+function list(rows) {
+  const made = element("dl");
+  for (const [term, meaning] of rows)
+    made.append(element("dt", { textContent: term }), element("dd", { textContent: meaning }));
+  return made;
+}
+
+const title = (textContent) => element("h2", { textContent });
+
+// At most one of them is open.
+export class Popovers {
+  constructor(send, files) {
+    this.field = element("input", { readOnly: true, ariaLabel: "link to this picture" });
+    this.help = element("div", { className: "popover help", hidden: true, tabIndex: 0 });
+    this.help.append(title("Overview"), list(HELP), title("Keys"), list(KEYS));
+    this.copied = element("p", { role: "status" });
+    this.link = element("div", { className: "popover", hidden: true }, this.field, this.copied);
+    this.exports = element("div", { className: "popover", hidden: true }, exportMenu(send, files));
+    this.menu = element("div", { className: "popover menu", hidden: true });
+    this.all = [this.help, this.link, this.exports, this.menu];
+  }
+
+  // A button at the end of the help.
+  offer(words, act) {
+    const go = () => {
+      this.close();
+      act();
+    };
+    this.help.append(button(words, go));
+  }
+
+  close() {
+    for (const one of this.all) one.hidden = true;
+  }
+
+  toggleHelp() {
+    this.toggle("help");
+  }
+
+  // Opens the box of this name, or closes it if it is open; closes the others.
+  toggle(name) {
+    const open = this[name].hidden;
+    this.close();
+    this[name].hidden = !open;
+  }
+
+  // Shows the page's address and copies it to the clipboard.
+  showLink() {
+    const { href } = window.granchain.address();
+    history.replaceState(history.state, "", href);
+    this.field.value = href;
+    this.copied.textContent = "";
+    this.close();
+    this.link.hidden = false;
+    this.field.select();
+    navigator.clipboard
+      ?.writeText(href)
+      .then(() => {
+        this.copied.textContent = "copied";
+      })
+      .catch(() => {});
+  }
+}

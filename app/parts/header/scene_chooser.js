@@ -1,0 +1,41 @@
+// The scenes in the bar on top: the list of their names, and the button that opens the gallery.
+
+import { chooser } from "../toolkit/dom.js";
+import { Gallery } from "./gallery.js";
+import { icon, iconButton } from "./icons.js";
+
+export class SceneChooser {
+  // `ask` requests the gallery's cards from the server, `choose` opens a scene; `changed` is called when the width of the
+  // list changes.
+  constructor(ask, choose, changed) {
+    this.list = chooser("scene", "scene", choose);
+    this.list.addEventListener("mousedown", () => this.openList());
+    for (const end of ["change", "blur"]) this.list.addEventListener(end, changed);
+    this.gallery = new Gallery(ask, choose);
+    this.button = iconButton(icon("scenes"), "Scenes with pictures", () => this.gallery.open(this.list.value));
+  }
+
+  // While a scene is chosen its name is whole, and the list keeps its width.
+  openList() {
+    const { width } = this.list.getBoundingClientRect();
+    this.name(true);
+    this.list.style.width = `${width}px`;
+  }
+
+  // Scenes by name and title, or by name alone where the bar is too short for the title; the open list has both.
+  name(whole) {
+    this.list.style.width = "";
+    for (const option of this.list.options) option.textContent = whole ? option.title : option.value;
+  }
+
+  // The scenes to choose from, and the one that is open.
+  show(scenes, scene) {
+    const options = scenes.map(({ name, title }) => {
+      const option = new Option(`${name} — ${title}`, name);
+      return Object.assign(option, { title: option.textContent });
+    });
+    this.list.replaceChildren(...options);
+    this.list.value = scene;
+    this.list.title = `scene: ${this.list.selectedOptions[0]?.title ?? scene}`;
+  }
+}

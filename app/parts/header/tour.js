@@ -1,0 +1,106 @@
+// The tour of a first visit: five steps, each beside a part of the page. A visitor can leave it at any time. It comes
+// once and interrupts nothing.
+
+import { button, element, PHONE } from "../toolkit/dom.js";
+
+const KEPT_AS = "granchain-toured"; // in the browser, from visit to visit
+const STEPS = [
+  ["knobs", "The driver, red, pushes the chain f times a second. Move f: all pictures follow at once."],
+  ["chain", "Steel beads that touch but are not bonded, so they can separate. The brighter a bead, the faster it is."],
+  ["map", "The same chain over time: each bead is a column, time runs down, bright is fast. A stripe is a pulse."],
+  ["right", "What arrives at the wall over the same time: pulses of force, green."],
+  [
+    "curve",
+    "The largest of these forces for every f. Peaks are resonances, valleys anti-resonances, the flat end is the stop band. Click a name and go there.",
+  ],
+];
+const GAP = 10; // px between a part and its words
+
+const remembered = () => {
+  try {
+    return localStorage.getItem(KEPT_AS) !== null;
+  } catch {
+    return true; // in a browser that stores nothing it would come at every visit
+  }
+};
+
+export class Tour {
+  constructor() {
+    this.number = 0;
+    this.words = element("p");
+    this.count = element("small");
+    this.before = button("◀ back", () => this.show(this.number - 1));
+    this.next = button("", () => (this.number < STEPS.length - 1 ? this.show(this.number + 1) : this.end("stories")));
+    const skip = button("skip", () => this.end());
+    const row = element("div", { className: "row" }, this.count, this.before, this.next, skip);
+    this.root = element("div", { id: "tour", className: "bubble", role: "dialog", hidden: true }, this.words, row);
+    this.root.ariaLabel = "tour of the page";
+    document.body.append(this.root);
+    addEventListener("resize", () => !this.root.hidden && this.place());
+    document.addEventListener("keydown", ({ key }) => key === "Escape" && !this.root.hidden && this.end());
+  }
+
+  // Begins at a first visit once there is a picture; not in an embedded page, nor over a page that a link opens.
+  begin() {
+    const page = window.granchain;
+    if (remembered() || page.embedded || page.place.page || page.place.tab) return;
+    this.show(0);
+  }
+
+  show(number) {
+    this.number = number;
+    const [, words] = STEPS[number];
+    const last = number === STEPS.length - 1;
+    this.words.textContent = words;
+    this.count.textContent = `${number + 1} of ${STEPS.length}`;
+    this.before.hidden = number === 0;
+    this.next.textContent = last ? "to the stories" : "next ▶";
+    window.granchain.closePage();
+    window.granchain.drawer(false);
+    this.root.hidden = false;
+    this.mark();
+    this.place();
+  }
+
+  // The part that a step explains has a frame; on a phone, where knobs are hidden in a drawer, the bar has it.
+  part() {
+    const [id] = STEPS[this.number];
+    const part = document.getElementById(id);
+    return part.checkVisibility({ visibilityProperty: true }) ? part : document.getElementById("bar");
+  }
+
+  mark() {
+    for (const one of document.querySelectorAll(".toured")) one.classList.remove("toured");
+    if (this.root.hidden) return;
+    this.part().classList.add("toured");
+    this.part().scrollIntoView({ block: PHONE.matches ? "start" : "nearest" }); // a phone has the words at the bottom
+  }
+
+  // Beside the part where there is room, else below or above it, else at the bottom of the window.
+  place() {
+    const box = this.part().getBoundingClientRect();
+    const { offsetWidth: wide, offsetHeight: tall } = this.root;
+    const fits = (x, y) => x >= GAP && y >= GAP && x + wide <= innerWidth - GAP && y + tall <= innerHeight - GAP;
+    const middle = Math.max(GAP, Math.min(box.left + (box.width - wide) / 2, innerWidth - wide - GAP));
+    const low = Math.max(GAP, Math.min(box.bottom, innerHeight - GAP) - tall); // at the top it would hide the driver
+    const places = [
+      [box.right + GAP, low],
+      [box.left - wide - GAP, low],
+      [middle, box.bottom + GAP],
+      [middle, box.top - tall - GAP],
+    ];
+    const [x, y] = places.find(([left, top]) => fits(left, top)) ?? [middle, innerHeight - tall - GAP];
+    Object.assign(this.root.style, { left: `${x}px`, top: `${y}px` });
+  }
+
+  end(tab) {
+    this.root.hidden = true;
+    this.mark();
+    try {
+      localStorage.setItem(KEPT_AS, "yes");
+    } catch {
+      /* private browsing keeps nothing */
+    }
+    if (tab) window.granchain.emit("place", { tab, page: "" });
+  }
+}

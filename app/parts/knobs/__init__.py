@@ -1,0 +1,1 @@
+"""The knobs, and the words beside them."""

@@ -1,0 +1,111 @@
+"""The force trains of pinned motions: grey lines behind the present ones, dashed differently."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from bokeh.models import ColumnDataSource, Line, Plot
+
+from granchain_core import Run
+
+from ...frames import jumps_of, with_jumps
+from ...pictures.theme import GREY
+
+#: Dashes of the pins, in their order.
+DASHES = ([7, 3], [2, 3], [9, 3, 2, 3])
+#: The same dashes in a text.
+SIGNS = ("╌", "┈", "─ ·")
+#: Most points of a line; beyond that a train ends before the picture does.
+MOST_POINTS = 30_000
+#: The data of a line that shows nothing.
+NO_TRAIN = {"time": np.zeros(0, np.float32), "force": np.zeros(0, np.float32)}
+
+
+@dataclass(frozen=True, eq=False)
+class _Train:
+    """One pinned motion: times and forces [s, N] at the driver and at the wall; it repeats, or is shown once."""
+
+    lasts: float
+    repeats: bool
+    lines: tuple[tuple[np.ndarray, np.ndarray], ...]
+
+    @classmethod
+    def of(cls, run: Run) -> _Train:
+        """The trains of a run."""
+        time = run.time - run.time[0]
+        lines = tuple(with_jumps(time, force, jumps_of(run, contact))
+                      for force, contact in ((run.input_force, 0), (run.output_force, run.scene.N)))
+        return cls(float(time[-1]), run.regime.name == "periodic", lines)
+
+    def over(self, copies: int, line: int) -> tuple[np.ndarray, np.ndarray]:
+        """One of the lines, `copies` times one after the other."""
+        time, force = self.lines[line]
+        shifts = self.lasts * np.arange(copies)
+        return (time[None, :] + shifts[:, None]).ravel(), np.tile(force, copies)
+
+
+class PinnedTrains:
+    """The lines in both figures. They are drawn anew when the pins, the units or the time on the axis change.
+
+    A line is made when it is first needed: most visitors pin nothing.
+    """
+
+    def __init__(self, left: Plot, right: Plot) -> None:
+        self._plots = left, right
+        self._sources: dict[tuple[int, int], ColumnDataSource] = {}
+        self._trains: list[_Train | None] = []
+        self._drawn: tuple[object, ...] = ()
+        self._last: tuple[float, float, float, float] = (0.0, 1.0, 1.0, 1.0)
+
+    def _draw(self, line: int, place: int, values: dict[str, np.ndarray]) -> None:
+        """Draw the train of a place, 0 at the driver or 1 at the wall."""
+        source = self._sources.get((line, place))
+        if source is not None:
+            source.data = values
+        elif len(values["time"]):
+            source = self._sources[line, place] = ColumnDataSource(values)
+            self._plots[line].add_glyph(source, Line(x="force", y="time", line_color=GREY, line_width=1.8,
+                                                     line_dash=DASHES[place]), level="underlay")
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """The largest force at the driver and at the wall of all pinned motions [N]."""
+        at = [[float(train.lines[line][1].max()) for train in self._trains if train] for line in (0, 1)]
+        return max(at[0], default=0.0), max(at[1], default=0.0)
+
+    def load(self, runs: Sequence[Run | None]) -> None:
+        """Take other pins, and draw them over what is shown."""
+        self._trains = [None if run is None else _Train.of(run) for run in runs]
+        self._drawn = ()
+        self.update(*self._last)
+
+    def update(self, shown: float, scale: float, push: float, out: float) -> None:
+        """Draw over `shown` seconds; `scale` is the axis over the time [1/s], `push` and `out` [N] are its units.
+
+        `shown` is 0 for a live picture, over which no pins are drawn: its time axis moves on.
+        """
+        scale = float(f"{scale:.9g}")  # the same for all pictures in one unit
+        self._last = shown, scale, push, out
+        copies = [_copies(train, shown) for train in self._trains]
+        if self._drawn == (copies, scale, push, out):
+            return
+        self._drawn = (copies, scale, push, out)
+        for line, unit in ((0, push), (1, out)):
+            for place in range(len(DASHES)):
+                train = self._trains[place] if place < len(self._trains) else None
+                if train is None or not copies[place]:
+                    self._draw(line, place, dict(NO_TRAIN))
+                    continue
+                time, force = train.over(copies[place], line)
+                self._draw(line, place, {"time": (time * scale).astype(np.float32),
+                                         "force": (force / unit).astype(np.float32)})
+
+
+def _copies(train: _Train | None, shown: float) -> int:
+    """How often a motion is repeated to fill the picture: a power of two, so that it is seldom sent again."""
+    if train is None or shown <= 0.0:
+        return 0
+    needed = 2 ** int(np.ceil(np.log2(max(shown / train.lasts, 1.0)))) if train.repeats else 1
+    return max(1, min(needed, MOST_POINTS // len(train.lines[0][0])))

@@ -1,0 +1,1 @@
+"""Kernels are compiled ahead of time, in processes of their own."""

@@ -1,0 +1,137 @@
+"""Compiling outside the server process, so that only the visitor who needs it waits.
+
+Numba holds the interpreter while it compiles, so kernels that are not cached yet are compiled in processes of
+their own; this one then loads them from the cache.
+"""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import subprocess
+import sys
+import threading
+from concurrent.futures import Future, wait
+from pathlib import Path
+
+from granchain_core import Scene
+from granchain_core.pieces import COMPILE_SECONDS, CURVE_KERNELS, MOTION_KERNELS
+from granchain_core.stop import Stop
+from granchain_core.warm import compile_piece, is_warm, structure
+
+from ..work.queues import COMPILATIONS, LOADING
+
+#: Time between two checks of a stop flag while another process compiles [s].
+_STOP_CHECK_INTERVAL = 0.05
+
+log = logging.getLogger("granchain")
+
+#: The kernels of the main picture and its curve.
+PICTURE_PIECES = (*MOTION_KERNELS, CURVE_KERNELS)
+_ROOT = Path(__file__).resolve().parents[3]
+
+
+def compiling_words(what: str, piece: str) -> str:
+    """What is being compiled, and how long that takes. `piece` is the one that takes longest."""
+    return f"compiling {what}: about {COMPILE_SECONDS[piece]} s, only the first time on this computer"
+
+
+def _compile(scene: Scene, piece: str) -> None:
+    """Compile in another process or, if none can be started, in this one."""
+    command = [sys.executable, "-m", f"{__package__}.compiling_process", str(os.getpid()), piece]
+    try:  # in a session of its own, where a terminal's Ctrl-C does not reach it; its stderr is the server's
+        subprocess.run(command, input=json.dumps(scene.to_json()), text=True, cwd=_ROOT, check=True,
+                       stdout=subprocess.DEVNULL, start_new_session=True)
+    except (OSError, subprocess.CalledProcessError) as problem:
+        log.warning("compiling %s in another process failed: %s", piece, problem)
+        compile_piece(scene, piece)
+
+
+def _log_failure(ended: Future[None]) -> None:
+    """Report a failure that nobody waits for."""
+    error = ended.exception()
+    if error is not None:
+        log.error("loading kernels ahead of time failed", exc_info=error)
+
+
+class Compiler:
+    """Compiles kernels in other processes, each once; again where that failed."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._asked: dict[tuple[str, str], Future[None]] = {}
+        self._known: set[tuple[str, str]] = set()
+        self._loaded: set[tuple[str, str]] = set()
+
+    def has(self, scene: Scene, *pieces: str) -> bool:
+        """Whether these kernels of the scene's structure only need to be loaded."""
+        missing = [piece for piece in pieces if (structure(scene), piece) not in self._known]
+        if missing and not is_warm(scene, missing):
+            return False
+        self._known.update((structure(scene), piece) for piece in missing)
+        return True
+
+    def ask(self, scene: Scene, piece: str) -> Future[None]:
+        """Begin to compile in another process, unless that is under way or done; what failed is tried again."""
+        key = structure(scene), piece
+        with self._lock:
+            asked = self._asked.get(key)
+            if asked is None or (asked.done() and asked.exception() is not None):
+                asked = self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
+            return asked
+
+    def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
+        """Wait for these kernels; False when the stop flag went up first. Call it from a worker thread."""
+        if self.has(scene, piece):
+            return True
+        compilation = self.ask(scene, piece)
+        while not wait([compilation], timeout=_STOP_CHECK_INTERVAL).done:
+            if stop:
+                return False
+        compilation.result()
+        return True
+
+    def load(self, scene: Scene, piece: str) -> None:
+        """Load compiled kernels into this process now, so that their first call does not have to."""
+        key = structure(scene), piece
+        if key not in self._loaded:
+            compile_piece(scene, piece)
+            self._loaded.add(key)
+
+    def prepare(self, scene: Scene) -> None:
+        """Have this scene's kernels ready in this process before the first visitor asks."""
+        for piece in PICTURE_PIECES:
+            if not self.has(scene, piece):
+                self.ask(scene, piece)
+        LOADING.submit(self._load_all, scene).add_done_callback(_log_failure)
+
+    def _load_all(self, scene: Scene) -> None:
+        for piece in PICTURE_PIECES:
+            if not self.has(scene, piece):
+                self.ask(scene, piece).result()
+            self.load(scene, piece)
+
+
+class Requests:
+    """What one visitor's work asks for: each piece once, so that one that cannot be compiled is not tried for ever.
+
+    Another visitor's work, or a picture, may try it again.
+    """
+
+    def __init__(self, compiler: Compiler) -> None:
+        self._compiler = compiler
+        self._asked: dict[tuple[str, str], Future[None]] = {}
+
+    def failure(self, scene: Scene, *pieces: str) -> Exception | None:
+        """Ask for these kernels; returns why one of them could not be compiled, None as long as that is not known."""
+        for piece in pieces:
+            key = structure(scene), piece
+            asked = self._asked.get(key) or self._asked.setdefault(key, self._compiler.ask(scene, piece))
+            error = asked.exception() if asked.done() else None
+            if isinstance(error, Exception):
+                return error
+        return None
+
+
+COMPILER = Compiler()

@@ -1,0 +1,168 @@
+"""One visitor's document and the event loop: several actions at a time run with the document locked.
+
+Bokeh creates, wraps, stores, announces and removes its callbacks one by one, which takes longer than most actions.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from bokeh.document import Document
+from tornado.ioloop import IOLoop
+from tornado.locks import Lock
+
+try:
+    from panel.io.state import set_curdoc
+except ImportError:  # it is not in Panel's documentation
+    set_curdoc = None  # type: ignore[assignment]
+
+from ...needed import Needed
+from ..monitoring.metrics import METRICS
+from .changes import batched_changes
+
+log = logging.getLogger("granchain.page")
+
+_WITHOUT = "Bokeh calls back each action by itself, some milliseconds slower"
+#: What is used of Bokeh and Panel beyond their documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.server.session.ServerSession", ("_lock", "_pending_writes"), _WITHOUT),
+    Needed("panel.io.state", ("set_curdoc",), _WITHOUT),
+)
+
+#: Writes of Bokeh that are not finished. Nothing else keeps these tasks alive: the loop has only weak references.
+_FINISHING: set[asyncio.Future[None]] = set()
+
+
+def can_lock(session: Any) -> bool:
+    """Whether this is a Bokeh session that can be locked here."""
+    there = set_curdoc is not None and isinstance(getattr(session, "_lock", None), Lock)
+    return there and hasattr(session, "_pending_writes")
+
+
+def session_of(document: Document) -> Any:
+    """Bokeh's session of a page, None where there is none, or none that can be locked here."""
+    session = getattr(getattr(document, "session_context", None), "session", None)
+    return session if can_lock(session) else None
+
+
+def run_locked(session: Any, actions: list[Callable[[], None]]) -> None:
+    """Run the actions as soon as the session's document is locked: at once, if nothing else has it."""
+    turn: Any = session._lock.acquire()
+    if turn.done():
+        _with_turn(session, actions, turn)
+    else:
+        turn.add_done_callback(partial(_with_turn, session, actions))
+
+
+def _with_turn(session: Any, actions: list[Callable[[], None]], turn: Any) -> None:
+    release = turn.result()
+    pending: list[Any] = []
+    try:
+        if not session.destroyed:
+            pending = _act(session, actions)
+    finally:
+        if pending:
+            task = asyncio.ensure_future(_finish(pending, release))
+            _FINISHING.add(task)
+            task.add_done_callback(_FINISHING.discard)
+        else:
+            with release:
+                pass
+
+
+def _act(session: Any, actions: list[Callable[[], None]]) -> list[Any]:
+    """Run actions with the lock held; return what Bokeh still has to write."""
+    session._pending_writes = []
+    try:
+        with set_curdoc(session.document), batched_changes(session.document):
+            for action in actions:
+                try:
+                    action()
+                except Exception:
+                    METRICS.count("errors")
+                    log.exception("an action failed")
+    finally:
+        pending, session._pending_writes = session._pending_writes, None
+    return list(pending)
+
+
+async def _finish(pending: list[Any], release: Any) -> None:
+    with release:
+        for write in pending:
+            await write
+
+
+class Channel:
+    """Calls actions with a document locked. Where a release of Bokeh cannot be locked like this, Bokeh calls them."""
+
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._loop = IOLoop.current(instance=False)
+        self._lock = threading.Lock()
+        self._waiting: deque[Callable[[], None]] = deque()
+        self._due = self._closed = False
+        self._served = session_of(document) is not None
+        self._timers: set[asyncio.TimerHandle] = set()
+
+    def close(self) -> None:
+        """The visitor left: nothing is called any more, and what was to be called later is forgotten."""
+        with self._lock:
+            self._closed = True
+            self._waiting.clear()
+        for timer in self._timers:
+            timer.cancel()
+        self._timers.clear()
+
+    def next_tick(self, action: Callable[[], None]) -> None:
+        """Call `action` in the next turn of the event loop; from any thread."""
+        self._note_session()
+        if self._closed or self._is_destroyed():
+            return
+        if self._loop is None or not self._served:
+            self._document.add_next_tick_callback(action)
+            return
+        with self._lock:
+            if self._closed:
+                return
+            self._waiting.append(action)
+            due, self._due = self._due, True
+        if not due:
+            self._loop.asyncio_loop.call_soon_threadsafe(self._run)  # type: ignore[attr-defined]
+
+    def call_later(self, seconds: float, action: Callable[[], None]) -> None:
+        """Call `action` after `seconds`; on the event loop."""
+        self._note_session()
+        if self._closed or self._is_destroyed():
+            return
+        if self._loop is None or not self._served:
+            self._document.add_timeout_callback(action, round(1e3 * seconds))
+            return
+
+        def fire() -> None:
+            self._timers.discard(timer)
+            self.next_tick(action)
+
+        timer: asyncio.TimerHandle = self._loop.asyncio_loop.call_later(seconds, fire)  # type: ignore[attr-defined]
+        self._timers.add(timer)
+
+    def _note_session(self) -> None:
+        """Note whether the document has a session; it has none yet while the page is made."""
+        self._served = self._served or session_of(self._document) is not None
+
+    def _is_destroyed(self) -> bool:
+        """Whether Bokeh has taken the document apart, which it does before it tells that the visitor left."""
+        return self._served and session_of(self._document) is None
+
+    def _run(self) -> None:
+        with self._lock:
+            actions, self._due = list(self._waiting), False
+            self._waiting.clear()
+        session = session_of(self._document)
+        if session is not None:
+            run_locked(session, actions)

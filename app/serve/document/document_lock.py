@@ -1,0 +1,40 @@
+"""The document lock: whether a document may be changed now, and calls that wait until it may."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import panel as pn
+from bokeh.document import Document
+
+from ...needed import Needed
+
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.server.session.ServerSession", ("_pending_writes",),
+           "every message waits for the next turn of the event loop"),
+)
+
+
+def has_document_lock(document: Document) -> bool:
+    """Whether Bokeh is known to hold the document's lock, without which the document may not be changed.
+
+    While it holds the lock it keeps a list of pending writes. A message can also arrive while answers to an earlier
+    one are still being written; Bokeh then refuses every change. Where a release keeps the list elsewhere, the lock is
+    not known to be held, and a change waits for the next turn of the event loop.
+    """
+    session = getattr(document.session_context, "session", None)
+    return session is None or getattr(session, "_pending_writes", None) is not None
+
+
+def with_document_lock(document: Document, action: Callable[[], None]) -> None:
+    """Run `action` as soon as the document may be changed and the browser will be told of the change.
+
+    The browser can send requests before it has reported that all parts are rendered. Until it has, Panel drops changes.
+    """
+    if not pn.state.loaded:
+        pn.state.onload(action)
+    elif has_document_lock(document):
+        action()
+    else:
+        document.add_next_tick_callback(action)

@@ -1,0 +1,80 @@
+"""Messages of the page's own parts, passed from the websocket to the part without Bokeh's decoding of a change.
+
+Everything that a visitor does comes this way. A message that is not plainly of this kind goes through Bokeh.
+"""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+from bokeh.document import Document
+
+from .channel import can_lock, run_locked
+
+Receive = Callable[[dict[str, Any]], None]
+
+_NUMBERS = {"nan": float("nan"), "inf": float("inf"), "+inf": float("inf"), "-inf": float("-inf")}
+#: The receiver of a part's messages, by document and model id.
+_RECEIVERS: weakref.WeakKeyDictionary[Document, dict[str, weakref.WeakMethod[Receive]]] = weakref.WeakKeyDictionary()
+
+
+class _NotAPartMessage(Exception):
+    """This is not a message of a part in plain values."""
+
+
+def register(document: Document, model: str, receive: Receive) -> None:
+    """Let the messages of the model with this id go to a part's method, which is not kept alive."""
+    _RECEIVERS.setdefault(document, {})[model] = weakref.WeakMethod(receive)
+
+
+def dispatch(connection: Any, content: dict[str, Any]) -> bool:
+    """Pass a message on to its part, with the document locked; False if it is for Bokeh."""
+    session = getattr(connection, "session", None)
+    if session is None or not can_lock(session) or session.destroyed:
+        return False
+    known = _RECEIVERS.get(session.document)
+    if known is None:
+        return False
+    try:
+        model, message = _read(content)
+    except _NotAPartMessage:
+        return False
+    receive = known[model]() if model in known else None
+    if receive is None:
+        return False
+    run_locked(session, [partial(receive, message)])
+    return True
+
+
+def _read(content: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+    """The model's id and what its part says."""
+    match content:
+        case {"events": [{"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": {
+                "type": "event", "name": "data_event", "values": {"type": "map", "entries": [
+                    ["model", {"id": str(model)}], ["data", {"type": "map"} as data]]}}}]}:
+            message = _plain(data)
+            return model, message
+    raise _NotAPartMessage
+
+
+def _plain(value: Any) -> Any:
+    if value is None or isinstance(value, (str, bool, int, float)):
+        return value
+    if isinstance(value, list):
+        return [_plain(item) for item in value]
+    match value:
+        case {"type": "map", "entries": [*entries]} if len(value) == 2:
+            return dict(_entry(entry) for entry in entries)
+        case {"type": "number", "value": str(name)} if len(value) == 2 and name in _NUMBERS:
+            return _NUMBERS[name]
+    raise _NotAPartMessage
+
+
+def _entry(entry: Any) -> tuple[str, Any]:
+    match entry:
+        case [str(key), value]:
+            return key, _plain(value)
+    raise _NotAPartMessage

@@ -1,0 +1,1 @@
+"""What comes from outside: guards, the rules of messages, limits, compressed files."""

@@ -1,0 +1,51 @@
+"""The server's log: one JSON object a line on standard error, with the id of the request where there is one."""
+
+from __future__ import annotations
+
+import json
+import logging
+import sys
+import time
+
+from ...needed import Needed
+
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.server.protocol_handler", ("log",), "messages that Bokeh cannot handle leave tracebacks in the log"),
+)
+
+#: What a line may have beside time, level, logger and message.
+_FIELDS = ("request", "path", "remote")
+
+
+class JsonFormatter(logging.Formatter):
+    """A record as one line of JSON."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        """Time in UTC, level, logger, message, the ids, and what failed."""
+        line = {"time": time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created)) + f".{int(record.msecs):03d}Z",
+                "level": record.levelname.lower(), "logger": record.name, "message": record.getMessage()}
+        line.update((name, getattr(record, name)) for name in _FIELDS if hasattr(record, name))
+        if record.exc_info:
+            line["failure"] = self.formatException(record.exc_info)
+        return json.dumps(line, ensure_ascii=False)
+
+
+def only_when_debugging(_record: logging.LogRecord) -> bool:
+    """A filter that shows Bokeh's records of messages that it cannot handle only with --log-level debug.
+
+    The guard logs such a message in one line without a traceback, and a stranger can send any number.
+    """
+    return logging.getLogger().isEnabledFor(logging.DEBUG)
+
+
+def configure(level: str) -> None:
+    """Write everything that this process logs from `level` on to standard error in such lines."""
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(JsonFormatter())
+    logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
+    for name in ("panel", "bokeh", "tornado"):
+        library = logging.getLogger(name)
+        library.handlers, library.propagate = [], True
+        library.setLevel(logging.NOTSET if level == "debug" else max(logging.WARNING, getattr(logging, level.upper())))
+    logging.getLogger("bokeh.server.protocol_handler").addFilter(only_when_debugging)

@@ -1,0 +1,1 @@
+"""Shortcuts through Bokeh and Panel with which a page opens and changes faster."""

@@ -1,0 +1,159 @@
+"""Defaults of Bokeh's properties, found once for all models and made when they are needed.
+
+Bokeh finds a default anew for each of a page's models, some 8000 times, and makes ten empty lists and dictionaries for
+each model, which takes more than half of the time of making a page. The functions that are replaced here are not public
+in Bokeh, nor is what their replacements use; where a release lacks anything of it, none is replaced.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import bokeh.model.util as references
+from bokeh.core.has_props import HasProps
+from bokeh.core.property.descriptors import PropertyDescriptor
+from bokeh.core.property.wrappers import PropertyValueContainer
+
+from ...needed import Needed, missing
+
+_WITHOUT = "opening a page costs half as much again"
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.core.property.descriptors.PropertyDescriptor",
+           ("_get_default", "has_unstable_default", "instance_default", "get_value"), _WITHOUT),
+    Needed("bokeh.core.has_props.HasProps",
+           ("_overridden_defaults", "query_properties_with_values", "themed_values", "__themed_values__",
+            "_property_values", "_unstable_default_values", "_initialized", "properties_with_refs", "lookup"),
+           _WITHOUT),
+    Needed("bokeh.core.has_props.HasProps.properties", ("_with_props",), _WITHOUT),
+    Needed("bokeh.model.util",
+           ("visit_immediate_value_references", "visit_value_and_its_immediate_references"), _WITHOUT),
+    Needed("bokeh.core.property.wrappers", ("PropertyValueContainer",), "the server does not start"),
+)
+
+#: Types of immutable values: models can share them.
+_CONSTANTS = (type(None), bool, int, float, str, bytes)
+
+
+@dataclass(frozen=True)
+class _Remembered:
+    """What is known of properties by class: constant defaults, whether each model has its own, whether it is empty."""
+
+    known: dict[tuple[type, str], Any] = field(default_factory=dict)
+    changing: dict[tuple[type, str], bool] = field(default_factory=dict)
+    empty: dict[tuple[type, str], bool] = field(default_factory=dict)
+    overridden: dict[type, dict[str, Any]] = field(default_factory=dict)
+
+
+def remember_defaults() -> None:
+    """Replace the functions by which Bokeh finds the defaults of its models."""
+    if missing(NEEDED) or hasattr(PropertyDescriptor._get_default, "known"):
+        return
+    find: Any = PropertyDescriptor._get_default
+    overridden: Any = HasProps._overridden_defaults
+    query, visit = HasProps.query_properties_with_values, references.visit_immediate_value_references
+    found = _Remembered()
+    is_unstable = _asks_once(PropertyDescriptor.has_unstable_default, found)
+    for where, name, ours in (
+            (PropertyDescriptor, "has_unstable_default", is_unstable),
+            (PropertyDescriptor, "_get_default", _finds_once(find, is_unstable, found)),
+            (HasProps, "themed_values", _theme),
+            (HasProps, "_overridden_defaults", classmethod(_merges_once(overridden, found))),
+            (HasProps, "query_properties_with_values", _tells_what_is_there(query)),
+            (references, "visit_immediate_value_references", _visits_what_is_there(visit, found))):
+        setattr(where, name, ours)
+
+
+def _theme(model: Any) -> dict[str, Any] | None:
+    """A model's themed values, without searching its classes for an attribute that is hardly ever set."""
+    themed: dict[str, Any] | None = model.__dict__.get("__themed_values__")
+    return themed
+
+
+def _merges_once(overridden: Any, found: _Remembered) -> Callable[[type], dict[str, Any]]:
+    """The defaults that a class and its bases override; nobody changes them."""
+
+    def overrides(cls: type) -> dict[str, Any]:
+        if cls not in found.overridden:
+            found.overridden[cls] = overridden.__func__(cls)
+        return found.overridden[cls]
+
+    return overrides
+
+
+def _asks_once(unstable: Any, found: _Remembered) -> Callable[[Any, Any], bool]:
+    """Whether each model has a default of its own.
+
+    For a new model the answer is no where its default would be empty: the default is made when it is asked for, and is
+    not sent to a browser anyway.
+    """
+
+    def is_unstable(descriptor: Any, model: Any) -> bool:
+        key = (model.__class__, descriptor.name)
+        if key not in found.changing:
+            found.changing[key] = unstable(descriptor, model)
+            value = descriptor.instance_default(model) if found.changing[key] else None
+            found.empty[key] = isinstance(value, PropertyValueContainer) and not value
+        return found.changing[key] and not (found.empty[key] and not model._initialized)
+
+    return is_unstable
+
+
+def _finds_once(find: Any, is_unstable: Callable[[Any, Any], bool], found: _Remembered) -> Callable[[Any, Any], Any]:
+    """Find a property's default; a constant that no theme changes is found once per class."""
+
+    def remembered(descriptor: Any, model: Any) -> Any:
+        themed = _theme(model)
+        if themed and descriptor.name in themed:
+            return find(descriptor, model)
+        key = (model.__class__, descriptor.name)
+        if key in found.known:
+            return found.known[key]
+        value = find(descriptor, model)
+        if isinstance(value, _CONSTANTS) and not is_unstable(descriptor, model):
+            found.known[key] = value
+        return value
+
+    remembered.known = found.known  # type: ignore[attr-defined]
+    return remembered
+
+
+def _tells_what_is_there(query: Any) -> Callable[..., dict[str, Any]]:
+    """The properties of a model that are sent to a browser, found without looking at all its defaults."""
+
+    def changed(model: Any, wanted: Callable[[Any], bool], *, include_defaults: bool = True,
+                include_undefined: bool = False) -> dict[str, Any]:
+        if include_defaults or include_undefined:
+            return dict(query(model, wanted, include_defaults=include_defaults, include_undefined=include_undefined))
+        themed, own = _theme(model) or {}, model._unstable_default_values
+        names = {*model._property_values, *own, *themed}
+        changed_values = {}
+        for name in model.properties(_with_props=True):
+            descriptor = model.lookup(name) if name in names else None
+            if descriptor is not None and wanted(descriptor):
+                value = descriptor.get_value(model)
+                if name in themed or not (name in own and isinstance(value, PropertyValueContainer)):
+                    changed_values[name] = value
+        return changed_values
+
+    return changed
+
+
+def _visits_what_is_there(visit: Any, found: _Remembered) -> Callable[[Any, Any], None]:
+    """Visit the models to which a model refers, without making defaults that would be empty."""
+
+    def visit_model(value: Any, visitor: Any) -> None:
+        if not isinstance(value, HasProps):
+            visit(value, visitor)
+            return
+        kind, themed = value.__class__, _theme(value) or {}
+        there = value._property_values, value._unstable_default_values, themed
+        for name in value.properties_with_refs():
+            key = (kind, name)
+            if (key in found.known or found.empty.get(key)) and not any(name in values for values in there):
+                continue
+            references.visit_value_and_its_immediate_references(getattr(value, name), visitor)
+
+    return visit_model

@@ -1,0 +1,54 @@
+"""Scripts and style sheets, worked out once: they are the same for every page, but Panel works them out for each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import panel.io.server as pages
+from bokeh.model import Model
+from bokeh.models import ImportedStyleSheet
+from panel.io.resources import patch_stylesheet
+
+from ...needed import Needed
+
+#: What is used of Panel beyond its documentation (`app/needed.py`).
+NEEDED = (
+    Needed("panel.io.server", ("bundle_resources", "patch_model_css"), "a page opens a tenth slower"),
+    Needed("panel.io.resources", ("patch_stylesheet",), "the server does not start"),
+)
+
+
+def remember_resources() -> None:
+    """Ask Panel once for the scripts that a page loads, and once per kind of part where its style sheets are.
+
+    Panel goes through all models of a page for both, which takes a tenth of an opening; all pages of this server have
+    the same parts. Where a release works them out elsewhere, Panel is asked each time.
+    """
+    bundle: Callable[..., Any] | None = getattr(pages, "bundle_resources", None)
+    patch: Callable[[Model, str], None] | None = getattr(pages, "patch_model_css", None)
+    if bundle is None or patch is None or hasattr(bundle, "known"):
+        return
+    known: dict[tuple[Any, ...], tuple[str, ...]] = {}
+    plain: set[tuple[type[Model], str]] = set()
+
+    def bundled(roots: Any, resources: Any) -> tuple[str, ...]:
+        key = (resources.mode, resources.root_url, getattr(resources, "absolute", None), pages.state.rel_path,
+               frozenset(type(root) for root in roots))
+        if key not in known:
+            known[key] = tuple(bundle(roots, resources))
+        return known[key]
+
+    def patched(root: Model, dist_url: str) -> None:
+        kind = type(root), str(getattr(root, "class_name", ""))
+        own = [sheet for sheet in getattr(root, "stylesheets", ()) if isinstance(sheet, ImportedStyleSheet)]
+        if kind not in plain:
+            if set(root.select({"type": ImportedStyleSheet})) == set(own):
+                plain.add(kind)
+            patch(root, dist_url)
+        for sheet in own:
+            patch_stylesheet(sheet, dist_url)
+
+    bundled.known = known  # type: ignore[attr-defined]
+    pages.bundle_resources = bundled  # type: ignore[assignment]
+    pages.patch_model_css = patched

@@ -1,0 +1,170 @@
+"""What a part of the page leaves out of Panel's work: properties, design, busy indicator and changes, each a mixin.
+
+They override private methods of Panel; where a release has other ones, Panel's own way is taken.
+"""
+
+from __future__ import annotations
+
+import weakref
+from typing import Any, NamedTuple
+
+from bokeh.document import Document
+from bokeh.events import Event
+from bokeh.model import Model, collect_models
+from bokeh.models import ImportedStyleSheet
+from panel.reactive import Syncable
+
+from ...needed import Needed
+from ..document.changes import is_batched, send_event, set_properties
+
+try:
+    from panel.io.state import set_curdoc
+except ImportError:  # it is not in Panel's documentation
+    set_curdoc = None  # type: ignore[assignment]
+
+try:
+    from panel.models.esm import ESMEvent
+except ImportError:  # nor is this
+    ESMEvent = None  # type: ignore[assignment,misc]
+
+_WITHOUT = "Panel's own way is taken, some milliseconds slower"
+#: What is used of Panel and Param beyond their documentation (`app/needed.py`).
+NEEDED = (
+    Needed("panel.custom.JSComponent",
+           ("_get_properties", "_get_children", "_update_properties", "_process_event", "_process_bokeh_event",
+            "_models"), _WITHOUT),
+    Needed("param.parameterized.Parameterized", ("_param__private",), _WITHOUT),
+    Needed("panel.io.state", ("set_curdoc",), _WITHOUT),
+    Needed("panel.models.esm", ("ESMEvent",), _WITHOUT),
+)
+
+
+class _Common(NamedTuple):
+    """What the models of a part's instances have in common, and the properties of their data that are their own.
+
+    Style sheets are their text, or the address of one that each document imports once.
+    """
+
+    properties: dict[str, Any]
+    sheets: tuple[tuple[bool, str], ...]
+    data: type[Model]
+    own: frozenset[str]
+
+    @classmethod
+    def of(cls, part: Any, properties: dict[str, Any]) -> _Common | None:
+        """From the properties of a class's first instance; None where they are not as expected."""
+        properties = {**properties, "_defs": []}  # the class of the data is defined once
+        data, sheets = properties.pop("data", None), properties.pop("stylesheets", [])
+        if not isinstance(data, Model) or collect_models(properties):
+            return None
+        if not all(isinstance(sheet, (str, ImportedStyleSheet)) for sheet in sheets):
+            return None
+        own = frozenset(name for name in data.properties() - Model.properties() if name in part.param)
+        return cls(properties, tuple((isinstance(sheet, str), str(getattr(sheet, "url", sheet))) for sheet in sheets),
+                   type(data), own | {"name"})
+
+    def properties_of(self, part: Any, imported: dict[str, ImportedStyleSheet]) -> dict[str, Any]:
+        """The properties of another instance; `imported` are the sheets that its document imports, by address."""
+        sheets = [text if is_text else imported.get(text) or imported.setdefault(text, ImportedStyleSheet(url=text))
+                  for is_text, text in self.sheets]
+        return {**self.properties, "stylesheets": sheets,
+                "data": self.data(**{name: getattr(part, name) for name in self.own})}
+
+
+_COMMON: dict[type, _Common | None] = {}
+_IMPORTED: weakref.WeakKeyDictionary[Document, dict[str, ImportedStyleSheet]] = weakref.WeakKeyDictionary()
+
+
+class WithCommonProperties:
+    """A Panel component whose class is asked once for the properties of its model, not each instance.
+
+    Instances differ in their data alone. Panel goes through 40 parameters of each part for every visitor, a tenth of an
+    opening's work; it still does where a release has other properties than expected here.
+    """
+
+    def _get_properties(self, document: Document | None) -> dict[str, Any]:
+        known = _COMMON.get(type(self))
+        if known is not None and document is not None:
+            return known.properties_of(self, _IMPORTED.setdefault(document, {}))
+        found: dict[str, Any] = super()._get_properties(document)  # type: ignore[misc]
+        if type(self) not in _COMMON:
+            _COMMON[type(self)] = _Common.of(self, found)
+        return found
+
+
+#: Classes of parts that have no part inside, as Panel found with their first instance.
+_CHILDLESS: set[type] = set()
+
+
+class WithoutChildren:
+    """A Panel component whose class is asked once whether it has other components inside, not each instance.
+
+    Panel looks at all 40 parameters of each. Where a release asks in another way, it is asked again.
+    """
+
+    def _get_children(self, *arguments: Any) -> Any:
+        if type(self) in _CHILDLESS:
+            return {}, []
+        found = super()._get_children(*arguments)  # type: ignore[misc]
+        if found == ({}, []):
+            _CHILDLESS.add(type(self))
+        return found
+
+
+class WithoutDesign:
+    """A Panel component that consults its design only when style sheets change, which is all that the design affects.
+
+    Panel works out the design's parameters at every change of every property, which takes half of the time of a change.
+    Where a release makes the changes elsewhere, Panel consults the design at every change again.
+    """
+
+    def _update_properties(self, *events: Any, doc: Document) -> dict[str, Any]:
+        plain = getattr(Syncable, "_update_properties", None)
+        if plain is None or any(event.name == "stylesheets" for event in events):
+            return super()._update_properties(*events, doc=doc)  # type: ignore[misc]
+        changes: dict[str, Any] = plain(self, *events, doc=doc)
+        return changes
+
+
+class WithoutBusyIndicator:
+    """A Panel component whose events skip the busy indicator: it takes 2 of 5 ms, and this page does not show it.
+
+    Panel calls `_process_bokeh_event`. Where a release calls another method or has no `set_curdoc`, the indicator comes
+    back.
+    """
+
+    def _process_bokeh_event(self, doc: Document, event: Event) -> None:
+        handle = getattr(self, "_process_event", None)
+        if handle is None or set_curdoc is None:
+            super()._process_bokeh_event(doc, event)  # type: ignore[misc]
+            return
+        with set_curdoc(doc):
+            handle(event)
+
+
+class WithPlainChanges:
+    """A Panel component that is shown once, whose messages and plain values go straight to its model.
+
+    Panel takes each through Param's watchers, its own queues and a search of the documents in which a component is
+    shown. `try_send` and `try_change` return False where that way has to be taken: before the page is connected, or
+    with a release that keeps models or values elsewhere.
+    """
+
+    def _shown(self) -> Model | None:
+        models = list(getattr(self, "_models", {}).values())
+        return models[0][0] if len(models) == 1 else None
+
+    def try_send(self, message: dict[str, Any]) -> bool:
+        """Send a message to the part in the browser, if that can be done here."""
+        model = self._shown()
+        return model is not None and ESMEvent is not None and send_event(model, ESMEvent(model=model, data=message))
+
+    def try_change(self, name: str, value: Any) -> bool:
+        """Give a property of the part another value here and in the browser, if that can be done here."""
+        data = getattr(self._shown(), "data", None)
+        values = getattr(getattr(self, "_param__private", None), "values", None)
+        if not isinstance(data, Model) or not isinstance(values, dict) or not is_batched(data):
+            return False
+        values[name] = value
+        set_properties(data, **{name: value})
+        return True

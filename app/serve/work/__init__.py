@@ -1,0 +1,1 @@
+"""Computing for many visitors: queues, turns, priorities, shared results."""

@@ -1,0 +1,294 @@
+"""Where computations of the dashboard run.
+
+All visitors share named queues. Each visitor has two latest-wins jobs, one for the picture and one for drafts of the
+curve. Kernels release the GIL, so threads are enough; those that compute pictures take fair turns (turns.py). Long work
+has queues of its own, because a picture must never wait for it.
+"""
+
+from __future__ import annotations
+
+import heapq
+import logging
+import threading
+import time
+from collections import Counter, deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from itertools import count
+from queue import SimpleQueue
+from typing import TypeVar
+
+from granchain_core import Cancelled
+
+from ..monitoring.metrics import METRICS
+from .cpu_time import CpuTime
+from .priorities import begin, has_lower_priority, lower_priority
+from .turns import TurnFlag
+
+Result = TypeVar("Result")
+
+log = logging.getLogger("granchain")
+
+
+class Queue:
+    """Work of one kind, first come, first served, on at most `workers` threads, each started when it is needed.
+
+    The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
+    `low_priority` queue leave the processor to others (priorities.py).
+
+    Where a queue has a `share`, at most that many pieces of one owner's work run or wait for a thread. Further ones
+    join the queue, behind the work of others, as the owner's earlier ones end.
+
+    A thread counts as busy from the moment it is given work, before it has begun it: otherwise the next piece of work
+    would be given to the same thread, and wait although another thread could begin it.
+    """
+
+    def __init__(self, name: str, workers: int, low_priority: bool = False, share: int | None = None) -> None:
+        self.name = name
+        self.share = share
+        self._workers = workers
+        self._low_priority = low_priority
+        self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
+        self._threads: list[threading.Thread] = []
+        self._numbers = count()
+        self._free = 0  # threads without work
+        self.waiting = 0  # work that waits for a thread
+        self._lock = threading.Lock()
+        self._taken: Counter[object] = Counter()  # work of each owner that runs or waits for a thread
+        self._held: dict[object, deque[Callable[[], None]]] = {}  # work of each owner beyond its share
+
+    @property
+    def busy_threads(self) -> int:
+        """How many threads are at work."""
+        return len(self._threads) - self._free
+
+    def submit(self, work: Callable[..., Result], *arguments: object, owner: object = None) -> Future[Result]:
+        """Call `work` as soon as a thread is free; the future has what it returns or raises.
+
+        Work without an `owner` counts to nobody's share.
+        """
+        future: Future[Result] = Future()
+        shared = self.share is not None and owner is not None
+
+        def do() -> None:
+            try:
+                future.set_result(work(*arguments))
+            except BaseException as error:
+                future.set_exception(error)
+            finally:
+                if shared:
+                    self._ended(owner)
+
+        with self._lock:
+            if shared and self._taken[owner] == self.share:
+                self._held.setdefault(owner, deque()).append(do)
+            else:
+                self._taken.update([owner] if shared else [])
+                self._give(do)
+        return future
+
+    def _give(self, do: Callable[[], None]) -> None:
+        """Give work to a free or a new thread, or let it wait for one; called with the lock held."""
+        self._given.put(do)
+        if self._free:
+            self._free -= 1
+        elif len(self._threads) < self._workers:
+            self._begin()
+        else:
+            self.waiting += 1
+
+    def _ended(self, owner: object) -> None:
+        """Work of this owner has ended: its next work joins the queue."""
+        with self._lock:
+            if held := self._held.get(owner):
+                self._give(held.popleft())
+                return
+            self._held.pop(owner, None)
+            self._taken[owner] -= 1
+            if not self._taken[owner]:
+                del self._taken[owner]
+
+    def _begin(self) -> None:
+        """Start one more thread; called with the lock held."""
+        thread = threading.Thread(target=self._serve, daemon=True, name=f"{self.name} {next(self._numbers)}")
+        self._threads.append(thread)
+        begin(thread)
+
+    def _serve(self) -> None:
+        if self._low_priority:
+            lower_priority()
+        while True:
+            work = self._given.get()
+            work()
+            del work  # or a waiting thread would keep objects of the visitor it served last
+            with self._lock:
+                if has_lower_priority() and not self._low_priority:  # this thread ends; the next work gets a new one
+                    self._threads.remove(threading.current_thread())
+                    if self.waiting:
+                        self.waiting -= 1
+                        self._begin()
+                    return
+                if self.waiting:
+                    self.waiting -= 1
+                else:
+                    self._free += 1
+
+
+#: One thread for each visitor whose picture is awaited; default steps, energy accounts and drafts are computed in it.
+VISITORS = Queue("visitors", 1000)
+#: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
+#: for the compiler keeps its thread.
+PICTURES = Queue("pictures", 200)
+#: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
+ANALYSES = Queue("analyses", 8, low_priority=True)
+#: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody.
+FILES = Queue("files", 2)
+#: Loading kernels before a visitor asks.
+LOADING = Queue("loading", 1)
+#: One thread for each visitor whose resonance curve is awaited. A map waits for a curve that is under way; in one queue
+#: maps could take all threads and wait for curves that have none.
+CURVES = Queue("curves", 200)
+#: The computations of these curves. Each uses all cores, which the system divides among them.
+SWEEPS = Queue("sweeps", 8, low_priority=True)
+#: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper, virtual
+#: experiments. One visitor can start all six, so two visitors could fill the queue: each has two at a time.
+LONG = Queue("long", 8, low_priority=True, share=2)
+#: Timings and hard cases, one at a time for all visitors: two timings at once would disturb each other.
+MEASUREMENTS = Queue("measurements", 1)
+#: Waiting for processes that compile.
+COMPILATIONS = Queue("compilations", 2)
+
+TurnWork = Callable[[TurnFlag], Iterator[object]]
+
+#: Time for which a first result is computed before a newer request stops it [s].
+_FIRST_RESULT_TIME = 1.0
+
+
+class _Alarms:
+    """One thread that calls actions when they are due."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._due: list[tuple[float, int, Callable[..., None], tuple[object, ...]]] = []
+        self._count = 0
+        self._thread: threading.Thread | None = None
+
+    def __call__(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` after `seconds`."""
+        with self._changed:
+            self._count += 1
+            heapq.heappush(self._due, (time.monotonic() + seconds, self._count, action, arguments))
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._serve, daemon=True, name="alarms")
+                self._thread.start()
+            self._changed.notify()
+
+    def _serve(self) -> None:
+        while True:
+            with self._changed:
+                while not self._due or self._due[0][0] > time.monotonic():
+                    self._changed.wait(self._due[0][0] - time.monotonic() if self._due else None)
+                _, _, action, arguments = heapq.heappop(self._due)
+            action(*arguments)
+            del action, arguments
+
+
+_later = _Alarms()
+
+
+class LatestWins:
+    """One running computation for a visitor; a newer one replaces whatever waits.
+
+    A computation is an iterator of ever better results. A newer request stops at once a computation that has had its
+    first result. One that has none yet may take up to a second for it: if each were stopped, nothing would be repainted
+    during a drag.
+    """
+
+    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
+                 cpu_time: CpuTime | None = None) -> None:
+        self._deliver = deliver
+        self._fail = fail
+        self.cpu_time = CpuTime() if cpu_time is None else cpu_time
+        self._lock = threading.Lock()
+        self._waiting: TurnWork | None = None
+        self._running = False
+        self._refining = False
+        self._closed = False
+        self._began = 0.0
+        self._stop = TurnFlag(self.cpu_time)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being computed or waits to be."""
+        return self._running
+
+    def submit(self, work: TurnWork) -> None:
+        """Compute `work` next, in place of anything that has not started."""
+        with self._lock:
+            if self._closed:
+                return
+            self._waiting = work
+            left = self._began + _FIRST_RESULT_TIME - time.monotonic()
+            if self._refining or (self._running and left <= 0.0):
+                self._stop.set()
+            elif self._running:
+                _later(left, self._give_up, self._stop)
+            if self._running:
+                return
+            self._running = True
+            self._began = time.monotonic()
+        VISITORS.submit(self._drain)
+
+    def _give_up(self, stop: TurnFlag) -> None:
+        """Give up the computation: its first result has not come within a second, and newer work waits."""
+        with self._lock:
+            if self._stop is stop and self._waiting is not None:
+                stop.set()
+
+    def close(self) -> None:
+        """Stop: nothing more is computed or delivered."""
+        with self._lock:
+            self._closed = True
+            self._waiting = None
+            self._stop.set()
+
+    def _next(self) -> TurnWork | None:
+        with self._lock:
+            work, self._waiting = self._waiting, None
+            self._running = work is not None
+            self._refining = False
+            self._began = time.monotonic()
+            self._stop = TurnFlag(self.cpu_time)
+            if self._closed:
+                self._stop.set()
+            return work
+
+    def _drain(self) -> None:
+        while (work := self._next()) is not None:
+            self._do(work)
+            if has_lower_priority():
+                VISITORS.submit(self._drain)
+                return
+
+    def _do(self, work: TurnWork) -> None:
+        try:
+            for result in work(self._stop):
+                if self._closed:
+                    break
+                self._deliver(result)
+                with self._lock:
+                    self._refining = True
+                    if self._waiting is not None or self._closed:
+                        break
+        except Cancelled:
+            METRICS.count("cancelled")
+        except Exception as error:
+            self._report(error)
+
+    def _report(self, error: Exception) -> None:
+        """Report a failure; if reporting fails as well, log that, so that the next computation still begins."""
+        try:
+            if not self._closed:
+                self._fail(error)
+        except Exception:
+            log.exception("a failure could not be reported to its page")

@@ -1,0 +1,283 @@
+"""Fair scheduling: of the visitors who wait, the one who has used least time gets the next turn to compute.
+
+Kernels run without the interpreter's lock, so as many computations as there are cores run at once. A first picture
+begins at once and is not interrupted, because it is short. A computation that refines a picture, or takes long, gives
+up its turn at the first pause after a slice of time.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import NamedTuple, TypeVar
+
+from granchain_core.cores import usable_cores
+from granchain_core.stop import Stop
+
+from .cpu_time import CpuTime
+from .priorities import lower_priority
+
+Result = TypeVar("Result")
+
+#: A computation without a result counts as just begun for this processor time [s]. A first picture of ten beads takes
+#: a tenth of it.
+_BEGINNING_CPU_TIME = 0.03
+#: Time for which a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
+#: another thread costs some waits for the interpreter.
+_TIME_SLICE = 0.02
+#: Most computations that began lately whose waits are averaged.
+_MOST_WAITS = 200
+#: Span of time over which the waits are averaged [s].
+_WAITS_WINDOW = 10.0
+#: A computation that has waited this long gets a slice although others use all cores [s].
+_LONGEST_WAIT = 0.5
+#: Time between two checks of a waiting computation whether it may begin [s]. It may when a turn ends, but also when a
+#: turn has grown too old or the wait too long. The time is multiplied by the number of computations that wait.
+_CHECK_INTERVAL = 0.05
+#: The largest such multiple.
+_LONGEST_CHECK_MULTIPLE = 20
+#: A turn that has lasted longer than this does not keep others waiting [s]: not every computation can pause.
+_LONGEST_TURN = 0.1
+
+
+class _Claim(NamedTuple):
+    """A claim to the next turn. The smallest goes first: what is new before refinements, of these what has waited long
+    before the others, and of equals the one whose visitor has used least.
+    """
+
+    refines: bool
+    waited_little: bool
+    used: float
+
+
+class _Turn:
+    """A thread that waits for a turn or has one; `at` is the time at which the wait or the turn began.
+
+    `is_new` says whether its computation has only just begun.
+    """
+
+    def __init__(self, cpu_time: CpuTime, stop: Stop, is_new: bool, at: float) -> None:
+        self.cpu_time, self.stop, self.is_new, self.at = cpu_time, stop, is_new, at
+        self.granted = threading.Event()
+
+    def claim(self, now: float) -> _Claim:
+        """Its claim to the next turn."""
+        return _Claim(not self.is_new, now - self.at < _LONGEST_WAIT, self.cpu_time.used)
+
+
+class FairScheduler:
+    """Gives turns to `at_once` computations that have just begun, and to others while fewer than `at_once` compute."""
+
+    def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
+        self._at_once, self._clock = at_once, clock
+        self._lock = threading.Lock()
+        self._running: set[_Turn] = set()
+        self._waiting: list[_Turn] = []
+        self._waits: deque[tuple[float, float]] = deque(maxlen=_MOST_WAITS)
+        self._checked_at = -math.inf
+
+    @property
+    def wait(self) -> float:
+        """How long a computation waited lately before it could begin, on average [s]."""
+        since = self._clock() - _WAITS_WINDOW
+        waits = [wait for at, wait in list(self._waits) if at > since]
+        return sum(waits) / len(waits) if waits else 0.0
+
+    @property
+    def waiting(self) -> int:
+        """How many wait for their turn."""
+        return len(self._waiting)
+
+    def begin(self, cpu_time: CpuTime, stop: Stop, is_new: bool = True) -> _Turn:
+        """Wait for a turn, or until the stop flag is set; returns what `end` needs.
+
+        `is_new` says whether the computation has only just begun.
+        """
+        mine = _Turn(cpu_time, stop, is_new, self._clock())
+        with self._lock:
+            self._waiting.append(mine)
+            self._grant()
+        # One waiting thread checks for all: more checks would keep the interpreter from the event loop and pictures.
+        while not mine.granted.wait(_CHECK_INTERVAL * min(len(self._waiting), _LONGEST_CHECK_MULTIPLE)):
+            if stop:
+                self.stopped(stop)
+            elif self._clock() - self._checked_at >= _CHECK_INTERVAL:
+                with self._lock:
+                    self._grant()
+        return mine
+
+    def stopped(self, stop: Stop) -> None:
+        """Release the thread that waits with this stop flag, which has been set."""
+        with self._lock:
+            for turn in [turn for turn in self._waiting if turn.stop is stop]:
+                self._waiting.remove(turn)
+                turn.granted.set()
+
+    def end(self, turn: _Turn) -> None:
+        """End a turn."""
+        with self._lock:
+            self._running.discard(turn)
+            self._grant()
+
+    def note_progress(self, turn: _Turn) -> None:
+        """The computation no longer counts as just begun, which makes room for another that has just begun."""
+        if turn.is_new:
+            with self._lock:
+                turn.is_new = False
+                self._grant()
+
+    def should_yield(self, turn: _Turn) -> bool:
+        """Whether a computation has to give up its turn; one that has just begun has not.
+
+        It has to if another has a better claim, or if more than `at_once` compute and its visitor has used most.
+        """
+        with self._lock:
+            now = self._clock()
+            if turn.is_new or now - turn.at < _TIME_SLICE:
+                return False
+            mine = _Claim(refines=True, waited_little=True, used=turn.cpu_time.used)
+            if any(other.claim(now) < mine for other in self._waiting):
+                return True
+            too_many = len(self._running) - self._at_once
+            more = sum(other.cpu_time.used > turn.cpu_time.used for other in self._running if not other.is_new)
+            return more < too_many
+
+    def _grant(self) -> None:
+        """With the lock held: give turns to those with the best claims."""
+        self._checked_at = now = self._clock()
+        # Mostly there is room for none, and finding that out is cheaper than sorting.
+        if not any(self._has_room(turn, now) for turn in self._waiting):
+            return
+        for turn in sorted(self._waiting, key=lambda turn: turn.claim(now)):
+            if not self._has_room(turn, now):
+                continue
+            if turn.is_new:
+                self._waits.append((now, now - turn.at))
+            self._waiting.remove(turn)
+            self._running.add(turn)
+            turn.at = now
+            turn.granted.set()
+
+    def _has_room(self, turn: _Turn, now: float) -> bool:
+        """Whether a turn could begin beside those that are held."""
+        young = [other.is_new for other in self._running if now - other.at < _LONGEST_TURN]
+        if turn.is_new:
+            return sum(young) < self._at_once
+        waited = now - turn.at >= _LONGEST_WAIT and young.count(False) < self._at_once
+        return len(young) < self._at_once or waited
+
+
+TURNS = FairScheduler(max(2, usable_cores()))
+
+
+class Flag(Stop):
+    """A stop flag that wakes a waiting thread: `on_set` is called in the thread that sets the flag."""
+
+    __slots__ = ("on_set",)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.on_set: Callable[[], None] | None = None
+
+    def set(self) -> None:
+        """Ask for the end."""
+        super().set()
+        if self.on_set is not None:
+            self.on_set()
+
+
+class TurnFlag(Flag):
+    """The stop flag of a picture's computation, which takes turns with others while it computes."""
+
+    __slots__ = ("_began", "_scheduler", "_spent", "_turn", "cpu_time")
+
+    def __init__(self, cpu_time: CpuTime, scheduler: FairScheduler = TURNS) -> None:
+        super().__init__()
+        self.cpu_time = cpu_time
+        self._scheduler = scheduler
+        self._turn: _Turn | None = None
+        self._began = self._spent = 0.0
+
+    @property
+    def is_new(self) -> bool:
+        """Whether the computation has only just begun: there is no result yet, and it has not taken long."""
+        return self._spent < _BEGINNING_CPU_TIME
+
+    def set(self) -> None:
+        """Ask for the end, even of the wait for a turn."""
+        super().set()
+        self._scheduler.stopped(self)
+
+    def pause(self) -> None:
+        """Between two parts of the computation: let visitors who have used less go first."""
+        if self._turn is None:
+            return
+        self._charge()
+        self._lower_priority()
+        if not self.is_new:
+            self._scheduler.note_progress(self._turn)
+        if self._scheduler.should_yield(self._turn):
+            self._leave()
+            self._enter()
+
+    @contextmanager
+    def held(self, anew: bool = False) -> Iterator[None]:
+        """Wait for a turn and hold it. `anew`: another computation begins with this flag."""
+        if anew:
+            self._spent = 0.0
+        self._enter()
+        try:
+            yield
+        finally:
+            self._charge()
+            self._leave()
+
+    @contextmanager
+    def released(self) -> Iterator[None]:
+        """Leave the turn to others while this thread waits for something else."""
+        if self._turn is None:
+            yield
+            return
+        self._charge()
+        self._leave()
+        try:
+            yield
+        finally:
+            self._enter()
+
+    def in_turns(self, results: Iterable[Result]) -> Iterator[Result]:
+        """Compute each result while a turn is held."""
+        found = iter(results)
+        while True:
+            with self.held():
+                try:
+                    result = next(found)
+                except StopIteration:
+                    return
+            self._spent = math.inf
+            yield result
+
+    def _lower_priority(self) -> None:
+        """Lower the priority of this thread, unless its computation has only just begun."""
+        if not self.is_new:
+            lower_priority()
+
+    def _enter(self) -> None:
+        self._lower_priority()
+        self._turn = self._scheduler.begin(self.cpu_time, self, self.is_new)
+        self._began = time.thread_time()
+
+    def _leave(self) -> None:
+        turn, self._turn = self._turn, None
+        if turn is not None:
+            self._scheduler.end(turn)
+
+    def _charge(self) -> None:
+        now = time.thread_time()
+        self.cpu_time.charge(now - self._began)
+        self._spent += now - self._began
+        self._began = now

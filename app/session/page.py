@@ -1,0 +1,59 @@
+"""The base class of pages: the hooks through which the dashboard informs them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from granchain_core import Settled
+
+from ..pictures.theme import Theme
+from .activities import Activity
+
+Actions = Mapping[str, Callable[[dict[str, Any]], None]]
+
+
+class Page:
+    """One page of one visitor. Hooks are called with the document locked; by default they do nothing.
+
+    `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
+    """
+
+    actions: Actions
+
+    @property
+    def activity(self) -> Activity | None:
+        """Name, state and detail for the list of running computations; None if the page has no line in the list."""
+        return None
+
+    def picture_requested(self) -> None:
+        """A new picture was requested: what belongs to the old one is out of date."""
+
+    def scene_changed(self) -> None:
+        """The knobs have changed, or another scene was opened."""
+
+    def address_applied(self) -> None:
+        """The session became what an address says: a visit, or a step back or forward."""
+
+    def picture_ready(self, picture: Settled) -> None:
+        """A settled picture is ready; a better one for these knobs may follow unless `picture.final`."""
+
+    def curve_ready(self) -> None:
+        """The resonance curve from rest is complete: `Host.complete_curve` has it."""
+
+    def theme_changed(self, theme: Theme) -> None:
+        """The page is shown in another theme; a view's own figures follow by themselves."""
+
+    def visibility_changed(self, visible: bool) -> None:
+        """Called when the page or its tab becomes visible or hidden; it is hidden at first."""
+
+
+def all_actions(owners: Mapping[str, Actions]) -> Actions:
+    """The actions of all owners in one table. Raises `TypeError` if two of them use one name."""
+    owner_of: dict[str, str] = {}
+    for owner, actions in owners.items():
+        for name in actions:
+            if name in owner_of:
+                raise TypeError(f"{owner_of[name]} and {owner} both have an action {name!r}; rename one of them.")
+            owner_of[name] = owner
+    return {name: action for actions in owners.values() for name, action in actions.items()}

@@ -1,0 +1,159 @@
+"""What is gathered of a page leaves as the message that Bokeh would send, and comes in the order in which it was said.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+import struct
+from typing import Any
+
+import numpy as np
+import pytest
+from answering_server import Served, ask, wait_for
+from bokeh.client import pull_session
+from bokeh.document import Document
+from bokeh.document.events import ColumnDataChangedEvent, MessageSentEvent, ModelChangedEvent
+from bokeh.models import ColumnDataSource, Div, Range1d
+from bokeh.protocol import Protocol
+from bokeh.server.session import ServerSession
+from bokeh.server.views.ws import WSHandler
+from event_loop import in_a_thread
+from missing_attribute import hide, lose
+from panel.models.esm import ESMEvent
+
+from app.needed import Needed
+from app.serve.document import changes
+from app.serve.document.changes import encode_patch, set_properties
+
+pytestmark = pytest.mark.quick
+
+
+def parts_of(data: bytes) -> list[bytes]:
+    """The payloads of websocket frames that are whole, not masked and not compressed."""
+    parts = []
+    while data:
+        kind, length = data[0], data[1]
+        assert kind in (0x81, 0x82)
+        start = 2
+        if length == 126:
+            (length,), start = struct.unpack("!H", data[2:4]), 4
+        elif length == 127:
+            (length,), start = struct.unpack("!Q", data[2:10]), 10
+        parts.append(data[start : start + length])
+        data = data[start + length :]
+    return parts
+
+
+def without_ids(value: Any, buffers: dict[str, bytes]) -> Any:
+    """A message's content with its arrays in place of their names."""
+    if isinstance(value, dict):
+        if value.get("type") == "bytes":
+            data = value["data"]  # in the text it is base64 of gzip, without which the browser shows nothing at all
+            return gzip.decompress(base64.b64decode(data)) if isinstance(data, str) else buffers[data["id"]]
+        return {name: without_ids(one, buffers) for name, one in value.items()}
+    return [without_ids(one, buffers) for one in value] if isinstance(value, list) else value
+
+
+def read(data: bytes) -> Any:
+    """The content of a written message."""
+    header, metadata, content, *buffers = parts_of(data)
+    assert json.loads(header)["msgtype"] == "PATCH-DOC" and json.loads(metadata) == {}
+    assert json.loads(header).get("num_buffers", 0) == len(buffers) // 2
+    return without_ids(json.loads(content), {json.loads(name)["id"]: one
+                                             for name, one in zip(buffers[::2], buffers[1::2], strict=True)})
+
+
+def events_of(document: Document) -> list[Any]:
+    source, axis, words = ColumnDataSource(), Range1d(), Div()
+    for one in (source, axis, words):
+        document.add_root(one)
+    document.models.flush_synced()  # the browser has them
+    said = {"type": "frames", "number": 3, "radii": [0.5, float("nan"), -float("inf")], "knobs": {}, "fit": None, "live": True,
+            "values": np.linspace(0, 1, 7, dtype=np.float32), "peaks": [("max 2", "N")], "a": {"b": [{"c": "é"}]}}
+    return [
+        ModelChangedEvent(document, axis, "start", np.float64(0.25)), ModelChangedEvent(document, words, "text", "é" * 40_000),
+        ColumnDataChangedEvent(document, source, "data", {
+            "time": np.arange(5, dtype=np.float32), "long": np.arange(30_000, dtype=np.float32).reshape(2, -1)[:, ::2],
+            "image": [np.ones((2, 3), np.float32)], "none": np.zeros(0), "label": ["a", "b"]}),
+        MessageSentEvent(document, "bokeh_event", ESMEvent(model=words, data=said)),
+    ]
+
+
+def test_a_message_is_the_one_that_bokeh_writes() -> None:
+    document = Document()
+    events = events_of(document)
+    theirs = Protocol().create("PATCH-DOC", events)
+    data = encode_patch(events)
+    assert data is not None
+    buffers = {one.ref["id"]: bytes(one.to_bytes()) for one in theirs.buffers}
+    expected = without_ids(json.loads(theirs.content_json), buffers)
+
+    def plain(value: Any) -> Any:  # Bokeh leaves out entries that are none
+        if isinstance(value, dict):
+            found = {name: plain(one) for name, one in value.items()}
+            return {"entries": [], **found} if value.get("type") == "map" else found
+        return [plain(one) for one in value] if isinstance(value, list) else value
+
+    assert plain(read(data)) == plain(expected)
+
+
+def test_what_is_not_plain_is_left_to_bokeh() -> None:
+    document = Document()
+    words = Div()
+    document.add_root(words)
+    assert encode_patch([ModelChangedEvent(document, words, "tags", [Range1d()])]) is None
+
+
+def test_a_change_where_nothing_is_gathered_is_the_models_own() -> None:
+    document = Document()
+    axis = Range1d(start=0, end=1)
+    document.add_root(axis)
+    seen: list[Any] = []
+    axis.on_change("start", lambda _attribute, _old, new: seen.append(new))
+    set_properties(axis, start=3)
+    assert axis.start == 3 and seen == [3]
+
+
+def test_of_two_changes_of_a_property_the_last_is_kept_and_an_equal_one_is_none() -> None:
+    document = Document()
+    axis = Range1d(start=3, end=7)
+    document.add_root(axis)
+    document.callbacks.hold()
+    for start, end in ((2, 7), (4, 7)):
+        set_properties(axis, start=start, end=end)
+    events = [(one.attr, one.new) for one in document.callbacks._held_events]
+    assert events == [("start", 4)] and axis.start == 4
+
+
+@pytest.mark.parametrize("row", changes.NEEDED, ids=lambda row: row.owner)
+def test_a_release_without_what_is_needed_is_noticed(row: Needed, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert changes.is_complete()
+    for name in row.names:
+        with monkeypatch.context() as patch:
+            lose(patch, row.owner, name)
+            assert not changes.is_complete()
+
+
+@in_a_thread
+def test_answers_come_where_something_needed_is_missing(served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bokeh sends the changes itself."""
+    monkeypatch.setattr(changes, "_COMPLETE", False)
+    monkeypatch.setattr(changes, "_send", lambda *_: pytest.fail("gathered"))
+    session = pull_session(url=served.address)
+    ask(session, "first")
+    wait_for(session, "first, yes")
+    session.close()
+
+
+@pytest.mark.parametrize(("owner", "name"), [(ServerSession, "_subscribed_connections"), (WSHandler, "ws_connection"),
+                                             (WSHandler, "write_lock")], ids=lambda value: getattr(value, "__name__", value))
+@in_a_thread
+def test_answers_come_without_a_private_name(owner: type, name: str, served: Served, monkeypatch: pytest.MonkeyPatch) -> None:
+    hide(monkeypatch, changes, owner, name)
+    session = pull_session(url=served.address)
+    for text in ("first", "second"):
+        ask(session, text)
+        wait_for(session, f"{text}, yes")
+    session.close()

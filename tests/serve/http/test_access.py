@@ -1,0 +1,85 @@
+"""Who may use the server, as the command line says it: addresses, origins, secrets and ways of signing in."""
+
+from __future__ import annotations
+
+import json
+import socket
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from listening import Listening
+
+from app import server
+from app.cli import main
+from app.serve.http.guard import Rules, guard_handlers
+from app.server import Access, is_loopback
+
+_SECRET = b"a secret of this test alone, long enough"
+
+
+def _has_ipv6() -> bool:
+    try:
+        with socket.socket(socket.AF_INET6) as probe:
+            probe.bind(("::1", 0))
+    except OSError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize(("address", "only_here"), [
+    ("127.0.0.1", True), ("localhost", True), ("::1", True), ("127.8.8.8", True), ("0.0.0.0", False), ("", False),
+    ("::", False), ("192.168.1.4", False), ("granchain.example.org", False)])
+def test_which_addresses_are_public(address: str, only_here: bool) -> None:
+    assert is_loopback(address) is only_here
+
+
+@pytest.mark.parametrize("public", [["--address", "0.0.0.0"], ["--behind-proxy"]])
+@pytest.mark.parametrize("words", [
+    [], ["--allow-websocket-origin", "granchain.example.org"], ["--generate-secret"]])
+def test_a_public_server_needs_origins_and_a_secret(public: list[str], words: list[str], capsys: pytest.CaptureFixture[str],
+                                                    monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("BOKEH_SECRET_KEY", raising=False)
+    assert main(["serve", *public, "--port", "6199", *words]) == 2
+    said = capsys.readouterr().err
+    assert "--allow-websocket-origin" in said and "--generate-secret" in said and "docs/security.md" in said
+
+
+@pytest.mark.skipif(not _has_ipv6(), reason="this machine has no ::1")
+def test_an_address_of_ipv6_is_served_under_its_own_name() -> None:
+    one = Listening(Access(origins=("[2001:db8::7]:443",)), "::1")
+    try:
+        assert one.ask("/")[0] == 200
+        hosts = {"[::1]:5006": 200, "[2001:db8::7]": 200, "[::2]:5006": 421}
+        assert {host: one.ask("/liveness", Host=host)[0] for host in hosts} == hosts
+    finally:
+        one.stop()
+
+
+def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_path: Any) -> None:
+    asked: list[Any] = []
+    monkeypatch.setattr(server, "serve", lambda *words, **named: asked.append((words, named)))
+    (tmp_path / "secret").write_bytes(_SECRET + b"\n")
+    (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
+    assert main(["serve", "--address", "0.0.0.0", "--allow-websocket-origin", "a.example.org", "--secret-file",
+                 str(tmp_path / "secret"), "--basic-auth", str(tmp_path / "users.json"), "--most-visitors", "9"]) == 0
+    (words, named), = asked
+    access = named["access"]
+    assert words == (5006, "0.0.0.0") and access.secret == _SECRET and access.most_visitors == 9
+    assert access.origins == ("a.example.org",) and dict(access.sign_in)["basic_auth"] == str(tmp_path / "users.json")
+    assert len(dict(access.sign_in)["cookie_secret"]) == 64
+
+
+@pytest.mark.parametrize(("words", "sentence"), [
+    (["--secret-file", "/nowhere/secret"], "cannot be read"), (["--oauth-provider", "github"], "PANEL_OAUTH_KEY"),
+    (["--most-visitors", "0"], "outside 1 to 10000"), (["--basic-auth", "/nowhere"], "cannot be read")])
+def test_what_cannot_be_used_is_refused_with_a_sentence(words: list[str], sentence: str,
+                                                        capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["serve", *words]) == 2
+    assert sentence in capsys.readouterr().err
+
+
+def test_a_server_whose_handlers_are_not_found_does_not_start() -> None:
+    """A release that keeps them elsewhere must not serve without guards."""
+    with pytest.raises(AttributeError, match="_tornado"):
+        guard_handlers(SimpleNamespace(), Rules())

@@ -1,0 +1,147 @@
+"""What Bokeh would decode and no page sends does not reach it."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+from typing import Any
+
+import pytest
+from event_loop import run_async
+
+from app.serve.http import guard
+from app.serve.http.message_rules import DEEPEST, LARGEST_HEADER, REPORTED_PROPERTIES, UPLOAD, RefusedMessage, check
+
+pytestmark = pytest.mark.quick
+
+ASKED = json.dumps({"msgid": "1", "msgtype": "PATCH-DOC"})
+
+
+def content(value: Any, kind: str = "MessageSent") -> str:
+    """An event with a value."""
+    return json.dumps({"events": [{"kind": kind, "msg_type": "bokeh_event", "msg_data": value}]})
+
+
+def changed(name: object, value: object) -> str:
+    """A change of one property to a value."""
+    return json.dumps({"events": [{"kind": "ModelChanged", "model": {"id": "p1"}, "attr": name, "new": value}]})
+
+
+def uploaded(do: str, *more: list[str]) -> str:
+    """A message of a part with a file of 200 kB."""
+    entries = [["do", do], ["name", "mine.csv"], ["content", "A" * 200_000], *more]
+    values = [["model", {"id": "p1"}], ["data", {"type": "map", "entries": entries}]]
+    return content({"type": "event", "name": "data_event", "values": {"type": "map", "entries": values}})
+
+
+def nested(depth: int) -> list[Any]:
+    """Lists within each other."""
+    return [nested(depth - 1)] if depth > 1 else []
+
+
+@pytest.mark.parametrize("value", [
+    None, 5, "text", [1, [2]], {"type": "number", "value": "nan"}, {"type": "map", "entries": [["a", {"id": "p2"}]]}, nested(DEEPEST)])
+def test_plain_values_pass(value: Any) -> None:
+    check(ASKED, content(value))
+
+
+@pytest.mark.parametrize("value", [
+    {"type": "bytes", "data": base64.b64encode(gzip.compress(b"0" * 10**6)).decode()},  # a thousand times as large, decoded
+    {"type": "ndarray", "array": [], "dtype": "float64", "shape": [10**9], "order": "little"},
+    {"type": "object", "name": "CustomJS", "id": "x"}, {"type": "slice", "start": 0, "stop": 1, "step": 1}, {"type": []},
+    {"type": "map", "entries": [["a", {"type": "bytes", "data": "AAAA"}]]}, nested(DEEPEST + 1)])
+def test_values_that_no_page_sends_are_refused(value: Any) -> None:
+    with pytest.raises(RefusedMessage, match="too deep" if isinstance(value, list) else "of a kind that no page sends"):
+        check(ASKED, content(value))
+
+
+@pytest.mark.parametrize("name", sorted(REPORTED_PROPERTIES))
+@pytest.mark.parametrize("value", [413, 0.5, None])
+def test_a_figure_reports_its_size(name: str, value: float | None) -> None:
+    check(ASKED, changed(name, value))
+
+
+@pytest.mark.parametrize("name", ["tags", "name", "data", "children", "state", "subscribed_events", "js_property_callbacks", "title",
+                                  "start", "inner_width ", "", None, 5, ["inner_width"], {"type": "map", "entries": []}])
+def test_no_other_property_is_set_by_a_browser(name: object) -> None:
+    """Bokeh keeps what a browser writes into `tags` of any model: 60 messages would take half a gigabyte."""
+    with pytest.raises(RefusedMessage, match="property that no page reports"):
+        check(ASKED, changed(name, 1))
+
+
+@pytest.mark.parametrize("value", ["text", [1], {"type": "number", "value": "nan"}, {"type": "map", "entries": []}])
+def test_a_size_is_a_number(value: object) -> None:
+    with pytest.raises(RefusedMessage, match="no number"):
+        check(ASKED, changed("inner_width", value))
+
+
+def test_only_an_upload_is_long() -> None:
+    check(ASKED, uploaded(UPLOAD))
+    for given in (uploaded("go"), uploaded(UPLOAD, ["more", "text"]), content("x" * 200_000), changed("tags", "x" * 200_000),
+                  json.dumps({"events": [json.loads(uploaded(UPLOAD))["events"][0]] * 2})):
+        with pytest.raises(RefusedMessage, match="too long a message"):
+            check(ASKED, given)
+    with pytest.raises(RefusedMessage, match="too long a message"):
+        check(json.dumps({"msgid": "1", "msgtype": "PULL-DOC-REQ"}), json.dumps({"a": "x" * 200_000}))
+
+
+@pytest.mark.parametrize(("header", "given", "why"), [
+    ("{", "{}", "unreadable header"), ("[" * 100_000, "{}", "unreadable header"), ("[1]", "{}", "unreadable header"),
+    ('{"msgtype": "PATCH-DOC"}', content(1), "kind of message"), ('{"msgid": "1", "msgtype": "PUSH-DOC"}', "{}", "kind of message"),
+    ('{"msgid": "1", "msgtype": "PATCH-DOC", "num_buffers": 1}', content(1), "binary data"),
+    (ASKED, "{}", "no events"), (ASKED, '{"events": []}', "no events"), (ASKED, "[" * 100_000, "unreadable content"),
+    (ASKED, '{"events": [5]}', "kind of event"), (ASKED, content(1, "RootAdded"), "kind of event")])
+def test_messages_that_no_page_sends_are_refused(header: str, given: str, why: str) -> None:
+    with pytest.raises(RefusedMessage, match=why):
+        check(header, given)
+
+
+class Socket:
+    """What a guarded websocket is mixed with here."""
+
+    def __init__(self) -> None:
+        self.taken: list[str] = []
+        self.closed = self.left = 0
+        self.connection = None
+        self.request = type("Request", (), {"remote_ip": "127.0.0.1"})
+
+    async def on_message(self, fragment: str) -> None:
+        """One more."""
+        self.taken.append(fragment)
+
+    def close(self, code: int, reason: str) -> None:
+        """Closed with a reason."""
+        self.closed = code
+
+    def on_close(self) -> None:
+        """Bokeh's, which fails where the session has been taken from the connection."""
+        self.left += 1
+
+
+def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken() -> None:
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+    good, bad = (ASKED, "{}", content(1)), (ASKED, "{}", content({"type": "bytes", "data": "AAAA"}))
+
+    async def send() -> None:
+        for frame in (*good, *bad, *good):
+            if (passed := one.on_message(frame)) is not None:
+                await passed
+
+    run_async(send())
+    assert one.taken == list(good) and one.closed == 1008
+
+
+@pytest.mark.parametrize("frames", [("x" * (LARGEST_HEADER + 1),), (ASKED, "x" * (LARGEST_HEADER + 1))])
+def test_a_long_header_closes_the_connection_before_the_content_comes(frames: tuple[str, ...]) -> None:
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+    for frame in frames:
+        one.on_message(frame)
+    assert one.taken == [] and one.closed == 1008
+
+
+def test_a_connection_that_is_said_to_be_closed_twice_is_closed_once() -> None:
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+    one.on_close()
+    one.on_close()
+    assert one.left == 1

@@ -1,0 +1,97 @@
+"""Threads that compute for long give way to the event loop and to what has just begun."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from app.serve.work.cpu_time import CpuTime
+from app.serve.work.priorities import has_lower_priority, lower_priority
+from app.serve.work.queues import LatestWins, Queue
+from app.serve.work.turns import FairScheduler, TurnFlag
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the niceness is that of the process")
+
+
+def niceness() -> int:
+    return os.getpriority(os.PRIO_PROCESS, threading.get_native_id())
+
+
+def computes(slot: TurnFlag, seconds: float) -> Iterator[int]:
+    """The niceness after so much processor time, which has a pause at its end."""
+    began = time.thread_time()
+    while time.thread_time() - began < seconds:
+        pass
+    slot.pause()
+    yield niceness()
+
+
+def in_turns(seconds: float) -> int:
+    slot = TurnFlag(CpuTime(), FairScheduler(2))
+    return next(slot.in_turns(computes(slot, seconds)))
+
+
+@linux
+def test_only_what_takes_long_gives_way_and_its_thread_does_nothing_more() -> None:
+    queue, usual = Queue("test", 1), niceness()
+    assert queue.submit(in_turns, 0.0).result(60.0) == usual
+    first = queue.submit(threading.get_native_id).result(60.0)
+    assert queue.submit(in_turns, 0.1).result(60.0) > usual
+    after = queue.submit(lambda: (threading.get_native_id(), niceness()))  # waits for the only thread, which then ends
+    assert after.result(60.0)[0] != first and after.result(60.0)[1] == usual
+    assert (len(queue._threads), queue.waiting) == (1, 0)
+
+
+@linux
+def test_work_waiting_for_a_thread_that_ends_is_done_in_its_order() -> None:
+    queue, done = Queue("test", 1), list[int]()
+    begun, go = threading.Event(), threading.Event()
+
+    def long() -> None:
+        begun.set()
+        assert go.wait(60.0)
+        lower_priority()
+
+    queue.submit(long)
+    assert begun.wait(60.0)
+    waiting = [queue.submit(done.append, number) for number in range(5)]
+    last = queue.submit(niceness)
+    assert queue.waiting == 6
+    go.set()
+    for one in waiting:
+        one.result(60.0)
+    assert done == [0, 1, 2, 3, 4] and queue.waiting == 0
+    assert last.result(60.0) == niceness()  # its thread was begun by one that gave way
+
+
+@linux
+def test_the_next_picture_of_a_visitor_does_not_give_way_with_the_last_one() -> None:
+    found: list[int] = []
+    jobs = LatestWins(found.append, lambda error: pytest.fail(str(error)))
+
+    def work(before: Callable[[], None]) -> Callable[[TurnFlag], Iterator[int]]:
+        def results(_: TurnFlag) -> Iterator[int]:
+            yield niceness()
+            before()
+
+        return results
+
+    for _ in range(3):
+        jobs.submit(work(lower_priority))
+        end = time.monotonic() + 60.0
+        while jobs.busy:
+            assert time.monotonic() < end
+            time.sleep(0.001)
+    assert found == [niceness()] * 3
+
+
+def test_the_thread_of_the_event_loop_never_gives_way() -> None:
+    assert threading.current_thread() is threading.main_thread()
+    before = niceness() if sys.platform == "linux" else 0
+    lower_priority()
+    assert not has_lower_priority() and (sys.platform != "linux" or niceness() == before)

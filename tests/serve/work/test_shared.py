@@ -1,0 +1,142 @@
+"""What several visitors ask for is computed once, kept in bounded memory, and ends when nobody wants it any more."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from waiting import until
+
+from app.serve.work.cpu_time import CpuTime
+from app.serve.work.queues import LatestWins, Queue
+from app.serve.work.shared import Shared
+from app.serve.work.turns import Flag, TurnFlag
+from granchain_core import Cancelled
+
+pytestmark = pytest.mark.quick
+
+
+class Work:
+    """A computation of three results that goes on when the test says so."""
+
+    def __init__(self) -> None:
+        self.begun, self.go, self.stops = 0, threading.Semaphore(0), []
+
+    def __call__(self, stop: TurnFlag) -> Iterator[int]:
+        """1, 2, 3."""
+        self.begun += 1
+        self.stops.append(stop)
+        for number in (1, 2, 3):
+            while not self.go.acquire(timeout=0.01):
+                stop.check()
+            yield number
+
+
+def shared(memory: int = 1000) -> Shared[int]:
+    """Each result takes 10 bytes; the last of a computation is kept."""
+    return Shared(Queue("test", 20), memory, lambda _: 10, lambda items: items[-1:])
+
+
+def follower(one: Shared[int], key: str | None, work: Work, found: list[Any], stop: Flag | None = None) -> threading.Thread:
+    """A visitor in a thread of its own."""
+
+    def follow() -> None:
+        try:
+            found.extend(one.follow(key, work, Flag() if stop is None else stop, CpuTime()))
+        except (Cancelled, ZeroDivisionError) as problem:
+            found.append(type(problem))
+
+    thread = threading.Thread(target=follow, daemon=True)
+    thread.start()
+    return thread
+
+
+def test_a_class_at_the_same_knobs_costs_one_computation() -> None:
+    one, work, found = shared(), Work(), [[] for _ in range(30)]
+    threads = [follower(one, "key", work, seen) for seen in found]
+    until(lambda: one.hits + one.misses == 30)
+    work.go.release(3)
+    for thread in threads:
+        thread.join(20)
+    assert work.begun == 1 and found == [[1, 2, 3]] * 30
+    later: list[int] = []
+    follower(one, "key", work, later).join(20)
+    assert work.begun == 1 and later == [3]
+
+
+def test_what_is_kept_is_bounded_and_the_oldest_goes_first() -> None:
+    one, work = shared(memory=25), Work()
+    for key in ("a", "b", "a", "c", "a", "b"):
+        work.go.release(3)
+        follower(one, key, work, []).join(20)
+        assert one.used <= 25
+        work.go = threading.Semaphore(0)
+    assert work.begun == 4  # b was dropped for c, a was not
+
+
+def test_it_ends_with_the_last_visitor_and_not_before() -> None:
+    one, work, first, second = shared(), Work(), Flag(), Flag()
+    seen: list[list[Any]] = [[], []]
+    threads = [follower(one, "key", work, seen[0], first), follower(one, "key", work, seen[1], second)]
+    until(lambda: one.hits == 1 and work.begun == 1)
+    first.set()
+    threads[0].join(20)
+    assert seen[0] == [Cancelled] and not work.stops[0]
+    work.go.release(1)
+    until(lambda: seen[1] == [1])
+    second.set()
+    threads[1].join(20)
+    until(lambda: bool(work.stops[0]))
+    work.go.release(9)  # what was cancelled may have taken some
+    follower(one, "key", work, []).join(20)
+    assert work.begun == 2  # what was cancelled is not taken for a result
+
+
+def test_an_error_reaches_all_and_is_not_kept() -> None:
+    one = shared()
+
+    def fails(stop: TurnFlag) -> Iterator[int]:
+        raise ZeroDivisionError
+        yield 1
+
+    for _ in range(2):
+        found: list[Any] = []
+        follower(one, "key", fails, found).join(20)  # type: ignore[arg-type]
+        assert found == [ZeroDivisionError]
+
+
+def test_a_first_result_that_takes_long_gives_way_to_a_newer_request(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.serve.work.queues._FIRST_RESULT_TIME", 0.05)
+    delivered: list[object] = []
+    jobs = LatestWins(delivered.append, delivered.append)
+    begun = threading.Event()
+
+    def endless(stop: TurnFlag) -> Iterator[object]:
+        begun.set()
+        while True:
+            stop.check()
+        yield "never"
+
+    jobs.submit(endless)
+    assert begun.wait(20)
+    jobs.submit(lambda _: iter(["new"]))
+    until(lambda: delivered == ["new"])
+
+
+def test_nothing_is_delivered_to_a_visitor_who_left() -> None:
+    delivered: list[object] = []
+    jobs = LatestWins(delivered.append, delivered.append)
+    gone, went_on = threading.Event(), threading.Event()
+
+    def work(stop: TurnFlag) -> Iterator[object]:
+        assert gone.wait(20)
+        yield "late"
+        went_on.set()
+
+    jobs.submit(work)
+    jobs.close()
+    gone.set()
+    until(lambda: not jobs.busy)
+    assert delivered == [] and not went_on.is_set()
