@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,7 @@ class Dop853Stepper:
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
         largest, size = scaled.period / LEAST_STEPS_PER_PERIOD, scaled.size
-        self.method = Dop853(tolerance, largest)
+        self.method: Any = Dop853(tolerance, largest)  # another slot in a class for another kernel
         self.scaled = scaled
         self.grid = samples
         self.pause: Callable[[], None] = Stop().pause

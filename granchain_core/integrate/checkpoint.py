@@ -16,6 +16,7 @@ from ..scene import Scene
 from ..stop import Stop
 from .engine import Engine
 from .methods import METHODS, Setting
+from .stepper import ErrorControl
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +64,10 @@ def checkpoint(engine: Engine) -> Checkpoint:
     if adaptive and engine.grid_index != 0:
         raise BadInput(f"{engine.setting.method} can be stopped at whole drive periods only; the nearest is "
                        f"{engine.grid - engine.grid_index} of {engine.grid} grid points ahead.")
-    control = np.array([*engine.stepper.work.next_step, *engine.stepper.work.scale]) if adaptive else np.zeros(0)
-    setting = engine.setting
+    setting, control = engine.setting, np.zeros(0)
+    if adaptive:
+        work: ErrorControl = engine.stepper.work
+        control = np.array([*work.next_step, *work.scale])
     return Checkpoint(engine.scaled.scene.digest, setting.method, float(setting.refine), setting.tolerance,
                       engine.samples, engine.y.copy(), engine.stepper.slope.copy(), control, engine.grid_index,
                       float(engine.elapsed))
@@ -80,6 +83,7 @@ def resumed(scene: Scene, kept: Checkpoint, stop: Stop | None = None) -> Engine:
                     account=len(kept.y) > 2 * row, stop=stop)
     engine.y[:], engine.stepper.slope[:] = kept.y, kept.slope
     if len(kept.control):
-        engine.stepper.work.next_step[0], engine.stepper.work.scale[:] = kept.control[0], kept.control[1:]
+        work: ErrorControl = engine.stepper.work
+        work.next_step[0], work.scale[:] = kept.control[0], kept.control[1:]
     engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed
     return engine

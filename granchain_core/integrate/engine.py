@@ -159,6 +159,10 @@ class Engine:
         self.elapsed += count
         return strobes[:, :, 1:-1], maxima
 
+    def strobe(self) -> np.ndarray:
+        """The present state at phase 0 as a row of strobes (1, 2, N), displacement and velocity in scaled units."""
+        return self.periods(0)[0]
+
     def _output(self, closings: int = 0) -> KernelIO:
         """A new log with places for this number of closings, the counts and the stop flag."""
         self.log = new_log(self.log, closings)
@@ -204,7 +208,7 @@ class Engine:
         """How many further jumps there were, for which there was no place."""
         return max(0, int(self.log.counts[CLOSED]) - len(self.log.closings))
 
-    def largest_forces(self, periods: int) -> np.ndarray:
+    def advance_and_find_largest(self, periods: int) -> np.ndarray:
         """Advance by whole periods: the largest input, output and elastic output force on the way (3,), scaled."""
         self.reset_peaks()
         self.record(periods * self.samples)

@@ -23,7 +23,7 @@ RUN_FORCES = 1.5
 #: [safety factor] Largest forces of a run where a force jumps. Its error varies from one step size to the next.
 RUN_FORCES_THAT_JUMP = 3.0
 #: [safety factor] Largest forces on a periodic orbit, in place of both other factors. Only two computations are
-#: compared, and their change is enlarged by 1/(1 − the contraction factor) as well (`orbit_force_errors`).
+#: compared, and their change is enlarged by 1/(1 − the contraction factor) as well (`errors_of_map`).
 ORBIT_FORCES = 2.0
 #: [safety factor] What the samples of a driver's measured motion leave out. It stands on top of the larger of the
 #: differences from every second sample over 2^p − 1, with an order p of 1 to 2. Found by trial.

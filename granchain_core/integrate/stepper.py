@@ -15,16 +15,40 @@ from ..scaling import ScaledChain
 CallStart = tuple[np.ndarray, np.ndarray, int]
 
 
+class ErrorControl(Protocol):
+    """What a checkpoint keeps of the workspace of a method with error control.
+
+    `next_step` (1,) is the step that it tries next; `scale` (2,) the displacement and the w to which its tolerance is
+    relative.
+    """
+
+    @property
+    def next_step(self) -> np.ndarray:
+        """The next step to try (1,), in scaled time."""
+
+    @property
+    def scale(self) -> np.ndarray:
+        """Scales of displacements and of w (2,)."""
+
+
 class Stepper(Protocol):
     """A method with its arrays. `grid` is the number of its grid points in a drive period, where calls may end.
 
-    A method that takes long calls in parts calls `pause` between them.
+    A method that takes long calls in parts calls `pause` between them. `method` is the slot, and `work` the workspace,
+    that its kernels take; the workspace of one with error control has the parts of `ErrorControl`.
     """
 
     scaled: ScaledChain
     grid: int
-    work: Any
     pause: Callable[[], None]
+
+    @property
+    def method(self) -> Any:
+        """The method's slot."""
+
+    @property
+    def work(self) -> Any:
+        """The workspace of its kernels."""
 
     @property
     def slope(self) -> np.ndarray:

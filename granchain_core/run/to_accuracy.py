@@ -133,7 +133,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         engine.start(begin)
         reached = kept.begin(next(number), engine) if kept is not None else None
         if reached is None:
-            reached = Reached(engine, 0, engine.periods(0)[0])
+            reached = Reached(engine, 0, engine.strobe())
         return _attempt(reached, (periods, record), progress, total, kept)
 
     last, status, (error, *forces) = _refined(attempt, scene, setting, samples, budget)

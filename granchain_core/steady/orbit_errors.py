@@ -29,28 +29,34 @@ def force_distances(distance: float, scaled: ScaledChain, maxima: np.ndarray, y:
     return _FORCE_PER_OVERLAP * distance * np.array(nearer)
 
 
-def orbit_force_errors(change: np.ndarray | float, distance: np.ndarray | float, contraction: float = 0.0,
-                       further: np.ndarray | float = 0.0, least: float = 0.0) -> np.ndarray:
-    """Relative errors of the three largest forces on an orbit: of its integration, and of the distance left to it.
+def errors_of_map(change: np.ndarray, least: float, contraction: float) -> np.ndarray:
+    """Relative errors (3,) of the largest forces on an orbit whose integration was seen from one state.
 
-    `change` (3,) is the relative change of the forces from one computation to a finer one. If both began in the same
-    state, `contraction` is the contraction factor per orbit (|μ|, or else the decay seen): an error
-    ε of the n-period map moves its fixed point by ε/(1 − contraction), and the forces with it. If each ran on its own
-    orbit, it is 0. `distance` (3,) is what the distance left contributes (`force_distances`), and `further` errors
-    (3,), such as those at jumps, are added. `least` is the typical error of the finer
-    computation, because two may agree by chance. Like `change` it is divided by 1 − `contraction` here; a caller whose
-    `contraction` is 0 because each ran on its own orbit divides it beforehand.
+    `change` (3,) is the relative change of the forces from one computation of the orbit to a finer one, both from the
+    same state. `least` is the typical error of the finer one, because two may agree by chance. An error ε of the
+    n-period map moves its fixed point by ε/(1 − contraction), and the forces with it; `contraction` is the factor per
+    orbit: |μ|, or else the decay seen.
     """
-    return np.asarray(np.maximum(ORBIT_FORCES * change, least) / (1.0 - contraction) + distance + further)
+    return np.maximum(ORBIT_FORCES * change, least) / (1.0 - contraction)
+
+
+def errors_of_two_orbits(change: np.ndarray, least: float, contraction: float) -> np.ndarray:
+    """Relative errors (3,) of the largest forces where each of two computations came to an orbit of its own.
+
+    `change` (3,) is then the difference of these orbits, and as large as the error moves them; only `least`, the
+    typical error of the finer map, is enlarged by 1/(1 − contraction).
+    """
+    return np.maximum(ORBIT_FORCES * change, least / (1.0 - contraction))
 
 
 def errors_between(finer: Engine, before: np.ndarray, contraction: float, distance: float) -> np.ndarray:
     """Relative errors (3,) of the largest forces that `finer` found in one orbit; a coarser run found `before`.
 
-    Both began at the relative `distance` from the orbit; `contraction` is the contraction factor per orbit.
+    Both began in one state, at the relative `distance` from the orbit; `contraction` is the factor per orbit. What the
+    distance contributes (`force_distances`) and the errors at jumps are added.
     """
     step = finer.setting.step(finer.scaled, finer.samples)
     jumps = jump_errors(finer.setting, finer.scaled, step, finer.jumps, finer.maxima)
     left = force_distances(distance, finer.scaled, finer.maxima, finer.y)
-    return orbit_force_errors(relative_changes(finer.maxima, before), left, contraction, jumps,
-                              typical_error(finer.setting))
+    change = relative_changes(finer.maxima, before)
+    return errors_of_map(change, typical_error(finer.setting), contraction) + left + jumps

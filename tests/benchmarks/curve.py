@@ -38,6 +38,7 @@ class Answer:
     worst: float
     whole: float
     whole_evaluations: int | None
+    runs: int
 
 
 def work(frequencies: np.ndarray) -> float:
@@ -63,12 +64,14 @@ def answer(case: Case, frequencies: np.ndarray, accurate: np.ndarray, periodic: 
         worst = float(np.nan_to_num(off, nan=np.inf).max()) if off.size else float("nan")
         if worst <= EQUAL or peaks.seconds > PATIENCE:
             break
+    runs = [peaks]
     if case.stride == 1:
-        runs = [peaks, *[case.peaks(mine, setting) for _ in range(2 if quick else 4)]]
+        runs += [case.peaks(mine, setting) for _ in range(2 if quick else 4)]
         peaks = sorted(runs, key=lambda one: one.seconds)[len(runs) // 2]
     part = work(frequencies) / work(mine)
     evaluations = None if peaks.evaluations is None else round(part * peaks.evaluations)
-    return Answer(case, setting, peaks, mine.size, int(compare.sum()), worst, part * peaks.seconds, evaluations)
+    return Answer(case, setting, peaks, mine.size, int(compare.sum()), worst, part * peaks.seconds, evaluations,
+                  len(runs))
 
 
 def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
@@ -89,6 +92,7 @@ def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
         "their peaks are compared, an irregular motion has no answer that two methods share.",
         "Rows with fewer points are scaled to the whole curve by the time integrated; a '!' marks a row whose answers "
         f"are not equal to {EQUAL:g} at the tightest setting tried.",
+        "Times are medians of several runs, those marked 'n = 1' of one.",
     ]
     return "\n".join([_table(found, frequencies.size, notes), product(frequencies, accurate, periodic, tell)])
 
@@ -101,7 +105,7 @@ def _table(found: list[Answer], points: int, notes: list[str]) -> str:
         each = "–" if one.whole_evaluations is None else f"{1e9 * one.whole / one.whole_evaluations / 12:.2f}"
         mark = "" if one.worst <= EQUAL else " !"
         rows.append([one.case.label, one.case.form, f"{one.case.unit} {one.setting:.3g}", f"{one.points}",
-                     f"{one.compared}", f"{one.worst:.0e}{mark}", seconds(one.whole), count(one.whole_evaluations),
+                     f"{one.compared}", f"{one.worst:.0e}{mark}", seconds(one.whole) + (" n = 1" if one.runs == 1 else ""), count(one.whole_evaluations),
                      each, ratio(one.whole / base)])
     return table(f"Curve of {points} points, 100 + 20 periods each, one core",
                  ["solver", "form", "setting", "points", "compared", "worst", "whole curve", "evaluations",

@@ -13,6 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+#: Load up to which the machine counts as one with nothing else to do.
+IDLE_LOAD = 0.5
+#: The cores that this process was allowed when it was first pinned.
+_allowed: set[int] = set()
 PACKAGES = ("numpy", "numba", "scipy", "numbalsoda", "CyRK", "heyoka", "jax", "diffrax")
 
 
@@ -39,17 +43,17 @@ def pin(core: int | None = None) -> int | None:
     """Keep this process on one core, the last one if none is named; None where the system cannot."""
     if not hasattr(os, "sched_setaffinity"):
         return None
+    _allowed.update(os.sched_getaffinity(0) if not _allowed else ())
     core = max(os.sched_getaffinity(0)) if core is None else core
     os.sched_setaffinity(0, {core})
     return core
 
 
 def unpin() -> int:
-    """Give the process all cores back; how many there are."""
-    count = os.cpu_count() or 1
-    if hasattr(os, "sched_setaffinity"):
-        os.sched_setaffinity(0, set(range(count)))
-    return count
+    """Give the process back the cores that it was allowed before it was pinned; how many it has."""
+    if _allowed:
+        os.sched_setaffinity(0, _allowed)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def processor() -> str:
@@ -109,5 +113,8 @@ def peak_megabytes() -> float:
 
 
 def load() -> str:
-    """How busy the machine is: numbers taken beside other work are upper bounds."""
-    return f"{os.getloadavg()[0]:.1f}" if hasattr(os, "getloadavg") else "unknown"
+    """How busy the machine is; times taken beside other work are upper bounds, and marked so."""
+    if not hasattr(os, "getloadavg"):
+        return "unknown"
+    average = os.getloadavg()[0]
+    return f"{average:.1f}" + (" (!: beside other work, times are upper bounds)" if average > IDLE_LOAD else "")

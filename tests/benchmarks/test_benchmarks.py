@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 import pytest
 
-from tests.benchmarks import compiled, page, problem
+from tests.benchmarks import compiled, machine, page, problem
 from tests.benchmarks.peers import c_program, granchain, peer, scipy
 from tests.benchmarks.trajectory import error_of
 
@@ -91,3 +93,23 @@ def test_the_page_has_one_section_for_each_machine() -> None:
     again = page.replaced(both, "## one, 2 cores", "third")
     assert again == both.replace("first", "third")
     assert page.replaced(again, "## one, 2 cores", "third") == again
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system does not pin processes")
+def test_an_unpinned_process_has_the_cores_that_it_was_allowed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Under taskset or in a cpuset fewer than the machine has."""
+    now = {1, 3}
+    monkeypatch.setattr(machine, "_allowed", set())
+    monkeypatch.setattr(machine.os, "cpu_count", lambda: 8)
+    monkeypatch.setattr(machine.os, "sched_getaffinity", lambda _: set(now))
+    monkeypatch.setattr(machine.os, "sched_setaffinity", lambda _, cores: (now.clear(), now.update(cores)))
+    assert machine.unpin() == 2 and now == {1, 3}
+    assert machine.pin() == 3 and now == {3}
+    assert machine.pin() == 3 and machine.unpin() == 2 and now == {1, 3}
+
+
+def test_a_load_beside_other_work_is_marked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(machine.os, "getloadavg", lambda: (0.4, 9.0, 9.0), raising=False)
+    assert machine.load() == "0.4"
+    monkeypatch.setattr(machine.os, "getloadavg", lambda: (1.3, 0.0, 0.0))
+    assert machine.load().startswith("1.3 (!")

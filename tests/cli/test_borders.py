@@ -76,7 +76,7 @@ def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
     """A million periods of ten thousand beads would be 160 GB of strobes."""
     shown = scene("sec2").evolve(N=2, f=3000.0)
     engine = to_accuracy.Engine(shown, to_accuracy.method_for(1e-3), 4)
-    begun = to_accuracy.Reached(engine, 0, engine.periods(0)[0])
+    begun = to_accuracy.Reached(engine, 0, engine.strobe())
     kept = to_accuracy._attempt(begun, (3000, 1), None, to_accuracy.Counts(), None)
     assert len(kept.strobes) == to_accuracy.REMEMBERED + 1
 

@@ -9,6 +9,7 @@ from documents import ROOT
 from edited_tree import edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-method.md"
+ERROR_CONTROL = "\n## A method with error control\n"
 
 
 @pytest.fixture(scope="module")
@@ -18,8 +19,9 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_page_edits_two_files_and_writes_one() -> None:
-    edits, new = files_of(PAGE)
+    edits, new = files_of(PAGE, until=ERROR_CONTROL)
     assert (len(edits), len(new)) == (2, 1)
+    assert len(files_of(PAGE)[0]) == 2 and len(files_of(PAGE)[1]) == 3  # with error control: two more
     assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a method of integration: edit 2 files, write 1"
 
 
@@ -42,3 +44,32 @@ print(compared_methods()["heun"].title, method_for(1e-6).method, sep="|")
     smooth, events, row = printed.splitlines()
     assert 1.8 < float(smooth) < 2.3 and 1.8 < float(events) < 2.6  # the limit is 2; over coarse steps a part of order 3 is left
     assert row == "Heun's method in w|rk4-split"  # it is there, and not chosen by itself
+
+
+def test_the_method_with_error_control_keeps_to_its_tolerance_and_goes_on_from_a_checkpoint(tree: Path) -> None:
+    """Its error falls as the tolerance does, and its order per mean step is 3 where no contact opens."""
+    printed = follow(tree, "-c", """
+import numpy as np
+from granchain_core import run, scene
+from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.checkpoint import checkpoint, resumed
+for knobs in ({"F0": 5.0}, {}):
+    chain = scene("sec2").evolve(N=2, f=1130.0, **knobs)
+    def moved(method, tolerance):
+        engine = Engine(chain, Setting(method, tolerance=tolerance), 8, account=True)
+        return engine.record(16).displacement, engine.counts.steps
+    true = moved("dop853", 1e-12)[0]
+    errors, steps = zip(*[(np.abs(found - true).max() / np.abs(true).max(), count) for found, count in
+                          (moved("bogacki-shampine", tolerance) for tolerance in (1e-6, 1e-8, 1e-10))])
+    print(np.log(errors[0] / errors[2]) / np.log(steps[2] / steps[0]), *(e / t for e, t in zip(errors, (1e-6, 1e-8, 1e-10))))
+engine = Engine(chain, Setting("bogacki-shampine", tolerance=1e-6), 8)
+engine.record(16)
+again = resumed(chain, checkpoint(engine))
+print((engine.record(16).force == again.record(16).force).all(), np.isfinite(engine.periods(2)[1]).all())
+found = run(chain.evolve(accuracy=1e-4), periods=1, record=1, method="bogacki-shampine")
+print(found.status, 0.0 < found.displacement_error < 1e-4)
+""")
+    smooth, events, going_on, status = (line.split() for line in printed.splitlines())
+    assert 2.8 < float(smooth[0]) < 3.3 and 1.8 < float(events[0]) < 3.3
+    assert max(map(float, smooth[1:] + events[1:])) < 1000.0  # as for the others with error control
+    assert going_on == ["True", "True"] and status == ["done", "True"]

@@ -15,11 +15,12 @@ from granchain_core.kernels.strobes import periodicity
 from granchain_core.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.batch import engine
+from granchain_core.steady.orbit_errors import errors_of_map, errors_of_two_orbits
 from granchain_core.steady.regime_criteria import changes
 from granchain_core.steady.settling import recording, refine_orbit, single_chain
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.settling.nearby_orbit import is_almost_periodic
-from granchain_core.steady.settling.regime_decisions import Decisions
+from granchain_core.steady.settling.regime_decisions import Decisions, regime_without_continuing
 
 pytestmark = pytest.mark.quick
 
@@ -221,6 +222,13 @@ def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> N
     assert stated[1] == pytest.approx(9.0 * stated[0], rel=1e-12)
 
 
+def test_a_chance_agreement_counts_as_the_typical_error_of_the_map() -> None:
+    """From one state also the change moves the orbit further; two orbits differ by as much as they are apart."""
+    change = np.array([0.0, 1e-6, 1e-3])
+    assert errors_of_map(change, 1e-5, 0.9) == pytest.approx([1e-4, 1e-4, 2e-2], rel=1e-12)
+    assert errors_of_two_orbits(change, 1e-5, 0.9) == pytest.approx([1e-4, 1e-4, 2e-3], rel=1e-12)
+
+
 def test_relaxing_ends_where_the_distance_is_small_and_not_the_change(monkeypatch: pytest.MonkeyPatch) -> None:
     """A change c at a decay of 0.99 leaves 99 c, and that is what is returned and held against the accuracy."""
     settling, seen = run_until_settled(scene("sec2"), None, None), []
@@ -240,9 +248,11 @@ def test_a_motion_that_settles_alternating_has_the_period_of_its_orbit() -> None
     engine.start_scaled(np.zeros(2 * shown.N))
     strobes = engine.periods(150)[0]
     claimed = replace(regime_criteria.find_period(strobes), name="periodic", period=2, decay=0.92**2)
-    decided = Decisions(shown, False).next(engine, strobes, claimed).regime
-    assert decided is not None and (decided.name, decided.period) == ("periodic", 1)
-    assert decided.multiplier == pytest.approx(0.92, abs=0.01)
+    for decided in (Decisions(shown, False).next(engine, strobes, claimed).regime,
+                    regime_without_continuing(engine, strobes, claimed)):
+        assert decided is not None and (decided.name, decided.period) == ("periodic", 1)
+        assert decided.multiplier == pytest.approx(0.92, abs=0.01)
+        assert decided.decay is None, "0.92² is the decay over two periods"
 
 
 def test_the_contraction_of_a_bound_is_capped() -> None:

@@ -238,9 +238,10 @@ class _ReleaseAfterFailure(event.Listener):
 
     def on_end(self, event: Any) -> None:
         """A version that is compiled is among the function's versions by now, and is saved next."""
-        function = event.data["dispatcher"]
+        what = event.data or {}  # an event that names no function concerns none of ours
+        function: Any = what.get("dispatcher")
         kept = getattr(function, "_cache", None)
-        if isinstance(kept, KernelCache) and tuple(event.data["args"]) not in function.overloads:
+        if isinstance(kept, KernelCache) and tuple(what["args"]) not in function.overloads:
             kept.release_all()
 
 

@@ -36,7 +36,7 @@ from ..regime_criteria import converging, find_period
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, is_almost_periodic, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
-from .job import FINER, BatchJob, Start, draft_result, failed, outcome_of_coarse_run
+from .job import FINE_STEPS_PER_COARSE, BatchJob, Stage, Start, draft_result, failed, outcome_of_coarse_run
 
 #: [unsettled] Most drive periods of a draft of a curve.
 _DRAFT_PERIODS = 300
@@ -127,27 +127,30 @@ class _JobsInBatch:
         A coarse run is due after `EXAMINED_AFTER` periods at the latest, a finer run once the difference has decayed. A
         job whose exponent is measured gets a shadow.
         """
-        if job.measuring:
+        if job.stage is Stage.EXPONENT:
             shadow = self.shadows[member] = self.free.pop()
             put_with_shadow(self.batch, member, shadow, job.scaled, job.y, MEASURED_PERIODS, job.measurements.offset)
             return
-        if job.coarse is None:
+        if job.stage is Stage.COARSE:
             return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.periods_run)
             self.batch.put(member, job.scaled, job.y, 1, return_at)
             return
+        assert job.coarse is not None
         regime, maxima = job.coarse
         assert regime.period is not None
         contraction = max(1e-3, regime.assumed_contraction)
-        self.batch.put_fine(member, job.scaled, job.y, FINER, regime.period, contraction, maxima)
+        self.batch.put_fine(member, job.scaled, job.y, FINE_STEPS_PER_COARSE, regime.period,
+                            contraction, maxima)
 
     def step(self) -> SteadyState | None:
         """Run until a member is due; returns its result, or None if the job goes on."""
         member, finite = self.batch.run()
         job = self.jobs[member]
-        if not finite or (job.measuring and np.isnan(self.batch.growth(member)).any()):
+        measured = job.stage is Stage.EXPONENT
+        if not finite or (measured and np.isnan(self.batch.growth(member)).any()):
             self._free(member)
             return failed(job)
-        if job.measuring:
+        if measured:
             result = self._decide_by_exponent(job, member)
             self._free(member)
             return result
@@ -155,14 +158,14 @@ class _JobsInBatch:
             result = draft_result(job, self.batch, member)
             self._free(member)
             return result
-        coarse = job.coarse is None
-        outcome = outcome_of_coarse_run(job, self.batch, member) if coarse else job.fine_result(self.batch, member)
+        outcome = (outcome_of_coarse_run(job, self.batch, member) if job.stage is Stage.COARSE else
+                   job.fine_result(self.batch, member))
         if outcome is None:
             return None
         self._free(member)
         if isinstance(outcome, SteadyState):
             return confirmed(outcome, self.stop)
-        if outcome.measuring:
+        if outcome.stage is Stage.EXPONENT:
             self._measure(outcome)
         else:
             self.waiting.append(outcome)
@@ -179,13 +182,13 @@ class _JobsInBatch:
         """The result of a job whose Lyapunov exponents were measured, or None if the job goes on."""
         seen = growth_of(self.batch, member)
         job.periods_run += len(seen.strobes)
-        job.y, job.measuring = seen.y, False
+        job.y, job.stage = seen.y, Stage.COARSE
         job.record = np.concatenate([job.record, seen.strobes])[-REMEMBERED:]  # as a chain settled alone is judged
         regime = replace(find_period(job.record), periods_run=job.periods_run)
         if regime.period is not None:
             if regime.period > LONGEST_PERIOD:
                 return self._measured_result(job, Regime.unsettled(job.periods_run), undecided=True)
-            job.coarse = (regime, seen.maxima[-regime.period :].max(axis=0))
+            job.stage, job.coarse = Stage.FINE, (regime, seen.maxima[-regime.period :].max(axis=0))
             self.waiting.append(job)
             return None
         goes_on = job.periods_run < MOST_PERIODS and job.affordable
@@ -215,7 +218,7 @@ class _JobsInBatch:
 
     def _measure(self, job: BatchJob) -> None:
         """Let a job wait for two lanes, behind jobs with at least as many steps a period: the longest begin first."""
-        job.measuring = True
+        job.stage = Stage.EXPONENT
         insort(self.to_measure, job, key=lambda one: -one.steps)
 
 

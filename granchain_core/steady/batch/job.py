@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass, field, replace
+from enum import Enum
 
 import numpy as np
 
@@ -18,18 +19,18 @@ from ...scene import Scene
 from ...state import State
 from ...stop import Stop
 from ..exponent_measurements import ExponentMeasurements
-from ..orbit_errors import errors_between, force_distances, orbit_force_errors
+from ..orbit_errors import errors_between, errors_of_two_orbits, force_distances
 from ..regime_criteria import SLOW_RECORD, converging
 from ..settling.advance import MOST_SETTLING_STEPS
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
 #: Steps of the finer run of a batch for one of the coarse run.
-FINER = 3
+FINE_STEPS_PER_COARSE = 3
 #: Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
 _LOCATED_SETTING = fixed_step_setting(8)
 #: Typical relative error of the finer run.
-_FINER_ERROR = typical_error(fixed_step_setting(FINER))
+_FINER_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +40,14 @@ class Start:
     scene: Scene
     state: State | None = None
     number: int = 0
+
+
+class Stage(Enum):
+    """What a job runs, or waits to run."""
+
+    COARSE = "with coarse steps, until its regime is decided"
+    FINE = "with fine steps, on the periodic orbit of its coarse run"
+    EXPONENT = "with coarse steps, beside a shadow, so that its Lyapunov exponent is measured"
 
 
 @dataclass(eq=False)
@@ -53,10 +62,10 @@ class BatchJob:
         Scaled state (2(N+2),) at phase 0 from which the motion goes on.
     periods_run : int
         Drive periods from the start to `y`.
+    stage : Stage
+        What it runs, or waits to run.
     coarse : tuple of (Regime, np.ndarray) or None
-        Regime and scaled largest forces (3,) of the coarse run, once the finer run is due.
-    measuring : bool
-        Whether the Lyapunov exponent is to be measured, or is being measured.
+        In the fine stage: regime and scaled largest forces (3,) of the coarse run.
     record : np.ndarray
         The last strobes (P, 2, N), scaled, from the time when a measurement was first due.
     maxima : np.ndarray
@@ -71,8 +80,8 @@ class BatchJob:
     scaled: ScaledChain
     y: np.ndarray
     periods_run: int = 0
+    stage: Stage = Stage.COARSE
     coarse: tuple[Regime, np.ndarray] | None = None
-    measuring: bool = False
     record: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 0)))
     maxima: np.ndarray = field(default_factory=lambda: np.zeros(3))
     measurements: ExponentMeasurements = field(default_factory=ExponentMeasurements)
@@ -102,9 +111,7 @@ class BatchJob:
         maxima, jumps = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
         left = force_distances(farther, self.scaled, maxima, y)
-        # coarse and fine run have each come to an orbit of their own: the change is the difference of these orbits
-        errors = orbit_force_errors(relative_changes(maxima, before), left,
-                                    least=_FINER_ERROR / (1.0 - regime.assumed_contraction))
+        errors = errors_of_two_orbits(relative_changes(maxima, before), _FINER_ERROR, regime.assumed_contraction) + left
         if jumps.any() and (jumps > AT_A_JUMP * maxima[:2]).any():
             at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
             located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
@@ -124,10 +131,11 @@ class BatchJob:
         assert regime.period is not None
         engine = Engine(self.scene, _LOCATED_SETTING, 1, stop=stop, scaled=self.scaled)
         engine.start_scaled(self.scaled.beads_of(y))
-        first = engine.largest_forces(regime.period)
+        first = engine.advance_and_find_largest(regime.period)
         finer = Engine(self.scene, _LOCATED_SETTING.finer(), 1, stop=stop, scaled=self.scaled)
         finer.start(engine.state)
-        return finer.largest_forces(regime.period), errors_between(finer, first, regime.assumed_contraction, distance)
+        maxima = finer.advance_and_find_largest(regime.period)
+        return maxima, errors_between(finer, first, regime.assumed_contraction, distance)
 
 
 def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
@@ -153,7 +161,8 @@ def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadySta
     if period > 0:
         regime = _periodic(batch, member, periods_run)
         settled = (regime, batch.settled_maxima(member, int(period)))
-        return BatchJob(job.scene, job.scaled, batch.state.y[:, member].copy(), periods_run, settled, number=job.number)
+        return BatchJob(job.scene, job.scaled, batch.state.y[:, member].copy(), periods_run, Stage.FINE, settled,
+                        number=job.number)
     if periods_run >= job.affordable_periods:
         return unsettled(job, batch, member, periods_run)
     record = batch.strobes(member)
@@ -176,7 +185,7 @@ def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, reco
     """A job that has the data to decide whether the motion is chaotic, quasi-periodic or on its way to an orbit."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
-    return BatchJob(job.scene, job.scaled, y, periods_run, measuring=True, record=record, maxima=maxima,
+    return BatchJob(job.scene, job.scaled, y, periods_run, Stage.EXPONENT, record=record, maxima=maxima,
                     number=job.number)
 
 

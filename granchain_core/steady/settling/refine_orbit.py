@@ -53,7 +53,7 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
     bound, unproved = np.inf, None
     for rounds in range(_MOST_ROUNDS):
         before = bound
-        states = engine.periods(0)[0]
+        states = engine.strobe()
         for _ in range(ORBITS):
             moved, _ = engine.periods(n, watch=False)
             states = np.concatenate([states, moved[-1:]])

@@ -7,6 +7,7 @@ enlarged. A motion that does neither is classified by its Lyapunov exponent (ste
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -67,11 +68,10 @@ class Decisions:
         """The next decision from the last strobes (P, 2, N) of `engine` and the regime that they show."""
         if regime.name == "periodic":
             return self._confirmed(engine, strobes, regime)
-        if self.scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
-            for orbit in orbits_beside(self.scene, strobes, _state_of(engine), engine.stop):
-                found = self._beside(orbit, regime)
-                if found is not None:
-                    return found
+        for orbit in _orbits_beside(engine, strobes):
+            found = self._beside(orbit, regime)
+            if found is not None:
+                return found
         leaves = self._leaves and self._measurements.approach_rate == 0.0
         if regime.periods_run >= MOST_PERIODS * (_DEPARTURE_FACTOR if leaves else 1):
             return Decision(regime)
@@ -89,7 +89,7 @@ class Decisions:
         Where Newton's method finds no orbit, an unconfirmed claim is withdrawn and a clear decay from rest is accepted.
         """
         assert regime.period is not None
-        unconfirmed = self._carried or (regime.decay or 0.0) ** (1.0 / regime.period) > CLEAR_DECAY
+        unconfirmed = self._carried or not _decays_clearly(regime)
         if (MOST_BEADS_WITH_MULTIPLIERS if unconfirmed else _CONFIRMED_BEADS) < self.scene.N:
             return Decision(regime)
         seen = seen_modulus(self.scene, regime.period, _state_of(engine), engine.stop, refine=4.0)
@@ -99,9 +99,7 @@ class Decisions:
         if orbit is None:
             return Decision(replace(regime, name="unsettled", period=None, distance=None) if unconfirmed else regime)
         if orbit.stable:
-            decay = regime.decay if orbit.period == regime.period else None  # it is that of the longer period
-            found = replace(regime, period=orbit.period, multiplier=orbit.modulus, decay=decay)
-            return Decision(found, orbit.point.x if unconfirmed else None)
+            return Decision(_on(orbit, regime), orbit.point.x if unconfirmed else None)
         return self._beside(orbit, regime) or Decision(
             replace(regime, name="unsettled", period=None, distance=None, decay=None, approaches=orbit.period,
                     multiplier=orbit.modulus))
@@ -133,25 +131,41 @@ def _may_repeat_sooner(strobes: np.ndarray, period: int) -> bool:
     return any(period % n == 0 and float(changes(strobes, n, n).max()) <= NEAR_AN_ORBIT for n in range(1, period))
 
 
+def _decays_clearly(regime: Regime) -> bool:
+    """Whether the decay per drive period leaves no doubt of a periodic regime where the motion began at rest."""
+    assert regime.period is not None
+    return (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY
+
+
+def _on(orbit: NearbyOrbit, regime: Regime) -> Regime:
+    """The periodic regime of a motion on a stable orbit that Newton's method has found from it."""
+    decay = regime.decay if orbit.period == regime.period else None  # it is that of the longer period
+    return replace(regime, period=orbit.period, multiplier=orbit.modulus, decay=decay)
+
+
+def _orbits_beside(engine: Engine, strobes: np.ndarray) -> Iterator[NearbyOrbit]:
+    """Orbits near the motion of `engine` with these last strobes (P, 2, N); none for long chains."""
+    scene = engine.scaled.scene
+    if scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
+        yield from orbits_beside(scene, strobes, _state_of(engine), engine.stop)
+
+
 def regime_without_continuing(engine: Engine, strobes: np.ndarray, regime: Regime) -> Regime:
     """The regime of a motion that is not followed any further: an orbit that it only approaches is not claimed.
 
     `engine` is a live one where the strobes (P, 2, N) end; it goes on where a Lyapunov exponent is measured.
     """
-    scene, stop = engine.scaled.scene, engine.stop
+    scene = engine.scaled.scene
     if regime.period is not None:
-        if (regime.decay or 0.0) ** (1.0 / regime.period) <= CLEAR_DECAY or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
+        if _decays_clearly(regime) or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
             return regime
-        orbit = orbit_of(scene, regime.period, _state_of(engine), stop)
-        if orbit is None or not orbit.stable:
-            return Regime.unsettled(regime.periods_run)
-        return replace(regime, period=orbit.period, multiplier=orbit.modulus)
-    if scene.N <= MOST_BEADS_WITH_MULTIPLIERS:
-        for orbit in orbits_beside(scene, strobes, _state_of(engine), stop):
-            if orbit.approached():
-                return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)
-            if orbit.unstable and orbit.amplified_departure() is not None:
-                return regime
+        orbit = orbit_of(scene, regime.period, _state_of(engine), engine.stop)
+        return Regime.unsettled(regime.periods_run) if orbit is None or not orbit.stable else _on(orbit, regime)
+    for orbit in _orbits_beside(engine, strobes):
+        if orbit.approached():
+            return replace(regime, approaches=orbit.period, multiplier=orbit.modulus)
+        if orbit.unstable and orbit.amplified_departure() is not None:
+            return regime
     return _classified_by_exponent(engine, strobes, regime)
 
 

@@ -39,10 +39,10 @@ def _on_its_orbit(settling: SettlingRun) -> SteadyState:
     engine, distance = refined_orbit(settling, max(settling.scene.accuracy, CURVE_ACCURACY))
     n = settling.regime.period
     assert n is not None
-    before = engine.largest_forces(n)
+    before = engine.advance_and_find_largest(n)
     finer = Engine(settling.scene, engine.setting.finer(), 1, stop=settling.stop)
     finer.start(engine.state)
-    maxima = finer.largest_forces(n)
+    maxima = finer.advance_and_find_largest(n)
     errors = errors_between(finer, before, settling.regime.assumed_contraction, distance)
     return SteadyState(settling.scene, maxima * finer.scaled.scales.force, settling.regime, errors, finer.state)
 

@@ -73,7 +73,7 @@ def jump_and_force(chain: Scene, setting: Setting, state: State) -> tuple[float,
     engine = Engine(chain, setting, 1)
     engine.start(state)
     engine.reset_peaks()
-    maxima = engine.largest_forces(1)
+    maxima = engine.advance_and_find_largest(1)
     assert engine.jumps[0] == maxima[0]
     return jump_errors(setting, engine.scaled, setting.step(engine.scaled, 1), engine.jumps, maxima)[0], maxima[0]
 
