@@ -162,7 +162,7 @@ def listed_places() -> set[tuple[str, str]]:
 
 
 def event_places() -> set[tuple[str, str]]:
-    """File and function in the tables of events in docs/method.md: a function is in the last file that its row names."""
+    """File and function in the tables of events in docs/method.md: a function is in the last file named in its row."""
     page = (ROOT / "docs" / "method.md").read_text(encoding="utf-8")
     found, file = set(), ""
     for row in re.findall(r"^\|.*\|$", page.partition("### Events, integrator by integrator\n")[2].partition("\n##")[0], re.MULTILINE):
