@@ -4,9 +4,7 @@
     result = run(scene("sec2").evolve(f=340.0))
 
 This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
-function of the same name; `curve` is `resonance_curve`, `map` is `diagram`, `strobes` is `strobe_diagram`, `lyapunov`
-is `lyapunov_spectrum`, `rotation` is `rotation_number` and `accuracy` is `work_precision`. docs/python.md lists older
-names.
+function of the same name; README.md lists the others ("Python"), docs/python.md older names.
 """
 
 from __future__ import annotations

@@ -66,6 +66,18 @@ def table_of_regimes() -> str:
                       *(f"| {one.mark} | {one.cells}" for one in rows)])
 
 
+#: The constants that decide what a motion is called, in the order of the definitions.
+_DECIDING = ("SETTLED_DISTANCE", "STANDARD_ERRORS", "_BOUNDED_GROWTH", "_LARGEST_NEUTRAL_EXPONENT", "_RETURN_FACTOR",
+             "_SHRINK_FACTOR")
+
+
+def table_of_deciding() -> str:
+    """The short table of docs/regimes.md: the thresholds that decide what a motion is called."""
+    rows = {one.name: one for one in marked_constants()}
+    return "\n".join(["| regime | what | threshold | constant and file |", "|---|---|---|---|",
+                      *(f"| {rows[name].mark} | {rows[name].cells}" for name in _DECIDING)])
+
+
 def table_of_responses() -> str:
     """The table of docs/orbits.md: the rules on a curve, then those of an orbit alone."""
     return _table("response", reverse=True)

@@ -27,6 +27,7 @@ from tools.lists import (
 )
 from tools.thresholds import (
     table_of_branches,
+    table_of_deciding,
     table_of_regimes,
     table_of_responses,
     table_of_rotation_numbers,
@@ -37,6 +38,7 @@ _ROOT = Path(__file__).resolve().parents[1]
 _COMMAND = "python -m tools.update"
 #: Every table that follows from the code: its page, its name in the page's marks, and what writes it.
 _TABLES = (
+    ("docs/regimes.md", "deciding thresholds", table_of_deciding),
     ("docs/regimes.md", "thresholds", table_of_regimes),
     ("docs/regimes.md", "rotation thresholds", table_of_rotation_numbers),
     ("docs/orbits.md", "thresholds", table_of_responses),

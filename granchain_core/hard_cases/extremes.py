@@ -29,7 +29,7 @@ def scaled_difference(frequency: float, setting: Setting, times: tuple[float, ..
 
 
 def statics_error(frequency: float) -> float:
-    """How far a slowly driven, pressed chain is from statics over one period, in drive amplitudes.
+    """How far a slowly driven, precompressed chain is from statics over one period, in drive amplitudes.
 
     All contacts carry the same force F, and their overlaps add up: Σ(F/K_c)^{2/3} = Σ(F0/K_c)^{2/3} + u_0.
     """
@@ -43,7 +43,7 @@ def statics_error(frequency: float) -> float:
 
 
 def lattice_error(ratio: float) -> float:
-    """How far a weakly driven, pressed chain above its cut-off is from the linear lattice, in drive amplitudes.
+    """How far a weakly driven, precompressed chain above its cut-off is from the linear lattice, in drive amplitudes.
 
     The answer of the linear lattice is Im(U e^{iωt}) with U from a complex tridiagonal system.
     """

@@ -161,6 +161,25 @@ def listed_places() -> set[tuple[str, str]]:
             for name in re.findall(r"`(\w+)`", names) or [""]}
 
 
+def event_places() -> set[tuple[str, str]]:
+    """File and function in the tables of events in docs/method.md: a function is in the last file named in its row."""
+    page = (ROOT / "docs" / "method.md").read_text(encoding="utf-8")
+    found, file = set(), ""
+    for row in re.findall(r"^\|.*\|$", page.partition("### Events, integrator by integrator\n")[2].partition("\n##")[0], re.MULTILINE):
+        file = ""
+        for name in re.findall(r"`([\w/]+(?:\.py)?)`", row):
+            file = name if name.endswith(".py") else file
+            if file and name != file:
+                found.add((file, name))
+    return found
+
+
+def test_the_functions_of_the_tables_of_events_exist() -> None:
+    places = event_places()
+    assert len(places) > 15
+    assert not {(file, name) for file, name in places if name not in dict(named_parts(ROOT / "granchain_core" / file))}
+
+
 def test_every_place_that_writes_the_exponent_of_the_contacts_is_on_the_list_and_no_other() -> None:
     core = ROOT / "granchain_core"
     written = {(path.relative_to(core).as_posix(), name) for path in core.rglob("*.py") for name, part in named_parts(path)

@@ -1,4 +1,4 @@
-"""docs/add-an-effect.md is followed to the letter in a copy of the repository."""
+"""docs/add-an-effect.md and docs/add-a-quadratic-drag.md are followed to the letter in copies of the repository."""
 
 from __future__ import annotations
 
@@ -11,40 +11,37 @@ from edited_tree import copied, edited_copy, files_of, follow
 from granchain_core.kernels.compiling.jit import in_simd_kernels
 
 PAGE = ROOT / "docs" / "add-an-effect.md"
-#: The headings under which the effect is mentioned, and under which the force becomes one that is not linear in the
-#: velocity.
-MENTIONED = "## 5. Mention it: edit 1, and let a tool write the rest"
-NONLINEAR = "## 6. A force that is not linear in the velocity: edit 6 of these files, write 1, delete 1"
+QUADRATIC = ROOT / "docs" / "add-a-quadratic-drag.md"
+#: The headings under which the effect is mentioned.
+MENTIONED = {PAGE: "## 5. Mention it: edit 1, and let a tool write the rest", QUADRATIC: "## 5. Mention it"}
+#: The first line of each page.
+TITLES = {PAGE: "# Add an effect: edit 6 files, write 3, mention it in 1",
+          QUADRATIC: "# Add a drag that is quadratic in the velocity: edit 6 files, write 3, mention it in 1"}
 
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy of the repository with the page's edits made."""
-    return edited_copy(PAGE, tmp_path_factory.mktemp("effect") / "tree", NONLINEAR)
-
-
-def test_the_page_edits_and_writes_as_many_files_as_it_says() -> None:
-    edits, new = files_of(PAGE, MENTIONED)
-    mentions = files_of(PAGE, NONLINEAR)[0] - edits
-    assert (len(edits), len(new), len(mentions)) == (6, 3, 1)
-    assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add an effect: edit 6 files, write 3, mention it in 1"
-    all_edits, all_new = files_of(PAGE)
-    assert all_edits <= edits | mentions | new | all_new and len(all_new - new) == 1
-    text = PAGE.read_text(encoding="utf-8").partition(NONLINEAR)[2]
-    assert text.count("```diff") == 6 and "Delete `tests/physics/test_drag.py`" in text
+    """A copy of the repository with the edits of the linear drag made."""
+    return edited_copy(PAGE, tmp_path_factory.mktemp("effect") / "tree")
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A copy in which all of the page was done."""
-    made = edited_copy(PAGE, tmp_path_factory.mktemp("nonlinear") / "tree")
-    (made / "tests" / "physics" / "test_drag.py").unlink()
-    return made
+def quadratic(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Another copy, with those of the quadratic drag made."""
+    return edited_copy(QUADRATIC, tmp_path_factory.mktemp("quadratic") / "tree")
 
 
-def test_a_force_that_is_not_linear_in_the_velocity_passes_the_tests_the_page_writes(whole: Path) -> None:
-    """The whole page: tangent against differences and the second route, energy, stable step, stated error."""
-    assert "7 passed" in follow(whole, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics")
+@pytest.mark.parametrize("page", [PAGE, QUADRATIC], ids=lambda page: page.stem)
+def test_the_page_edits_and_writes_as_many_files_as_it_says(page: Path) -> None:
+    edits, new = files_of(page, MENTIONED[page])
+    mentions = files_of(page)[0] - edits
+    assert (len(edits), len(new), len(mentions)) == (6, 3, 1) and files_of(page)[1] == new
+    assert page.read_text(encoding="utf-8").splitlines()[0] == TITLES[page]
+
+
+def test_a_force_that_is_not_linear_in_the_velocity_passes_the_tests_the_page_writes(quadratic: Path) -> None:
+    """Tangent against differences and the second route, energy, stable step, stated error."""
+    assert "7 passed" in follow(quadratic, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics")
 
 
 def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
@@ -53,7 +50,7 @@ def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("made", ["tree", "whole"])
+@pytest.mark.parametrize("made", ["tree", "quadratic"])
 def test_the_tests_that_know_every_scene_and_knob_know_the_new_ones(made: str, request: pytest.FixtureRequest) -> None:
     """README, model page, share links, scales and the gallery, whose tests fail until the tool was run."""
     tree = request.getfixturevalue(made)

@@ -40,7 +40,7 @@ class Sampled:
 
 
 def random_scene(rng: np.random.Generator) -> Scene:
-    """One to eight beads with any damping, some of them pressed together."""
+    """One to eight beads with any damping, some of them precompressed."""
     return scene("sec2").evolve(N=int(rng.integers(1, 9)), dissipation=str(rng.choice(["linear", "tsuji", "none"])),
                                 F0=float(rng.choice([0.0, 0.0, 1.0])), accuracy=1e-7)
 

@@ -16,7 +16,7 @@ SAMPLES = 4096
 
 
 def thrown() -> Scene:
-    """Beads pressed together, the last one thrown at the wall: the contact behind it stops pushing at once, and pushes
+    """Precompressed beads, the last one thrown at the wall: the contact behind it stops pushing at once, and pushes
     again before it opens."""
     pressed = scene("sec2").evolve(N=3, f=300.0, A0=1.2e-8, F0=0.18, D=850.0, dissipation=LAW, tension="cut")
     return replace(pressed, start_velocity=((3, 1e-3),))

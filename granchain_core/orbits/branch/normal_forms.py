@@ -1,11 +1,7 @@
 """Normal forms of a map at a fold, a period doubling or a Neimark–Sacker point, and what they say about criticality.
 
-Equation   with ξ (z) the coordinate along the critical eigenvector q on the centre manifold, at the critical knob
-           fold               ξ → ξ + a ξ² + …       a = ½⟨p, B(q, q)⟩
-           period doubling    ξ → −ξ + c ξ³ + …      c = ⅙⟨p, C(q, q, q) + 3 B(q, (1 − A)⁻¹ B(q, q))⟩
-           Neimark–Sacker     z → z e^{iθ} (1 + d |z|²) + …
-                              d = ½ e^{−iθ}⟨p, C(q, q, q̄) + 2 B(q, (1 − A)⁻¹ B(q, q̄)) + B(q̄, (e^{2iθ} − A)⁻¹ B(q, q))⟩
-           A, B, C are the first three derivatives of the map, Aq = μq, Aᵀp = μ̄p, ⟨p, q⟩ = 1; q has a mean square of 1.
+Equation   the coefficients a of a fold, c of a period doubling and d of a Neimark–Sacker point, in docs/branches.md,
+           "Criticality"
 Source     Kuznetsov 2004, Elements of Applied Bifurcation Theory, 3rd edition: chapter 4, and the projection method of
            section 5.4
 Note       B and C are central differences of the exact derivative A, so that no difference is of higher order than the

@@ -80,7 +80,7 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
 
     The chain runs by fixed steps, or by dop853 where tension is cut, until the distance to the orbit is bounded or the
     regime is decided otherwise; a periodic orbit is then computed again with a setting fine enough for the accuracy
-    asked for (docs/design.md, "Settled is a bound").
+    asked for (docs/regimes.md).
 
     Parameters
     ----------

@@ -16,7 +16,7 @@ from granchain_core.scene import Bead
 
 
 def dimer(law: str) -> Scene:
-    """Six beads on a foundation, pressed together: steel and something light by turns, bead 3 heavy and soft."""
+    """Six beads on a foundation, precompressed: steel and something light by turns, bead 3 heavy and soft."""
     base = scene("sec2").evolve(N=6, kappa=0.002, F0=3.0, wall="rigid", f=400.0, dissipation=law)
     steel = base.bead(1)
     light = Bead(0.3 * steel.mass, 1.4 * steel.radius, 0.5 * steel.young, 0.2)
