@@ -55,7 +55,7 @@ class Controller:
         self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
         self._scenes = SceneChanges(session, views, self.pictures, self.curves, self.pinned, self.pages,
-                                    self.show_message)
+                                    self.show_message, self.next_tick)
         self._looked_at: dict[str, Page | CurveController] = {
             CURVE_NAME: self.curves, **{row.name: page for row, page in zip(PAGES, self.pages, strict=True)}}
         own: Actions = {
@@ -181,12 +181,11 @@ class Controller:
     # What happens here
 
     def picture_ready(self, picture: Settled) -> None:
-        """A settled picture is ready: inform all that show something of it."""
+        """A settled picture is ready: inform all that show something of it, the pages once it has been sent."""
         self.views.header.began_from(picture.start, self.session)
         self.pinned.picture_ready(picture)
         self.files.picture_ready(picture)
-        for page in self.pages:
-            page.picture_ready(picture)
+        self._scenes.picture_ready(picture)
 
     def _curve_placed(self) -> None:
         self.pictures.show_regime()
