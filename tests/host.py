@@ -12,7 +12,7 @@ from granchain_core import CurvePoint
 
 
 class FakeHost:
-    """The part of `Host` that a page, a task or a `Debounce` needs here (tests/session/test_host.py).
+    """A `WorkHost` for tasks and debouncing, and a part of `Host` (tests/session/test_host.py).
 
     `callbacks` wait in order; any thread may add to them.
     """

@@ -47,7 +47,7 @@ class CurveController:
         self._bar = bar
         self._placed = placed
         self.compared: Callable[[Difference | None], None] = lambda _: None
-        self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
+        self._task = Task(host, CURVES, self._ended, "The resonance curve", tell_host=True)
         self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed),
                                   host.session.cpu_time)
         self._quiet = Debounce(host, CURVE_QUIET)

@@ -36,8 +36,8 @@ class Pinned:
         self._views = views
         self._runs: dict[str, Run] = {}
         self._curves: dict[Scene, list[CurvePoint]] = {}
-        self._task = Task(host, ANALYSES, say_nothing, "The pinned picture", host.failed)
-        self._curve_task = Task(host, CURVES, say_nothing, "The curve of a pinned picture", host.failed)
+        self._task = Task(host, ANALYSES, say_nothing, "The pinned picture", tell_host=True)
+        self._curve_task = Task(host, CURVES, say_nothing, "The curve of a pinned picture", tell_host=True)
         self.actions: Actions = {"pin": lambda _: self._add(), "unpin": self._remove, "pin-open": self._open}
 
     def show(self) -> None:

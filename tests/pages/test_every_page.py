@@ -85,7 +85,7 @@ def hooks(page: Page) -> None:
 
 
 def test_the_host_of_these_tests_is_called_as_the_dashboard_is() -> None:
-    for name in (name for name in vars(Host) if not name.startswith("_")):
+    for name in (name for name in dir(Host) if not name.startswith("_")):
         real, ours = getattr(Host, name), getattr(PageHost, name)
         assert isinstance(real, property) or list(signature(ours).parameters) == list(signature(real).parameters), name
 

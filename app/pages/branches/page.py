@@ -216,6 +216,6 @@ class BranchesPage(Page):
         words = f"{orbits} orbits, {special} special points" if arms else ""
         if status == "following":
             words += "; now at " + " and ".join(f"{arm.points[-1].knob:.1f} Hz" for arm in arms if not arm.ended)
-        self._view.update_state(**WORDS.of(status), failure=sentence, words=words,
+        self._view.update_state(**WORDS.of(status, sentence), words=words,
                                 ended=[arm.reason for arm in arms if arm.ended],
                                 unfinished=any(not arm.ended for arm in arms))

@@ -162,7 +162,7 @@ class MapPage(Page):
 
     def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._send(type="map-status", **WORDS.of(status), sentence=sentence)
+        self._send(type="map-status", **WORDS.of(status, sentence))
 
     def _send_all(self) -> None:
         assert self._grid is not None
@@ -210,7 +210,7 @@ class MapPage(Page):
 
     def _show_attractors(self, status: Status, sentence: str = "") -> None:
         shown = self._shown if self._found else []
-        self._send(type="map-attractors", **SEARCH_WORDS.of(status), sentence=sentence, attractors=shown)
+        self._send(type="map-attractors", **SEARCH_WORDS.of(status, sentence), attractors=shown)
 
     def _forget_attractors(self) -> None:
         self._search.cancel()
