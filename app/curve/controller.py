@@ -24,7 +24,7 @@ from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
 from ..session.host import Host
 from ..session.progress import COMPUTING, OFF, READY
-from ..session.session import rig_beads, slider_range, without_frequency
+from ..session.scene_facts import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
 from .bar import CHOICES, CurveBar

@@ -33,7 +33,7 @@ from ..serve.queues import ANALYSES, SWEEPS
 from ..serve.shared import Shared
 from ..serve.turns import TurnFlag
 from ..session.host import WorkHost
-from ..session.session import without_frequency
+from ..session.scene_facts import without_frequency
 from ..session.task import Job, Task, say_nothing
 
 #: Fewest points of a stop band.

@@ -21,7 +21,7 @@ from ..session.hooks import Actions
 from ..session.host import Host
 from ..session.message_checks import listed
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
-from ..session.session import without_frequency
+from ..session.scene_facts import without_frequency
 from ..session.starts import MOST_BEADS
 from ..session.task import Job, Task, say_nothing
 from .layout import Views

@@ -10,7 +10,8 @@ from granchain_core import Scene, Settled, State
 from ..curve.controller import CurveController
 from ..parts.knobs import beside_knobs, knob_state
 from ..session.hooks import Actions, Page
-from ..session.session import Session, clicked_frequency
+from ..session.scene_facts import clicked_frequency
+from ..session.session import Session
 from .addresses import apply_address
 from .layout import Views
 from .main_picture import MainPicture

@@ -9,7 +9,7 @@ from granchain_core import Scene, scene
 from granchain_core.quantities import QUANTITIES
 
 from ..scripts import module
-from ..session.session import slider_range
+from ..session.scene_facts import slider_range
 from .component import Component, text
 from .foundation import beside_kappa, foundation_words
 

@@ -22,7 +22,7 @@ from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import listed, whole
 from ...session.progress import Status, StatusWords
-from ...session.session import slider_range, without_frequency
+from ...session.scene_facts import slider_range, without_frequency
 from ...session.task import Job, Task
 from .view import LONGEST_BRANCH_PERIOD, Branches
 

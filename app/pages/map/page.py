@@ -27,7 +27,7 @@ from ...session.hooks import Actions, Page
 from ...session.host import Host
 from ...session.message_checks import listed
 from ...session.progress import Status, StatusWords
-from ...session.session import slider_range
+from ...session.scene_facts import slider_range
 from ...session.task import Job, Task
 from .view import cells_message, described_attractor, head_message
 
