@@ -39,9 +39,10 @@ class Controller:
     `curve_computing`, which any thread may read.
     """
 
-    def __init__(self, document: Document, session: Session, start: State | None = None) -> None:
+    def __init__(self, document: Document, session: Session, start: State | None = None,
+                 make_calls: Callable[[Document, Callable[[Exception], None]], Calls] = Calls) -> None:
         self._document = document
-        self._calls = Calls(document, self.failed)
+        self._calls = make_calls(document, self.failed)
         self._first_start = start
         METRICS.visitor_came()
         self.on_close(METRICS.visitor_left)

@@ -22,5 +22,5 @@ def test_what_the_fake_host_has_is_called_as_a_host_is() -> None:
 
 def test_what_drives_the_fake_host_is_no_part_of_a_host() -> None:
     """A page that called it would only work in tests."""
-    assert {name for name in vars(FakeHost) if not name.startswith("_")} - set(dir(Host)) == {
+    assert {name for name in dir(FakeHost) if not name.startswith("_")} - set(dir(Host)) == {
         "leave", "call_waiting", "run_callbacks_until"}
