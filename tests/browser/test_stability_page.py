@@ -24,8 +24,7 @@ def marks(page: Page, name: str, large: bool = True) -> int:
 
 def axis_title(page: Page, axis: str) -> str:
     """The title of an axis of the section."""
-    return str(page.evaluate(f"""Bokeh.documents.find((one) => one.roots()[0].name === "section")
-        .get_model_by_name("{axis}").axis_label"""))
+    return str(page.evaluate(f'figures.documentOf("section").get_model_by_name("{axis}").axis_label'))
 
 
 def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) -> None:
