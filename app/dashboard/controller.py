@@ -41,6 +41,11 @@ class Controller:
 
     def __init__(self, document: Document, session: Session, start: State | None = None,
                  make_calls: Callable[[Document, Callable[[Exception], None]], Calls] = Calls) -> None:
+        """Make views, parts and pages, each with what it calls, and collect their actions.
+
+        The motion of the first picture begins in `start`, if that is given. `make_calls` makes the calls with the
+        document locked; tests have their own.
+        """
         self._document = document
         self._calls = make_calls(document, self.failed)
         self._first_start = start
@@ -94,7 +99,8 @@ class Controller:
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
         self.views.set_compact(bool(message.get("compact")))
-        COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
+        # Here and not in `entry.page`: a plain GET must not start a compiler (docs/security.md).
+        COMPILER.prepare(self.session.scene)
         self.choices.set_theme(message.get("theme"))
         self.pinned.show()
         self._scenes.opened(self._first_start, self.session.curves)

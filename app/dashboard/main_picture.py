@@ -168,6 +168,10 @@ class MainPicture:
             yield from self._pictures_of(request, stop)
 
     def _pictures_of(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
+        """The pictures of a request, each better than the one before, the last maybe with its energy account.
+
+        Only those from rest, and not insisted on, are shared with other visitors.
+        """
         scene, origin, insisted = request.scene, request.origin, request.insisted
         if not insisted:
             check_first_picture(scene)

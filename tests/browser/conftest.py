@@ -1,5 +1,5 @@
-"""One dashboard and one Chromium for all browser tests of a worker; a test opens pages of its own, or moves one of its
-file.
+"""One dashboard and one Chromium for all browser tests of a worker. A test opens its own page (`visit`), navigates the
+page that the tests of its file share (`at`), or looks at one that stays open (`shared`).
 
 A test that fails leaves what its pages showed and said in a folder that its report names (evidence.py).
 """
