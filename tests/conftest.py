@@ -39,8 +39,8 @@ SERVERS = ("serve", "public", "browser")
 def current_document(request: pytest.FixtureRequest) -> None:
     """Begin without a current document of Bokeh's.
 
-    A server or an error leaves that of a page behind, and then Panel puts off whatever a test asks of its dashboard,
-    until that page is loaded.
+    After a test with a server, or one that failed, Bokeh still has that page as current document; Panel then defers
+    every call until it is loaded.
     """
     if "bokeh.io.doc" in sys.modules and request.path.relative_to(HERE).parts[0] not in SERVERS and _names_the_app(request.path):
         from bokeh.document import Document

@@ -11,11 +11,30 @@ import waiting
 from granchain_core import CurvePoint
 
 
-class FakeHost:
-    """The part of `Host` that a page, a task or a `Debounce` needs here (tests/session/test_host.py).
+class Pending:
+    """What is to be called, in order: it waits until the test says so. Any thread may add to `callbacks`."""
 
-    `callbacks` wait in order; any thread may add to them.
-    """
+    def __init__(self) -> None:
+        self.callbacks: list[Callable[[], None]] = []
+
+    def call_waiting(self) -> None:
+        """Call what waits now; what that asks for waits."""
+        waiting, self.callbacks = self.callbacks, []
+        for callback in waiting:
+            callback()
+
+    def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
+        """Call what waits until something holds."""
+        waiting.until(until, seconds, self._call_all)
+
+    def _call_all(self) -> None:
+        while self.callbacks:
+            self.callbacks.pop(0)()
+        time.sleep(0.002)
+
+
+class FakeHost(Pending):
+    """A `WorkHost` for tasks and debouncing, and a part of `Host` (tests/session/test_host.py)."""
 
     busy = awaiting_picture = curve_computing = False
 
@@ -23,7 +42,7 @@ class FakeHost:
         return []
 
     def __init__(self) -> None:
-        self.callbacks: list[Callable[[], None]] = []
+        super().__init__()
         self.failures: list[Exception] = []
         self.faults: list[tuple[Exception, str]] = []
         self.closing: list[Callable[[], object]] = []
@@ -52,18 +71,3 @@ class FakeHost:
     def report_fault(self, error: Exception, sentence: str) -> None:
         """An error of granchain itself, and what is said of it beside the page."""
         self.faults.append((error, sentence))
-
-    def call_waiting(self) -> None:
-        """Call what waits now; what that asks for waits."""
-        waiting, self.callbacks = self.callbacks, []
-        for callback in waiting:
-            callback()
-
-    def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
-        """Call what waits until something holds."""
-        waiting.until(until, seconds, self._call_all)
-
-    def _call_all(self) -> None:
-        while self.callbacks:
-            self.callbacks.pop(0)()
-        time.sleep(0.002)

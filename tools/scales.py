@@ -22,7 +22,7 @@ import numpy as np
 
 from app.dashboard.scales import DIGEST, FILE
 from app.frames import Extremes, samples_for, settled_frames
-from app.session.session import slider_range
+from app.session.scene_facts import slider_range
 from granchain_core import Scene, scene, scene_names, settle
 
 #: Frequencies over the range of f, and around each at which a value is largest.

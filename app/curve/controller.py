@@ -21,7 +21,7 @@ from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
 from ..session.host import Host
 from ..session.progress import COMPUTING, OFF, READY
-from ..session.session import rig_beads, slider_range, without_frequency
+from ..session.scene_facts import rig_beads, slider_range, without_frequency
 from ..session.share import joined
 from ..session.task import Task
 from .curve_bar import CHOICES, CurveBar
@@ -47,7 +47,7 @@ class CurveController:
         self._bar = bar
         self._placed = placed
         self._compared: list[Callable[[Difference | None], None]] = []
-        self._task = Task(host, CURVES, self._ended, "The resonance curve", host.failed)
+        self._task = Task(host, CURVES, self._ended, "The resonance curve", tell_host=True)
         self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed),
                                   host.session.cpu_time)
         self._quiet = Debounce(host, CURVE_QUIET)

@@ -32,8 +32,8 @@ from ..serve.work.cpu_time import CpuTime
 from ..serve.work.queues import ANALYSES, SWEEPS
 from ..serve.work.shared import Shared
 from ..serve.work.turns import TurnFlag
-from ..session.host import Host
-from ..session.session import without_frequency
+from ..session.host import WorkHost
+from ..session.scene_facts import without_frequency
 from ..session.task import Job, Task, say_nothing
 
 #: Fewest points of a stop band.
@@ -97,10 +97,10 @@ NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda n
 class PeakNames:
     """Names the places of a complete curve in the background; `show` is called with all names at once."""
 
-    def __init__(self, host: Host, show: Callable[[list[dict[str, Any]]], None]) -> None:
+    def __init__(self, host: WorkHost, show: Callable[[list[dict[str, Any]]], None]) -> None:
         self._host = host
         self._show = show
-        self._task = Task(host, ANALYSES, say_nothing, "Naming the peaks of the curve", host.failed)
+        self._task = Task(host, ANALYSES, say_nothing, "Naming the peaks of the curve", tell_host=True)
 
     def forget(self) -> None:
         """Show no names, because the curve has changed."""

@@ -15,7 +15,7 @@ from granchain_core.stop import Stop
 from ..serve.work.cpu_time import CpuTime
 from ..serve.work.queues import SWEEPS
 from ..serve.work.shared import Shared
-from ..session.session import slider_range, without_frequency
+from ..session.scene_facts import slider_range, without_frequency
 from ..session.task import Job
 
 #: Frequencies of the first pass over a curve from rest.

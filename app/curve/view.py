@@ -251,6 +251,7 @@ class CurveFigure:
                         np.array([point.max_output_force for point in points]))
 
     def _rescale(self) -> None:
+        """Fit the force axis to all curves and measured data; in another unit, draw everything anew."""
         curves = (*self._points.values(), *self._before.values())
         forces = [point.max_output_force for points in curves for point in points] + self._pinned.forces
         if self._measurement is not None:

@@ -44,7 +44,7 @@ class Calls:
         """Call `action` now, where the document is locked already; `failed` takes its error."""
         if self._closed:
             return
-        with batched_changes(self._document):  # no second time inside `run_locked`, which has begun to gather
+        with batched_changes(self._document):  # does nothing inside `run_locked`, where changes are gathered already
             try:
                 action(*arguments)
             except Exception as error:

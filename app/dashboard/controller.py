@@ -39,9 +39,15 @@ class Controller:
     `curve_computing`, which any thread may read.
     """
 
-    def __init__(self, document: Document, session: Session, start: State | None = None) -> None:
+    def __init__(self, document: Document, session: Session, start: State | None = None,
+                 make_calls: Callable[[Document, Callable[[Exception], None]], Calls] = Calls) -> None:
+        """Make views, parts and pages, each with what it calls, and collect their actions.
+
+        The motion of the first picture begins in `start`, if that is given. `make_calls` makes the calls with the
+        document locked; tests have their own.
+        """
         self._document = document
-        self._calls = Calls(document, self.failed)
+        self._calls = make_calls(document, self.failed)
         self._first_start = start
         METRICS.visitor_came()
         self.on_close(METRICS.visitor_left)
@@ -55,7 +61,7 @@ class Controller:
         self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
         self._scenes = SceneChanges(session, views, self.pictures, self.curves, self.pinned, self.pages,
-                                    self.show_message)
+                                    self.show_message, self.next_tick)
         self._looked_at: dict[str, Page | CurveController] = {
             CURVE_NAME: self.curves, **{row.name: page for row, page in zip(PAGES, self.pages, strict=True)}}
         own: Actions = {
@@ -93,7 +99,8 @@ class Controller:
     def _ready(self, message: dict[str, Any]) -> None:
         disable_nagle(self._document)
         self.views.set_compact(bool(message.get("compact")))
-        COMPILER.prepare(self.session.scene)  # not when the page is fetched: that starts no compiler
+        # Here and not in `entry.page`: a plain GET must not start a compiler (docs/security.md).
+        COMPILER.prepare(self.session.scene)
         self.choices.set_theme(message.get("theme"))
         self.pinned.show()
         self._scenes.show_preset(self._first_start, self.session.curves)
@@ -181,12 +188,11 @@ class Controller:
     # What happens here
 
     def picture_ready(self, picture: Settled) -> None:
-        """A settled picture is ready: inform all that show something of it."""
+        """A settled picture is ready: inform all that show something of it, the pages once it has been sent."""
         self.views.header.began_from(picture.start, self.session)
         self.pinned.picture_ready(picture)
         self.files.picture_ready(picture)
-        for page in self.pages:
-            page.picture_ready(picture)
+        self._scenes.picture_ready(picture)
 
     def _curve_placed(self) -> None:
         self.pictures.show_regime()

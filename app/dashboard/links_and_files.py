@@ -36,7 +36,7 @@ class LinksAndFiles:
         self._views = views
         self._curves = curves
         self._pictures = pictures
-        self._saving = Task(host, FILES, say_nothing, "Saving the picture", host.failed)
+        self._saving = Task(host, FILES, say_nothing, "Saving the picture", tell_host=True)
         self._measurement = MeasurementActions(host, views, curves)
         self.actions: Actions = {"share": self._share, "export": self._export, **self._measurement.actions}
 

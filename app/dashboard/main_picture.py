@@ -81,7 +81,7 @@ def _refusing(scene: Scene) -> Iterator[None]:
 class MainPicture:
     """Settled pictures and the live run. `show_notice` shows a message that the next picture clears.
 
-    `picture_ready` is called with every settled picture, before it is sent.
+    `picture_ready` is called with every settled picture, before it waits for the browser.
     """
 
     def __init__(self, host: Host, views: Views, show_notice: Callable[[str], None],
@@ -168,6 +168,10 @@ class MainPicture:
             yield from self._pictures_of(request, stop)
 
     def _pictures_of(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
+        """The pictures of a request, each better than the one before, the last maybe with its energy account.
+
+        Only those from rest, and not insisted on, are shared with other visitors.
+        """
         scene, origin, insisted = request.scene, request.origin, request.insisted
         if not insisted:
             check_first_picture(scene)

@@ -74,9 +74,9 @@ class MeasurementActions:
         self._series: Series | None = None
         #: What is drawn over the pictures, and goes into their files.
         self.shown: Measured | Series | None = None
-        self._moving = Task(host, ANALYSES, say_nothing, "Moving the series to the picture", host.failed)
-        self._reading = Task(host, FILES, say_nothing, "Reading the measurement", host.failed)
-        self._recording = Task(host, LONG, say_nothing, "The virtual experiment", host.failed)
+        self._moving = Task(host, ANALYSES, say_nothing, "Moving the series to the picture", tell_host=True)
+        self._reading = Task(host, FILES, say_nothing, "Reading the measurement", tell_host=True)
+        self._recording = Task(host, LONG, say_nothing, "The virtual experiment", tell_host=True)
         self._name, self._answers = "", Answers()
         #: The file, for as long as a question about it is open.
         self._content = b""

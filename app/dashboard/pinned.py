@@ -19,7 +19,7 @@ from ..session.host import Host
 from ..session.message_checks import listed
 from ..session.page import Actions
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
-from ..session.session import without_frequency
+from ..session.scene_facts import without_frequency
 from ..session.starts import MOST_BEADS
 from ..session.task import Job, Task, say_nothing
 from .layout import Views
@@ -34,8 +34,8 @@ class Pinned:
         self._views = views
         self._runs: dict[str, Run] = {}
         self._curves: dict[Scene, list[CurvePoint]] = {}
-        self._task = Task(host, ANALYSES, say_nothing, "The pinned picture", host.failed)
-        self._curve_task = Task(host, CURVES, say_nothing, "The curve of a pinned picture", host.failed)
+        self._task = Task(host, ANALYSES, say_nothing, "The pinned picture", tell_host=True)
+        self._curve_task = Task(host, CURVES, say_nothing, "The curve of a pinned picture", tell_host=True)
         self.actions: Actions = {"pin": lambda _: self._add(), "unpin": self._remove, "pin-open": self._open}
 
     def show(self) -> None:

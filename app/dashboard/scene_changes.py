@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from granchain_core import Scene, State
+from granchain_core import Scene, Settled, State
 
 from ..curve.controller import CurveController
 from ..parts.knobs.knobs import beside_knobs, knob_state
 from ..session.page import Actions, Page
-from ..session.session import Session, clicked_frequency
+from ..session.scene_facts import clicked_frequency
+from ..session.session import Session
 from .addresses import apply_address
 from .layout import Views
 from .main_picture import MainPicture
@@ -21,7 +22,8 @@ class SceneChanges:
     """Turns the knobs of one visitor, opens scenes, and informs the pages and the other parts of the dashboard."""
 
     def __init__(self, session: Session, views: Views, pictures: MainPicture, curves: CurveController, pinned: Pinned,
-                 pages: Sequence[Page], show_message: Callable[[str], None]) -> None:
+                 pages: Sequence[Page], show_message: Callable[[str], None],
+                 next_tick: Callable[[Callable[[], None]], None]) -> None:
         self._session = session
         self._views = views
         self._pictures = pictures
@@ -29,6 +31,9 @@ class SceneChanges:
         self._pinned = pinned
         self._pages = pages
         self._show_message = show_message
+        self._next_tick = next_tick
+        #: The settled picture of which the pages have not been informed yet.
+        self._untold: Settled | None = None
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
     def turn_knobs(self, scene: Scene, state: State | None, mode: str) -> None:
@@ -76,9 +81,21 @@ class SceneChanges:
 
     def request_picture(self, start: State | None = None) -> None:
         """Request a picture of the knobs as they are."""
+        self._untold = None
         for page in self._pages:
             page.picture_requested()
         self._pictures.compute(start)
+
+    def picture_ready(self, picture: Settled) -> None:
+        """Inform the pages of a picture when it has been sent, unless another is requested or ready by then."""
+        self._untold = picture
+        self._next_tick(self._tell_picture)
+
+    def _tell_picture(self) -> None:
+        picture, self._untold = self._untold, None
+        if picture is not None:
+            for page in self._pages:
+                page.picture_ready(picture)
 
     # What the visitor does
 

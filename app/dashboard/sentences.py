@@ -27,10 +27,13 @@ class Sentences:
         self._refused: Scene | None = None
         self.actions: Actions = {"dismiss-sentence": self._dismiss, "insist": self._insist}
 
-    def show_message(self, sentence: str) -> None:
-        """Show one sentence until the next valid action; an empty one removes it."""
+    def show_message(self, sentence: str, refused: Scene | None = None) -> None:
+        """Show one sentence until the next valid action; an empty one removes it.
+
+        A scene that was `refused` because it takes long can be computed anyway by the button beside the sentence.
+        """
         self._session.sentence = sentence
-        self._refused = None
+        self._refused = refused
         self._show()
 
     def show_notice(self, notice: str) -> None:
@@ -43,9 +46,7 @@ class Sentences:
         if isinstance(error, RefusedPicture):
             METRICS.count("refused_pictures")
             if error.scene == self._session.scene:  # otherwise a knob has moved since and requested another picture
-                self.show_message(str(error))
-                self._refused = error.scene
-                self._show()
+                self.show_message(str(error), error.scene)
         elif isinstance(error, BadInput):
             self.show_message(str(error))
         elif isinstance(error, NumbersFailed):

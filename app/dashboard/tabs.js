@@ -18,7 +18,8 @@ import { explainTerms } from "./terms.js";
 import { watchVisibility } from "./visibility.js";
 
 // Functions that make the tabs. If a function returns `show`, that draws the tab again when its page publishes something.
-// A tab that `updatesItself` is not made anew when the state changes, so what is under the pointer stays.
+// A tab that `updatesItself` is not made anew when the state changes, so what is under the pointer stays. A tab without
+// a page over the pictures needs its function here (tests/dashboard/test_table.py).
 const TABS = {
   stories: storiesTab,
   "look at": lookAtTab,
@@ -34,14 +35,16 @@ const TABS = {
   data: dataTab,
 };
 
-// The tab of a page without a function in TABS: its sentence or placeholder, and a button that opens it.
-function plainTab(_, { name, placeholder }) {
+// The tab without a function in TABS: the sentence of its page or its placeholder, and a button that opens the page if
+// it lies over the pictures.
+function plainTab({ state: { pages } }, { name, placeholder }) {
   const line = paragraph();
   const show = () => {
     line.textContent = window.granchain.pages.get(name)?.sentence || placeholder;
   };
   show();
-  return { content: [element("div", { className: "row top" }, line, openButton(name))], show };
+  const open = pages[name]?.overlay ? [openButton(name)] : [];
+  return { content: [element("div", { className: "row top" }, line, ...open)], show };
 }
 
 const READABLE = 250; // ms between two changes of the numbers

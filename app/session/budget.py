@@ -8,7 +8,7 @@ from granchain_core import BadInput, Scene
 from granchain_core.run.budget import picture_seconds, refuse_long_picture
 
 from ..frames import PERIODS, samples_for
-from .session import slider_range
+from .scene_facts import slider_range
 
 #: The longest that a first picture may take unless the visitor insists [s].
 FIRST_PICTURE = 5.0

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from .host import Host
+from .host import Caller
 
 
 class Debounce:
     """Calls an action with the document locked, a quiet time after the last `start`."""
 
-    def __init__(self, host: Host, seconds: float) -> None:
+    def __init__(self, host: Caller, seconds: float) -> None:
         self._host = host
         self._seconds = seconds
         self._last = 0

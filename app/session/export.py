@@ -16,7 +16,7 @@ from granchain_core import CurvePoint, Run, Scene, State, __version__
 from granchain_core.tables.words import evidence_columns
 
 from ..frames import jumps_of
-from .session import without_frequency
+from .scene_facts import without_frequency
 
 #: Names of the forces in a program, and the fields of a run.
 _FORCES = {"largest output force [N]": "max_output_force", "its elastic part [N]": "max_output_force_elastic",

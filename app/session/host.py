@@ -11,7 +11,38 @@ from .activities import Activity
 from .session import Session
 
 
-class Host(Protocol):
+class Caller(Protocol):
+    """Calls with the document locked, until the visitor leaves."""
+
+    def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` with the document locked, as soon as that is possible; from any thread."""
+
+    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+        """Call `action` with the document locked, after `seconds`."""
+
+    def on_close(self, action: Callable[[], object]) -> None:
+        """Call `action` when the visitor leaves; nothing is called by `next_tick` or `call_later` from then on."""
+
+
+class WorkHost(Caller, Protocol):
+    """What a `Task` needs: calls, whether the picture is being computed, and whom to tell of errors."""
+
+    @property
+    def busy(self) -> bool:
+        """Whether a picture is being computed."""
+
+    @property
+    def awaiting_picture(self) -> bool:
+        """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
+
+    def failed(self, error: Exception) -> None:
+        """Tell the visitor about a failure that has no place on its own page."""
+
+    def report_fault(self, error: Exception, sentence: str) -> None:
+        """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
+
+
+class Host(WorkHost, Protocol):
     """One visitor's dashboard, as its pages see it.
 
     Any thread may call `next_tick` and read the flags `busy`, `awaiting_picture` and `curve_computing`. Everything else
@@ -25,14 +56,6 @@ class Host(Protocol):
         """The pages over the pictures, by name."""
 
     @property
-    def busy(self) -> bool:
-        """Whether a picture is being computed."""
-
-    @property
-    def awaiting_picture(self) -> bool:
-        """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
-
-    @property
     def curve_computing(self) -> bool:
         """Whether a resonance curve is being computed."""
 
@@ -41,21 +64,6 @@ class Host(Protocol):
 
     def activities(self) -> list[Activity]:
         """Everything that is computed for this visitor, or could be."""
-
-    def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` with the document locked, as soon as that is possible; from any thread."""
-
-    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` with the document locked, after `seconds`."""
-
-    def on_close(self, action: Callable[[], object]) -> None:
-        """Call `action` when the visitor leaves; nothing is called by `next_tick` or `call_later` from then on."""
-
-    def failed(self, error: Exception) -> None:
-        """Tell the visitor about a failure that has no place on its own page."""
-
-    def report_fault(self, error: Exception, sentence: str) -> None:
-        """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.

@@ -16,6 +16,9 @@ Actions = Mapping[str, Callable[[dict[str, Any]], None]]
 class Page:
     """One page of one visitor. Hooks are called with the document locked; by default they do nothing.
 
+    All visitors share the event loop in which hooks and actions run, so none may take longer than about ten
+    milliseconds; longer work is a `Task`.
+
     `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
     """
 
@@ -36,7 +39,7 @@ class Page:
         """The session became what an address says: a visit, or a step back or forward."""
 
     def picture_ready(self, picture: Settled) -> None:
-        """A settled picture is ready; a better one for these knobs may follow unless `picture.final`."""
+        """A settled picture was sent to the browser; a better one for these knobs may follow unless `picture.final`."""
 
     def curve_ready(self) -> None:
         """The resonance curve from rest is complete: `Host.complete_curve` has it."""

@@ -42,12 +42,13 @@ class StatusWords:
     kept: str = ""
     instead: Mapping[Status, str] = field(default_factory=dict)
 
-    def of(self, status: Status) -> dict[str, Any]:
-        """The entries of `state` that the page shows in the browser.
+    def of(self, status: Status, failure: str = "") -> dict[str, Any]:
+        """The entries of `state`, or of a message, that the page shows in the browser.
 
-        `status` itself, `progress` in words (empty where there is nothing to say), and whether it is `running`.
+        `status` itself, `progress` in words (empty where there is nothing to say), whether it is `running`, and
+        `failure`, the sentence that says why it failed.
         """
-        return {"status": status, "progress": self._words(status), "running": status in UNDER_WAY}
+        return {"status": status, "progress": self._words(status), "running": status in UNDER_WAY, "failure": failure}
 
     def _words(self, status: Status) -> str:
         if status == "compiling":

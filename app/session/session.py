@@ -9,9 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from granchain_core import BadInput, Scene, Settled, State, scene, scene_names
-from granchain_core.quantities import QUANTITIES
-from granchain_core.scene import Bead
+from granchain_core import BadInput, Scene, Settled, State, scene
 
 from ..serve.work.cpu_time import CpuTime
 from .message_checks import is_number, quoted
@@ -28,32 +26,50 @@ STARTS = VIEW_VALUES["start"]
 class Session:
     """The state of one page; methods change it or raise `BadInput` and leave it as it was.
 
-    `cpu_time` is the processor time of its pictures, and `insisted` the scene that is computed however long it takes.
-    `started_from` is the state in which the motion on the screen began, None for rest; `story` is "NAME.STEP"
-    (`story_to_settle` where its motion has still to be settled from others), and `question` the Analysis page's with
-    its values, as in a link.
+    The values of fields that a link has are listed in share.py (`VIEW`).
     """
 
+    #: The chain with the knobs as they are.
     scene: Scene = field(default_factory=lambda: scene("sec2"))
+    #: Whether the steady motion is shown, "settled", or a run that goes on while knobs move, "live".
     mode: str = "settled"
+    #: Where a settled picture starts: "rest", or "previous", the state of the picture before.
     start: str = "rest"
+    #: The theme that a link asks for; "auto" leaves it to the browser.
     theme: str = "auto"
+    #: Whether all pictures of the scene are drawn to one scale, "same", or each to its largest values, "fit".
     scale: str = "same"
+    #: What is drawn on the resonance curve: "auto" for what suits the scene, or names joined by dots, "rest.up".
     curves: str = "auto"
+    #: The "tab" that the address opens and the "page" over the pictures; only those that it names.
     place: dict[str, str] = field(default_factory=dict)
+    #: Drive periods shown in a second.
     speed: float = 1.0
+    #: Whether the motion is played; a live run that is paused computes nothing.
     playing: bool = True
+    #: The last settled picture, maybe of knobs that have moved since; None until there is one of this preset.
     settled: Settled | None = None
+    #: The state in which the motion on the screen began; None for rest.
     started_from: State | None = None
+    #: What the visitor is told until the next valid action, for instance why a value was refused.
     sentence: str = ""
+    #: What the visitor is told until the next picture, for instance that kernels are being compiled.
     notice: str = ""
+    #: Whether the energy account is computed after each settled picture.
     energy_account: bool = False
+    #: Values that knobs had when their effect was switched off, for when it is switched on again.
     remembered: dict[str, Any] = field(default_factory=dict)
+    #: The processor time of its pictures, by which visitors take turns.
     cpu_time: CpuTime = field(default_factory=CpuTime)
+    #: The scene that is computed however long it takes, because the visitor has insisted.
     insisted: Scene | None = None
+    #: The pinned pictures.
     pins: tuple[Pin, ...] = ()
+    #: The step of a story that is told, "NAME.STEP"; empty for none.
     story: str = ""
+    #: Whether the frequencies of `StoryStep.via` must still be settled before the motion of that step is known.
     story_to_settle: bool = False
+    #: The question of the Analysis page with its values, as a link has it.
     question: str = ""
 
     @property
@@ -142,38 +158,7 @@ class Session:
         return state if len(state.displacement) == scene.N else None
 
 
-def slider_range(current: Scene, name: str) -> tuple[float, float]:
-    """The scene's range of a slider, or all values that granchain accepts if the scene has none."""
-    for knob, low, high in current.ranges:
-        if knob == name:
-            return low, high
-    return QUANTITIES[name].low, QUANTITIES[name].high
-
-
-def clicked_frequency(current: Scene, frequency: object) -> object:
-    """The frequency of a click on the curve, inside the slider's range; the knob refuses what is not a number."""
-    if not is_number(frequency):
-        return frequency
-    low, high = slider_range(current, "f")
-    return round(min(max(frequency, low), high), 1)
-
-
-def without_frequency(current: Scene) -> Scene:
-    """The scene with f at a fixed value. It identifies a curve or branch over f, whatever the knob f is set to."""
-    return current.evolve(f=slider_range(current, "f")[0])
-
-
-def rig_beads() -> tuple[Bead, ...]:
-    """The beads of the paper's rig: its stated features are drawn for scenes with these beads."""
-    return scene("rig").pattern
-
-
 def _one_of(what: str, value: object, known: tuple[str, ...]) -> str:
     if value in known:
         return str(value)
     raise BadInput(f"{what} {quoted(value)} is not one of {', '.join(known)}.")
-
-
-def presets() -> list[dict[str, str]]:
-    """Name and title of every scene."""
-    return [{"name": name, "title": scene(name).title} for name in scene_names()]

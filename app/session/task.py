@@ -12,7 +12,7 @@ from granchain_core.stop import Stop
 from ..serve.compiling.compiler import COMPILER
 from ..serve.work.queues import Queue
 from ..serve.work.turns import Flag
-from .host import Host
+from .host import WorkHost
 from .progress import Status
 
 #: Time between the first two checks whether the main picture is done [s]. Long work waits for the picture, so that it
@@ -32,7 +32,7 @@ def say_nothing(status: Status, sentence: str) -> None:
 class Job:
     """One run of a task, as its work sees it from a worker thread."""
 
-    def __init__(self, host: Host, say: Say) -> None:
+    def __init__(self, host: WorkHost, say: Say) -> None:
         self.stop: Stop = Flag()
         self._host = host
         self._say = say
@@ -91,16 +91,17 @@ class Task:
     """One kind of background work of a page; a new start replaces the last, and it ends when the visitor leaves.
 
     `say` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the work
-    reports. `title` begins the sentence about a fault. `failed` takes errors that the page itself does not show.
+    reports. `title` begins the sentence about a fault. With `tell_host` the dashboard tells the visitor of errors, for
+    work whose page has no place for them.
     """
 
-    def __init__(self, host: Host, queue: Queue, say: Say, title: str = "The computation",
-                 failed: Callable[[Exception], None] | None = None) -> None:
+    def __init__(self, host: WorkHost, queue: Queue, say: Say, title: str = "The computation",
+                 tell_host: bool = False) -> None:
         self._host = host
         self._queue = queue
         self._say = say
         self._title = title
-        self._failed = failed
+        self._tell_host = tell_host
         self._job: Job | None = None
         host.on_close(self.cancel)
 
@@ -136,12 +137,12 @@ class Task:
             sentence = (f"{self._title} failed because of an error in granchain ({type(error).__name__}); "
                         "please report it.")
             job.next_tick(self._end, "failed", sentence)
-            self._host.next_tick(self._host.report_fault, error, "" if self._failed is None else sentence)
+            self._host.next_tick(self._host.report_fault, error, sentence if self._tell_host else "")
         else:
             job.next_tick(self._end, "done")
 
     def _end(self, status: Status, sentence: str = "", problem: Exception | None = None) -> None:
         self._job = None
         self._say(status, sentence)
-        if problem is not None and self._failed is not None:
-            self._failed(problem)
+        if problem is not None and self._tell_host:
+            self._host.failed(problem)

@@ -8,22 +8,35 @@ from typing import Any
 
 from playwright.sync_api import Page, TimeoutError
 
-_VIEW = """const view = Object.values(Bokeh.index.roots ?? Bokeh.index)
-  .filter((one) => one.model.name === name && (one.model.toolbar_location !== null) === large).at(-1);"""
+#: What tests use of BokehJS beyond its documentation, as `figures` in every page that they open: the document of a
+#: figure by the figure's name, the first model of a name, the view of a model, and all models.
+FIGURES = """
+window.figures = {
+  documentOf: (name) => Bokeh.documents.find((one) => one.roots()[0]?.name === name),
+  model: (name) => Bokeh.documents.map((one) => one.get_model_by_name(name)).find(Boolean),
+  viewOf: (model) => Bokeh.index.find_one(model),
+  // The view of a figure by name; `large` is the one with tools, not that of its tab.
+  view: (name, large) => Object.values(Bokeh.index.roots ?? Bokeh.index)
+    .filter(({ model }) => model.name === name && (model.toolbar_location !== null) === large).at(-1),
+  models: () => (window.Bokeh?.documents ?? []).flatMap((one) => [...(one.all_models ?? one._all_models.values())]),
+};
+"""
 
 
 def source(page: Page, figure: str, name: str, large: bool = True) -> dict[str, Any]:
     """The data of a source of a figure, empty until that is there; `large` is the one with tools, not that of its tab.
     """
-    return dict(page.evaluate(f"""([name, source, large]) => {{ {_VIEW}
-      return view?.model.document?.get_model_by_name(source)?.data ?? {{}}; }}""", [figure, name, large]))
+    return dict(page.evaluate("""([name, source, large]) => {
+      const view = figures.view(name, large);
+      return view?.model.document?.get_model_by_name(source)?.data ?? {}; }""", [figure, name, large]))
 
 
 def place(page: Page, figure: str, x: float, y: float) -> tuple[float, float]:
     """Where a point of a large figure is on the screen."""
-    across, down = page.evaluate(f"""([name, large, x, y]) => {{ {_VIEW}
-      const box = view.el.getBoundingClientRect(), {{ x_scale, y_scale }} = view.frame;
-      return [box.x + x_scale.compute(x), box.y + y_scale.compute(y)]; }}""", [figure, True, x, y])
+    across, down = page.evaluate("""([name, large, x, y]) => {
+      const view = figures.view(name, large);
+      const box = view.el.getBoundingClientRect(), { x_scale, y_scale } = view.frame;
+      return [box.x + x_scale.compute(x), box.y + y_scale.compute(y)]; }""", [figure, True, x, y])
     return across, down
 
 

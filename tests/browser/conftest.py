@@ -1,5 +1,5 @@
-"""One dashboard and one Chromium for all browser tests of a worker; a test opens pages of its own, or moves one of its
-file.
+"""One dashboard and one Chromium for all browser tests of a worker. A test opens its own page (`visit`), navigates the
+page that the tests of its file share (`at`), or looks at one that stays open (`shared`).
 
 A test that fails leaves what its pages showed and said in a folder that its report names (evidence.py).
 """
@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from bokeh_figures import FIGURES
 from evidence import WATCHED, folder_of, leave, watch
 from knobs import COMPILED, look_seldom
 from playwright.sync_api import Browser, BrowserContext, Page, ViewportSize, expect, sync_playwright
@@ -134,7 +135,7 @@ class Pages:
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
         page.on("request", lambda request: request.url.startswith((url, "data:", "blob:"))
                 or self.complaints.append(f"asked another host: {request.url}"))
-        page.add_init_script(begin + RUNTIME + script)
+        page.add_init_script(begin + RUNTIME + FIGURES + script)
         page.goto(url + query)
         page.wait_for_function("window.painted.length > 0", timeout=180_000)
         return page
@@ -161,6 +162,18 @@ def visit(profile: BrowserContext, prepared: str, log: Path, request: pytest.Fix
         return page
 
     yield open_page
+    pages.close()
+    assert pages.complaints == []
+
+
+@pytest.fixture(scope="module")
+def shared(profile: BrowserContext, prepared: str) -> Iterator[Callable[..., Page]]:
+    """Opens a page for several tests of a file, each of which shows one fact about it and leaves it as it was.
+
+    A test `watch`es the page (evidence.py); at the end of the file none of these pages may have complained.
+    """
+    pages = Pages(profile, prepared)
+    yield pages.open
     pages.close()
     assert pages.complaints == []
 

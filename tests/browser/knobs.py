@@ -1,4 +1,4 @@
-"""What tests do with the page: read a knob, type into it, wait for the final picture."""
+"""What tests do with the page: read a knob, type into it, wait for the final picture or the address, see who looks."""
 
 from __future__ import annotations
 
@@ -41,3 +41,21 @@ def settled(page: Page) -> None:
     """Wait until the final picture of the knobs as they are is painted, and the status line has it."""
     page.wait_for_function("granchain.isSettled() && painted.at(-1)?.number === granchain.shown.number", timeout=COMPILED)
     expect(page.locator("#foot b")).not_to_contain_text("preview")
+
+
+def looks(page: Page, name: str) -> list[str]:
+    """What the page has told the server: that somebody looks at the tab or the page, "true", or nobody does."""
+    return [one.split()[2] for one in page.evaluate("sent") if one.startswith(f"visible {name} ")]
+
+
+def addressed(page: Page, fields: str) -> None:
+    """Wait until the address has these fields, "f=615.3&tab=effects": any value for "from=*", no field for "tab=".
+
+    Numbers are compared as numbers: an address has "D=80.0".
+    """
+    page.wait_for_function("""(fields) => {
+      const has = new URLSearchParams(location.search);
+      const same = (is, value) => is === value || (value !== "" && is !== "" && Number(is) === Number(value));
+      return [...new URLSearchParams(fields)].every(
+        ([name, value]) => (value === "*" ? has.has(name) : same(has.get(name) ?? "", value)));
+    }""", arg=fields)

@@ -13,8 +13,8 @@ from server import at_rest, resize, until
 from test_axe import violations
 
 #: The figure of the page, and how many points each method has in it.
-FIGURE = 'Bokeh.documents.find((one) => one.roots()[0].name === "accuracy" && one.roots()[0].below[0].axis_label)'
-POINTS = f"""() => Object.fromEntries(({FIGURE}?.roots()[0].renderers ?? [])
+FIGURE = 'figures.view("accuracy", true)?.model'
+POINTS = f"""() => Object.fromEntries(({FIGURE}?.renderers ?? [])
   .filter((one) => one.glyph.type === "Scatter" && one.data_source.data.setting?.length)
   .map((one) => [one.data_source.name, one.data_source.data.ms.length]))"""
 
@@ -27,8 +27,7 @@ def marked(page: Page, name: str) -> int:
 def naive_line(page: Page) -> dict[str, Any]:
     """Length and dash of the naive force that is drawn."""
     return dict(page.evaluate("""() => {
-      const forces = Bokeh.documents.find((one) => one.get_model_by_name("naive forces"));
-      const [accurate, naive] = forces.get_model_by_name("naive forces").renderers;
+      const [accurate, naive] = figures.model("naive forces").renderers;
       return { accurate: accurate.data_source.data.force.length, naive: naive.data_source.data.force.length,
                dash: String(naive.glyph.line_dash.value ?? naive.glyph.line_dash) };
     }"""))
@@ -84,10 +83,10 @@ def test_points_appear_and_the_cheapest_way_is_told(visit: Visit) -> None:
     tip = page.locator(".bk-tooltip-content")  # it stands over the whole page
 
     def told() -> bool:
-        x, y = page.evaluate(f"""() => {{
-          const figure = {FIGURE}.roots()[0], view = Bokeh.index.find_one(figure), {{ data }} = {FIGURE}.get_model_by_name("rk4-split");
-          return [view.frame.x_scale.compute(data.ms[0]), view.frame.y_scale.compute(data.error[0])];
-        }}""")
+        x, y = page.evaluate("""() => {
+          const { frame, model } = figures.view("accuracy", true), { data } = model.document.get_model_by_name("rk4-split");
+          return [frame.x_scale.compute(data.ms[0]), frame.y_scale.compute(data.error[0])];
+        }""")
         box = sheet.locator(".work canvas").first.bounding_box()
         assert box is not None
         page.mouse.move(box["x"] + x - 30, box["y"] + y)

@@ -41,3 +41,8 @@ def test_no_other_script_touches_bokehjs() -> None:
     """Connection.js is not a module: it is told by each document that its socket is closed."""
     users = {path.name for path in Path(app.__file__).parent.rglob("*.js") if re.search(r"\bBokeh\.", path.read_text(encoding="utf-8"))}
     assert users == {"bokeh.js", "connection.js"}
+
+
+def test_no_other_test_touches_bokehjs() -> None:
+    users = {path.name for path in Path(__file__).parent.glob("*.py") if re.search(r"\bBokeh\??\.[a-z]", path.read_text(encoding="utf-8"))}
+    assert users == {"bokeh_figures.py", Path(__file__).name}

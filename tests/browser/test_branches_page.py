@@ -16,9 +16,7 @@ SHORT = "?v=1&scene=sec2&f=2000&N=3"
 #: The kinds of special points that were found; how many orbits the large figure has; the orbits of an arm.
 SPECIAL = ("['fold', 'period_doubling', 'neimark_sacker', 'grazing']"
            ".filter((kind) => granchain.pages.get('branches').data.rows[kind]?.x.length)")
-COUNT = """(Object.values(Bokeh.index.roots ?? Bokeh.index)
-  .filter(({ model }) => model.name === "branches" && model.toolbar_location !== null).at(-1)
-  ?.model.document?.get_model_by_name("orbits")?.data.x ?? []).length"""
+COUNT = '(figures.view("branches", true)?.model.document?.get_model_by_name("orbits")?.data.x ?? []).length'
 ORBITS = "granchain.pages.get('branches').data.rows.orbits"
 
 

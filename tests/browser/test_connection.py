@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from bokeh_figures import FIGURES
 from evidence import watch
 from knobs import COMPILED, field, knob, type_into
 from playwright.sync_api import Browser, Page, expect
@@ -29,7 +30,7 @@ def page(chromium: Browser, server: Server, request: pytest.FixtureRequest) -> I
     context.set_default_timeout(60_000)
     page = context.new_page()
     watch(request.node, page, server.log)
-    page.add_init_script(FIRST)
+    page.add_init_script(FIRST + FIGURES)
     page.goto(f"{server.address}?v=1&scene=sec2&f=1130&D=90&start=previous")
     expect(page.locator("#lost")).to_be_hidden()
     page.wait_for_function(BELONGS, arg=1130, timeout=COMPILED)
@@ -47,7 +48,7 @@ FIRST = """addEventListener("DOMContentLoaded", () => setTimeout(() => {
 
 # Whether the pictures show whole drive periods of a frequency [Hz]; the time axis of all of them is one, in ms.
 BELONGS = """(frequency) => {
-  for (const document of window.Bokeh?.documents ?? []) for (const model of document.all_models ?? document._all_models.values()) {
+  for (const model of figures.models()) {
     if (model.type !== "Plot" || model.y_range?.start === 1 || !(model.y_range?.start > model.y_range?.end)) continue;
     const periods = model.y_range.start * 1e-3 * frequency;
     return periods > 0.5 && Math.abs(periods - Math.round(periods)) < 1e-3;

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from pathlib import Path
 
 import pytest
+from evidence import watch
 from knobs import COMPILED, Visit, field
 from playwright.sync_api import Locator, Page, expect
 
@@ -37,37 +39,62 @@ ROWS_SEEN = """(body, name) => {
 }"""
 
 
-def test_switches_change_equation_slots_and_cost(visit: Visit) -> None:
-    page = visit()
+@pytest.fixture(scope="module")
+def measured(shared: Visit) -> Page:
+    """A page with the costs of account and dashpot, and what the row of the account has said."""
+    page = shared()
     page.locator("[role=tabpanel]").evaluate(ROWS_SEEN, "account")
     tab = panel(page)
-    expect(effect(tab, "account").locator(".cost").first).to_contain_text("ns", timeout=COMPILED)
-    first = page.evaluate("rowsSeen")[0]  # a cost is not there before it was measured
+    for name in ("account", "dashpot"):
+        expect(effect(tab, name).locator(".cost").first).to_contain_text("ns", timeout=COMPILED)
+    return page
+
+
+@pytest.fixture
+def page(measured: Page, request: pytest.FixtureRequest, log: Path) -> Page:
+    """That page, for one more test."""
+    watch(request.node, measured, log)
+    return measured
+
+
+def test_a_cost_is_not_there_before_it_was_measured(page: Page) -> None:
+    first = page.evaluate("rowsSeen")[0]
     assert not re.search(r"\d ns", first) and re.search("not measured yet|measuring|compiling", first), first
+
+
+def test_an_effect_that_is_switched_off_leaves_equation_slot_and_code(page: Page) -> None:
+    tab = page.locator("#tabs")
     expect(page.locator("#equation")).to_contain_text("D")
     expect(effect(tab, "dashpot")).to_contain_text("LinearDashpot")
-    expect(effect(tab, "dashpot").locator(".cost").nth(1)).to_contain_text("ns", timeout=COMPILED)
     page.get_by_role("switch", name="contact damping").click()
     expect(effect(tab, "dashpot")).to_contain_text("no code")
     expect(page.locator("#equation")).not_to_contain_text("D")
     expect(effect(tab, "tension")).to_contain_text("no contact can pull")
     expect(page.get_by_role("switch", name="tension cut")).to_be_disabled()
-    expect(effect(tab, "dashpot").locator(".cost").nth(1)).to_contain_text("%", timeout=COMPILED)
+    expect(effect(tab, "dashpot").locator(".cost").nth(1)).to_contain_text("%", timeout=COMPILED)  # its cost in another motion
     page.get_by_role("switch", name="contact damping").click()
     expect(effect(tab, "dashpot")).to_contain_text("LinearDashpot")
     expect(page.locator("#equation")).to_contain_text("D")
-    # the foundation comes with its knob
+
+
+def test_the_foundation_comes_with_its_knob(page: Page) -> None:
+    tab = page.locator("#tabs")
     page.get_by_role("switch", name="foundation").click()
     expect(effect(tab, "foundation")).to_contain_text("Foundation")
     expect(field(page, "kappa")).to_have_value("0.001")
     page.get_by_role("switch", name="foundation").click()
     expect(field(page, "k")).to_have_value("0")
-    # the energy account is told in the status line
+
+
+def test_the_energy_account_is_told_in_the_status_line(page: Page) -> None:
+    tab = page.locator("#tabs")
     expect(activity(tab, "energy account")).to_contain_text("switched off")
     page.get_by_role("switch", name="energy account").click()
     expect(effect(tab, "account")).to_contain_text("EnergyAccount")
     expect(page.locator("#foot")).to_contain_text("energy residual ", timeout=COMPILED)
     expect(activity(tab, "energy account")).to_contain_text("closes to")
+    page.get_by_role("switch", name="energy account").click()
+    expect(activity(tab, "energy account")).to_contain_text("switched off")
 
 
 @pytest.mark.long

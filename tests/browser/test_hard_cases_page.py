@@ -15,7 +15,7 @@ QUICK = "solitary wave, Hertz collision, cradle, a bead on a chain"
 LONG = "near a bifurcation"
 #: The lines and titles of the picture that is drawn, as the browser has them.
 DRAWN = """() => {
-  const figure = Bokeh.documents.map((one) => one.roots()[0]).find((root) => root.name === "check");
+  const figure = figures.documentOf("check")?.roots()[0];
   if (!figure) return null;
   const lines = figure.renderers.filter((one) => one.name);
   return { dashes: lines.map((one) => String(one.glyph.line_dash.value ?? one.glyph.line_dash)),
@@ -47,6 +47,7 @@ def test_a_case_runs_when_asked_and_shows_rows_and_picture(visit: Visit) -> None
     one = card(sheet, QUICK)
     one.get_by_role("button", name="run").click()
     expect(one.locator("tbody tr").first).to_be_visible(timeout=COMPILED)
+    assert [one for one in page.evaluate("sent") if one.startswith("hard-")] == ["hard-run"]
     rows = one.locator("tbody tr")
     expect(rows.first).to_contain_text("Hertz collision, duration")
     assert rows.count() == 9

@@ -16,17 +16,25 @@ def test_a_slider_step_repaints_the_map(at: Visit) -> None:
         page.wait_for_function(f"painted.length > {count} && pixels('map') !== {before}")
 
 
-def test_fine_coarse_typed_back_and_by_a_click_on_the_curve(at: Visit) -> None:
+def test_arrow_keys_turn_a_knob_finely_and_with_shift_coarsely(at: Visit) -> None:
     page = at()
     slider = page.locator('[data-knob="f"] input[type="range"]')
     slider.press("ArrowRight")
     assert float(knob(page, "f")) == pytest.approx(340.1)
     slider.press("Shift+ArrowRight")
     assert float(knob(page, "f")) > 345
+
+
+def test_a_typed_value_is_taken_as_it_is_and_a_double_click_puts_the_knob_back(at: Visit) -> None:
+    page = at()
     type_into(page, "f", "615")
     assert knob(page, "f") == "615"
     page.locator('[data-knob="f"] label').dblclick()
     expect(field(page, "f")).to_have_value("340")
+
+
+def test_a_click_on_the_curve_turns_f(at: Visit) -> None:
+    page = at()
     box = page.locator("#curve").bounding_box()
     assert box is not None
     page.mouse.click(box["x"] + 0.6 * box["width"], box["y"] + 0.5 * box["height"])

@@ -22,7 +22,7 @@ def test_scales_and_the_largest_forces_are_said_where_they_are(at: Visit) -> Non
     scale = page.locator("#scale .segments button")
     expect(scale).to_have_text(["same scale for all f", "fit"])
     expect(page.locator("#scale .colours")).to_have_text("square-root scale 0 100 400 nJ", use_inner_text=True)
-    time = "() => Bokeh.documents[0].get_model_by_name('input force').left[0].axis_label"
+    time = "() => figures.model('input force').left[0].axis_label"
     assert page.evaluate(time) == "time (ms), 4 drive periods"  # an orbit of one period, repeated
     page.get_by_role("button", name="fit", exact=True).click()
     expect(scale).to_have_text(["same scale", "fitted to each picture"])

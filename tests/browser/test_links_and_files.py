@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from knobs import COMPILED, Visit, field, knob, settled, type_into
+from knobs import COMPILED, Visit, addressed, field, knob, settled, type_into
 from playwright.sync_api import Page, expect
 
 
@@ -13,7 +13,7 @@ def test_a_shared_link_brings_the_picture_back(visit: Visit) -> None:
     type_into(page, "f", "615.3")
     type_into(page, "D", "80")
     page.get_by_role("button", name="Link to this picture").click()
-    page.wait_for_function("location.search.includes('f=615.3') && location.search.includes('D=80')")
+    addressed(page, "f=615.3&D=80")
     query = page.evaluate("location.search")
     other = visit(query)
     assert (knob(other, "f"), knob(other, "D")) == ("615.3", "80")
@@ -38,10 +38,9 @@ def test_the_address_follows_the_page_and_a_reload_keeps_everything(visit: Visit
     page.locator("select.start").select_option("previous")
     page.get_by_role("button", name="Theme: ").click()
     page.get_by_role("tab", name="effects").click()
-    page.wait_for_function("location.search.includes('tab=effects') && location.search.includes('look=dark')"
-                           " && location.search.includes('curves=rest.down')")
+    addressed(page, "tab=effects&look=dark&curves=rest.down")
     page.evaluate("granchain.openPage('accuracy')")
-    page.wait_for_function("location.search.includes('page=accuracy')")
+    addressed(page, "page=accuracy")
     page.reload()
     page.wait_for_function("window.painted.length > 0")
     assert page.evaluate("granchain.overlay") == "accuracy"
@@ -55,7 +54,7 @@ def test_the_address_follows_the_page_and_a_reload_keeps_everything(visit: Visit
     expect(page.locator("select.start")).to_have_value("previous")
     assert page.evaluate("document.documentElement.dataset.theme") == "dark"
     # away and back
-    page.wait_for_function("!location.search.includes('page=')")
+    addressed(page, "page=")
     page.goto("about:blank")
     page.go_back()
     page.wait_for_function("window.painted?.length > 0")

@@ -3,8 +3,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+from typing import Any
+
+import pytest
 from bokeh_figures import hover, place, source
-from knobs import COMPILED, Visit, field
+from evidence import watch
+from knobs import COMPILED, Visit, field, type_into
 from playwright.sync_api import Locator, Page, expect
 from server import until
 
@@ -23,13 +28,12 @@ def opened(page: Page) -> Locator:
 
 def visible(page: Page, name: str) -> bool:
     """Whether a model of the figure is to be seen."""
-    return bool(page.evaluate("""(name) => Bokeh.documents.find((one) => one.roots()[0].name === "map")
-      .get_model_by_name(name).visible""", name))
+    return bool(page.evaluate("(name) => figures.documentOf('map').get_model_by_name(name).visible", name))
 
 
 def left_edge(page: Page) -> float:
     """Where the figure's x axis begins."""
-    return float(page.evaluate("""() => Bokeh.documents.find((one) => one.roots()[0].name === "map").roots()[0].x_range.start"""))
+    return float(page.evaluate("figures.view('map', true).model.x_range.start"))
 
 
 def overflow(page: Page) -> int:
@@ -37,42 +41,80 @@ def overflow(page: Page) -> int:
     return int(page.locator("#tabs .body").evaluate("body => body.scrollWidth - body.clientWidth"))
 
 
-def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
-    page = visit(SMALL)
-    picture = opened(page)
-    expect(page.locator("#curve")).to_be_hidden()  # the map has its place
+@pytest.fixture(scope="module")
+def filled(shared: Visit) -> Page:
+    """A page with the whole map of a short chain."""
+    page = shared(SMALL)
+    opened(page)
     expect(page.locator('#tabs .maphost[data-done="1"]')).to_be_visible(timeout=COMPILED)  # complete
+    return page
+
+
+@pytest.fixture
+def page(filled: Page, request: pytest.FixtureRequest, log: Path) -> Page:
+    """That page, for one more test."""
+    watch(request.node, filled, log)
+    return filled
+
+
+def cell(page: Page) -> dict[str, Any]:
+    """A cell of the finest size in the middle of the map."""
+    cells = source(page, "map", "cells")
+    row = max(range(len(cells["x"])), key=lambda i: (1900 < cells["x"][i] < 2300) * (cells["spacing"][i] == 1) * cells["y"][i] * (cells["y"][i] < 5))
+    return {name: cells[name][row] for name in ("x", "y", "tooltip")}
+
+
+def test_the_map_has_the_place_of_the_curve_and_every_cell_once(page: Page) -> None:
+    expect(page.locator("#curve")).to_be_hidden()
     cells = source(page, "map", "cells")
     assert len(set(cells["number"])) == len(cells["number"]) == 60 * 40
+
+
+def test_it_shows_force_or_regime(page: Page) -> None:
+    cells = source(page, "map", "cells")
+    assert "period 1" in cells["regime"] and len(set(cells["regime"])) > 2
     assert visible(page, "force") and not visible(page, "regime")
     page.get_by_role("button", name="regime", exact=True).click()
     assert visible(page, "regimes") and not visible(page, "bar")
-    assert "period 1" in cells["regime"] and len(set(cells["regime"])) > 2
-    # a picture is moved and enlarged in the browser alone: the server would refuse a message about it (`address`)
-    edges, middle = [left_edge(page)], place(page, "map", 1800.0, 3.0)
+    page.get_by_role("button", name="largest force").click()
+    assert visible(page, "force") and not visible(page, "regimes")
+
+
+def test_it_is_moved_in_the_browser_alone(page: Page) -> None:
+    """The server would refuse a message about it (`address` in conftest.py)."""
+    edge, middle = left_edge(page), place(page, "map", 1800.0, 3.0)
     page.mouse.move(*middle)
     page.mouse.down()
     page.mouse.move(middle[0] - 60, middle[1], steps=3)
     page.mouse.up()
-    until(page, lambda: left_edge(page) > edges[0])
+    until(page, lambda: left_edge(page) > edge)
     page.mouse.down()
     page.mouse.move(*middle, steps=3)
     page.mouse.up()
-    until(page, lambda: abs(left_edge(page) - edges[0]) < 1e-6 * edges[0])
+    until(page, lambda: abs(left_edge(page) - edge) < 1e-6 * edge)
 
-    row = max(range(len(cells["x"])), key=lambda i: (1900 < cells["x"][i] < 2300) * (cells["spacing"][i] == 1) * cells["y"][i] * (cells["y"][i] < 5))
-    at = place(page, "map", cells["x"][row], cells["y"][row])
-    hover(page, lambda: at, cells["tooltip"][row])
+
+def test_a_cell_tells_its_values(page: Page) -> None:
+    one = cell(page)
+    hover(page, lambda: place(page, "map", one["x"], one["y"]), one["tooltip"])
     for words in ("Hz", "m: ", "N"):
-        assert words in cells["tooltip"][row]
+        assert words in one["tooltip"]
+
+
+def test_a_click_sets_f_and_A0(page: Page) -> None:
+    one = cell(page)
     before = field(page, "f").input_value(), field(page, "A0").input_value()
-    page.mouse.click(*at)
+    page.mouse.click(*place(page, "map", one["x"], one["y"]))
     expect(field(page, "f")).not_to_have_value(before[0])
     expect(field(page, "A0")).not_to_have_value(before[1])
-    assert abs(float(field(page, "f").input_value()) - cells["x"][row]) < 1.0
-    until(page, lambda: abs(source(page, "map", "now")["x"][0] - cells["x"][row]) < 1e-3)
+    assert abs(float(field(page, "f").input_value()) - one["x"]) < 1.0
+    until(page, lambda: abs(source(page, "map", "now")["x"][0] - one["x"]) < 1e-3)
+    for name, value in zip(("f", "A0"), before, strict=True):
+        type_into(page, name, value)
 
-    tip = page.locator("#tabs .readout")
+
+def test_keys_go_from_cell_to_cell_and_set_one(page: Page) -> None:
+    picture, tip = page.locator("#tabs .maphost"), page.locator("#tabs .readout")
     picture.focus()
     picture.press("ArrowRight")
     first = tip.inner_text()
@@ -84,14 +126,16 @@ def test_the_diagram_fills_tells_and_is_clicked(visit: Visit) -> None:
     picture.press("Enter")
     expect(field(page, "f")).not_to_have_value(was)
     assert abs(float(field(page, "f").input_value()) - chosen) < 1.0
+    type_into(page, "f", was)
 
-    picture.evaluate("""(host) => {
+
+def test_the_map_of_another_chain_is_grey_until_its_own_is_there(page: Page) -> None:
+    page.locator("#tabs .maphost").evaluate("""(host) => {
       window.wasStale = false;
       const look = () => { window.wasStale ||= host.classList.contains("stale"); };
       new MutationObserver(look).observe(host, { attributes: true, attributeFilter: ["class"] });
     }""")
-    field(page, "D").fill("60")  # another chain has another diagram
-    field(page, "D").press("Enter")
+    type_into(page, "D", "60")
     page.wait_for_function("window.wasStale")  # the new one may be there before anybody looks again
     expect(page.locator("#tabs .maphost.stale")).to_have_count(0)
 

@@ -27,8 +27,8 @@ PUSH = """(canvas) => {
 
 def drawn(source: str, points: int) -> str:
     """Whether a line of the figure on the page has so many points or more."""
-    return f"""Bokeh.documents.some((one) => one.roots()[0].name === "observer"
-        && one.get_model_by_name("{source}")?.data.period.length >= {points})"""
+    return f"""figures.view("observer", true)?.model.document
+        ?.get_model_by_name("{source}")?.data.period.length >= {points}"""
 
 
 def opened(page: Page) -> Locator:

@@ -22,7 +22,7 @@ WIDTHS = ((1280, 800), (1920, 1080), (390, 844))
 # The title of every horizontal axis beside the map: its words, and how far its box is inside its picture on both sides.
 TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap(([id, name]) => {
   const host = document.getElementById(id).getBoundingClientRect();
-  const view = Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name(name));
+  const view = figures.viewOf(figures.model(name));
   const pen = document.createElement("canvas").getContext("2d");
   const size = getComputedStyle(document.documentElement).getPropertyValue("--small");
   pen.font = `bold ${size} helvetica`;
@@ -36,7 +36,7 @@ TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap((
 
 # Pixels between the numbers of two neighbouring beads above the map, less the width of the wider one.
 BEADS = """() => {
-  const map = Bokeh.index.find_one(Bokeh.documents[0].get_model_by_name("kinetic energy"));
+  const map = figures.viewOf(figures.model("kinetic energy"));
   const pen = document.createElement("canvas").getContext("2d");
   pen.font = `${getComputedStyle(document.documentElement).getPropertyValue("--small")} helvetica`;
   const { x_scale } = map.frame, { interval } = map.model.above[0].ticker;

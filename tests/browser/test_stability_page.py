@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bokeh_figures import hover, place, source, tooltips
-from knobs import COMPILED, Visit, settled, type_into
+from knobs import COMPILED, Visit, looks, settled, type_into
 from playwright.sync_api import Locator, Page, expect
 from server import resize, until
 
@@ -17,11 +17,6 @@ def opened(page: Page, words: str = "Stable") -> Locator:
     return sheet
 
 
-def looks(page: Page, name: str = "stability") -> list[str]:
-    """What the page has told the server: that somebody looks at the tab or the page, "true", or nobody does."""
-    return [one.split()[2] for one in page.evaluate("sent") if one.startswith(f"visible {name} ")]
-
-
 def marks(page: Page, name: str, large: bool = True) -> int:
     """How many marks a set of the plane has."""
     return len(source(page, "multipliers", name, large).get("x", []))
@@ -29,8 +24,7 @@ def marks(page: Page, name: str, large: bool = True) -> int:
 
 def axis_title(page: Page, axis: str) -> str:
     """The title of an axis of the section."""
-    return str(page.evaluate(f"""Bokeh.documents.find((one) => one.roots()[0].name === "section")
-        .get_model_by_name("{axis}").axis_label"""))
+    return str(page.evaluate(f'figures.documentOf("section").get_model_by_name("{axis}").axis_label'))
 
 
 def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) -> None:
@@ -38,48 +32,22 @@ def test_the_tab_tells_and_what_nobody_looks_at_is_not_computed(visit: Visit) ->
     tab = page.locator("#tabs")
     settled(page)
     # the server computes for whoever looks (tests/pages/test_stability.py), and nobody has said that they do
-    assert looks(page) == []
+    assert looks(page, "stability") == []
     assert page.evaluate("granchain.pages.get('stability').state.sentence") is None
     page.get_by_role("tab", name="stability").click()
-    assert looks(page) == ["true"]
+    assert looks(page, "stability") == ["true"]
     expect(tab).to_contain_text("Stable: a disturbance shrinks to 0.36", timeout=COMPILED)
     until(page, lambda: marks(page, "within", large=False) == 22)
     type_into(page, "f", "1130")
     expect(tab).to_contain_text("3 drive periods, 2.65 ms")
     page.get_by_role("tab", name="regimes").click()
-    assert looks(page) == ["true", "false"]
+    assert looks(page, "stability") == ["true", "false"]
     type_into(page, "f", "615")
     settled(page)
-    assert looks(page) == ["true", "false"]
+    assert looks(page, "stability") == ["true", "false"]
     assert "3 drive periods" in page.evaluate("granchain.pages.get('stability').state.sentence")
     page.get_by_role("tab", name="stability").click()
     expect(tab).to_contain_text("2 drive periods")
-
-
-def test_what_a_hidden_window_stops(visit: Visit) -> None:
-    """An analysis rests; a map goes on, and the curve does as long as neither the map nor a page has its place."""
-    page = visit()
-    hide = """(hidden) => {
-      Object.defineProperty(document, "hidden", { configurable: true, get: () => hidden });
-      document.dispatchEvent(new Event("visibilitychange"));
-    }"""
-    page.get_by_role("tab", name="stability").click()
-    page.evaluate(hide, True)
-    page.evaluate(hide, False)
-    until(page, lambda: looks(page) == ["true", "false", "true"])
-    page.get_by_role("tab", name="map").click()
-    # the page says so when it has laid itself out again
-    until(page, lambda: (looks(page, "map"), looks(page, "curve")) == (["true"], ["false"]))
-    page.evaluate(hide, True)
-    page.evaluate(hide, False)
-    page.get_by_role("tab", name="stability").click()
-    until(page, lambda: looks(page) == ["true", "false", "true", "false", "true"])
-    until(page, lambda: (looks(page, "map"), looks(page, "curve")) == (["true", "false"], ["false", "true"]))
-    page.get_by_role("button", name="open the page").click()
-    until(page, lambda: looks(page, "curve") == ["false", "true", "false"])
-    page.keyboard.press("Escape")
-    until(page, lambda: looks(page, "curve") == ["false", "true", "false", "true"])
-    assert looks(page) == ["true", "false", "true", "false", "true"]  # from its tab to the page and back
 
 
 def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Visit) -> None:
@@ -180,31 +148,3 @@ def test_chaos_has_a_cloud_and_an_unstable_orbit_that_it_does_not_follow(at: Vis
     sheet.get_by_role("button", name="back to the settled motion").click()
     expect(sheet.locator(".say")).to_contain_text("No multipliers")
     expect(sheet.locator(".searched")).to_be_hidden()
-
-
-def test_all_tabs_fit_and_arrows_reach_them(at: Visit) -> None:
-    page = at(viewport={"width": 390, "height": 844})
-    for width in (390, 1280):
-        page.set_viewport_size({"width": width, "height": 844})
-        page.evaluate("shown()")
-        tabs_fit(page, width)
-        page.get_by_role("tab", name="look at").focus()
-        page.keyboard.press("ArrowRight")
-        expect(page.get_by_role("tab", name="regimes")).to_be_focused()
-        page.keyboard.press("End")
-        expect(page.get_by_role("tab").last).to_have_attribute("aria-selected", "true")
-        page.keyboard.press("Home")
-        expect(page.get_by_role("tab", name="stories")).to_be_focused()
-
-
-def tabs_fit(page: Page, width: int) -> None:
-    """No tab leaves its place, and their rows are not too many."""
-    tabs = page.locator("#tabs [role=tablist]")
-    edge = page.locator("#tabs").bounding_box()
-    assert edge is not None
-    for button in tabs.locator("button").all():
-        box = button.bounding_box()
-        assert box is not None and edge["x"] <= box["x"] and box["x"] + box["width"] <= edge["x"] + edge["width"]
-    box = tabs.bounding_box()
-    # a row for each group, or one more; on a phone a row is as high as a finger is wide
-    assert box is not None and box["height"] < (105 if width == 1280 else 5 * 46)

@@ -5,21 +5,22 @@ from __future__ import annotations
 from pathlib import Path
 
 import h5py
-from knobs import COMPILED, Visit, field, settled, type_into
+from knobs import COMPILED, Visit, addressed, field, settled, type_into
 from layout_faults import faults
 from PIL import Image
 from playwright.sync_api import Page, expect
 from server import until
 
 # Points of the lines of pins in a figure, which lie behind all others.
-PINNED = """(name) => Bokeh.documents.map((one) => one.get_model_by_name(name)).find(Boolean).renderers
+PINNED = """(name) => figures.model(name).renderers
   .filter((one) => one.level === "underlay")
   .map((one) => (one.data_source.data.force ?? []).length)"""
 
 
-def step(page: Page, holds: str) -> None:
+def step(page: Page, fields: str) -> None:
     """Wait until the address has followed, as a step of the history."""
-    page.wait_for_function(f"location.search.includes('{holds}') && !granchain.steps.returning")
+    addressed(page, fields)
+    page.wait_for_function("!granchain.steps.returning")
 
 
 def test_undo_and_redo_go_through_everything_a_visitor_does(visit: Visit) -> None:
@@ -37,14 +38,14 @@ def test_undo_and_redo_go_through_everything_a_visitor_does(visit: Visit) -> Non
     page.locator("select.scene").select_option("rig")
     step(page, "scene=rig")
     expect(redo).to_be_disabled()
-    for key, gone in (("Control+z", "scene=rig"), ("Control+z", "look=dark"), ("Control+z", "tab=effects")):
-        page.keyboard.press(key)
-        page.wait_for_function(f"!location.search.includes('{gone}') && !granchain.steps.returning")
+    for fields in ("scene=sec2&look=dark", "look=&tab=effects", "tab=&scale=fit"):
+        page.keyboard.press("Control+z")
+        step(page, fields)
     expect(field(page, "f")).to_have_value("615.3")
     assert page.evaluate("document.documentElement.dataset.theme") == "light"
     expect(page.get_by_role("tab", name="stories")).to_have_attribute("aria-selected", "true")
     undo.click()
-    page.wait_for_function("!location.search.includes('scale')")
+    addressed(page, "scale=&f=615.3")
     expect(page.locator("#stage")).to_have_attribute("data-scale", "same")
     page.go_back()
     expect(field(page, "f")).to_have_value("340")
@@ -68,7 +69,7 @@ def test_a_step_back_brings_the_motion_and_not_only_the_knobs(visit: Visit) -> N
     settled(page)
     type_into(page, "f", "880")
     expect(page.locator("#foot b")).to_contain_text("period 1,")
-    step(page, "from=")
+    step(page, "from=*")
     type_into(page, "f", "400")
     step(page, "f=400")
     page.keyboard.press("Control+z")
@@ -95,7 +96,7 @@ def test_a_pin_stays_while_knobs_move_and_comes_back_with_the_link(visit: Visit)
         until(page, lambda figure=figure: max(page.evaluate(PINNED, figure)) > 50)  # type: ignore[misc]
     expect(page.locator("#pinned")).to_be_visible()
     until(page, lambda: faults(page) == [])
-    step(page, "pin=")
+    step(page, "pin=*")
     other = visit(page.evaluate("location.search"))
     expect(other.locator("#tabs .compared")).to_contain_text("628.504 mN")
     until(other, lambda: max(other.evaluate(PINNED, "resonance curve")) > 50, 60.0)

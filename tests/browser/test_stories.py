@@ -17,7 +17,7 @@ LAPTOP, PHONE = ViewportSize(width=1280, height=800), ViewportSize(width=390, he
 
 # Newtons of the largest output force that is drawn at the wall.
 FORCE = """() => {
-  const figure = Bokeh.documents.map((one) => one.get_model_by_name("output force")).find(Boolean);
+  const figure = figures.model("output force");
   const [, letter] = figure.below[0].axis_label.match(/\\((.*)N\\)/), line = figure.renderers.at(-1);
   return Math.max(...line.data_source.data.force) * { "": 1, m: 1e-3, "µ": 1e-6 }[letter];
 }"""

@@ -7,8 +7,7 @@ from knobs import Visit
 from playwright.sync_api import expect
 
 # Whether a mark of a picture that the server draws has this colour.
-INK = """(ink) => Bokeh.documents.some((one) => [...(one.all_models ?? one._all_models.values())].some(
-  ({ line_color }) => (line_color?.value ?? line_color) === ink))"""
+INK = """(ink) => figures.models().some(({ line_color }) => (line_color?.value ?? line_color) === ink)"""
 
 
 @pytest.mark.parametrize(("theme", "ink"), [("dark", "#eef1f6"), ("projector", "#000000")])

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import re
-
 from knobs import Visit, settled, type_into
 from playwright.sync_api import expect
-from server import ROOT, at_rest
+from server import at_rest
 
 from app.parts.figures.figure_style import BOTTOM, GAP, TOP
 
@@ -73,7 +71,7 @@ def test_a_bead_glows_as_its_column_and_one_at_rest_is_steel(visit: Visit) -> No
     # half a millisecond into the picture the pulse is in the middle of the chain
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + TOP + (box["height"] - TOP - BOTTOM) * 0.095)
     page.evaluate("shown()")
-    beads, columns = page.evaluate(COLOURS, [GAP, *places_of_the_chain()])
+    beads, columns = page.evaluate(COLOURS, GAP)
     hot = max(range(11), key=lambda i: sum(columns[i]))
     cold = min(range(11), key=lambda i: sum(columns[i]))
     assert sum(columns[hot]) > 200 > 60 > sum(columns[cold])
@@ -81,17 +79,9 @@ def test_a_bead_glows_as_its_column_and_one_at_rest_is_steel(visit: Visit) -> No
     assert max(beads[cold]) - min(beads[cold]) < 40
 
 
-def places_of_the_chain() -> list[float]:
-    """The room for the driver and for the wall [px], and the height of the beads' middle as a part of the chain's."""
-    parts = ROOT / "app" / "parts" / "chain"
-    text = (parts / "chain.js").read_text(encoding="utf-8") + (parts / "chain_drawing.js").read_text(encoding="utf-8")
-    return [float(re.findall(pattern, text)[0]) for pattern in
-            (r"\bDRIVER = (\d+)", r"\bWALL = (\d+)", r"return ([\d.]+) \* this\.height")]
-
-
 # The colour in the lower half (0.3 of a pitch below the middle) of every bead and of its column of the map, at the
 # time of the cursor.
-COLOURS = """([gap, driver, wall, middle]) => {
+COLOURS = """(gap) => {
   const pixel = (id, x, y) => {
     const canvas = canvasIn(id), box = canvas.getBoundingClientRect();
     const { data } = canvas.getContext("2d").getImageData(Math.round(x - box.x), Math.round(y - box.y), 1, 1);
@@ -100,10 +90,11 @@ COLOURS = """([gap, driver, wall, middle]) => {
   const map = document.getElementById("map").getBoundingClientRect();
   const chain = document.getElementById("chain").getBoundingClientRect();
   const line = document.getElementById("cursor").getBoundingClientRect();
-  const pitch = (map.width - 2 * gap) / 11, long = (chain.width - driver - wall) / 11, beads = [], columns = [];
+  const pitch = (map.width - 2 * gap) / 11, beads = [], columns = [];
   for (let i = 0; i < 11; i++) {
     const x = map.x + gap + (i + 0.5) * pitch;
-    beads.push(pixel("chain", chain.x + driver + (i + 0.5) * long, chain.y + middle * chain.height + 0.3 * long));
+    const [at, middle] = granchain.chain.placeOf(i + 1), long = granchain.chain.placeOf(i + 2)[0] - at;
+    beads.push(pixel("chain", chain.x + at, chain.y + middle + 0.3 * long));
     columns.push(pixel("map", x, line.y + line.height / 2));
   }
   return [beads, columns];

@@ -24,7 +24,7 @@ def test_the_peaks_of_section_2_and_what_lies_between(curve: list[CurvePoint]) -
     """The paper has 1:1 to 1:5; the 1:5 peak is narrower than this grid's step, so what is asked for is the others."""
     shown: list[list[dict]] = []
     host = FakeHost()
-    names = PeakNames(host, shown.append)  # type: ignore[arg-type]
+    names = PeakNames(host, shown.append)
     names.name(curve, SEC2)
     host.run_callbacks_until(lambda: bool(shown), 60.0)
     found = {one["name"]: one["f"] for one in shown[0] if one["kind"] == "peak"}
@@ -72,7 +72,7 @@ def test_what_one_visitor_has_named_is_not_computed_for_the_next(curve: list[Cur
     for _ in range(2):
         shown: list[list[dict]] = []
         host = FakeHost()
-        names = PeakNames(host, shown.append)  # type: ignore[arg-type]
+        names = PeakNames(host, shown.append)
         names.name(curve, scene_of_its_own)
         host.run_callbacks_until(lambda shown=shown: bool(shown), 60.0)
         assert [one["kind"] for one in shown[0]] == ["band"]  # nothing else has a name here

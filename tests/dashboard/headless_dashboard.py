@@ -3,28 +3,44 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from bokeh.document import Document
-from host import FakeHost
+from host import Pending
 
+from app.dashboard.calls import Calls
 from app.dashboard.controller import Controller
 from app.session.session import Session
 
 
-class Dashboard(FakeHost, Controller):
+class WaitingCalls(Calls):
+    """Calls of the next turn of an event loop, which wait until the test says so."""
+
+    def __init__(self, document: Document, failed: Callable[[Exception], None]) -> None:
+        super().__init__(document, failed)
+        self.pending = Pending()
+
+    def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
+        """From any thread."""
+        self.pending.callbacks.append(partial(self.guarded, action, *arguments))
+
+
+class Dashboard(Controller):
     """A dashboard whose callbacks are called when the test says so, and whose messages to the browser are kept."""
 
-    busy, awaiting_picture, curve_computing = Controller.busy, Controller.awaiting_picture, Controller.curve_computing
-    call_later, failed, complete_curve = Controller.call_later, Controller.failed, Controller.complete_curve
-    on_close, report_fault = Controller.on_close, Controller.report_fault
+    _calls: WaitingCalls
 
     def __init__(self) -> None:
-        FakeHost.__init__(self)
+        super().__init__(Document(), Session(), make_calls=WaitingCalls)
         self.told: list[dict[str, Any]] = []
-        Controller.__init__(self, Document(), Session())
         self.views.header.send = lambda **message: self.told.append(message)  # type: ignore[method-assign]
 
-    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
-        """From any thread."""
-        self.callbacks.append(lambda: self._calls.guarded(action, *arguments))
+    @property
+    def callbacks(self) -> list[Callable[[], None]]:
+        """What waits to be called."""
+        return self._calls.pending.callbacks
+
+    def run_callbacks_until(self, until: Callable[[], bool], seconds: float = 20.0) -> None:
+        """Call what waits until something holds."""
+        self._calls.pending.run_callbacks_until(until, seconds)

@@ -132,6 +132,39 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
         assert (state["origin"], state["start"]) == (picture.start, "rest")
 
 
+def test_the_pages_hear_of_a_picture_when_it_was_sent(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a page draws of it takes milliseconds, which would come before every picture."""
+    told: list[str] = []
+    monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: told.append(message["type"]))
+    monkeypatch.setattr(dashboard.pages[0], "picture_ready", lambda picture: told.append("page"))
+    dashboard.session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    found = settle(chain, samples=8)
+    dashboard.pictures._accept(found)
+    assert told == ["frames"]
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert told == ["frames", "page"]
+
+
+def test_the_pages_do_not_hear_of_a_picture_of_knobs_that_have_moved_on(dashboard: Dashboard,
+                                                                        monkeypatch: pytest.MonkeyPatch) -> None:
+    """They know already that it is out of date, and would take it for the new one."""
+    told: list[Any] = []
+    page = dashboard.pages[0]
+    monkeypatch.setattr(dashboard.pictures, "compute", lambda start=None: None)
+    monkeypatch.setattr(page, "picture_requested", lambda: told.append("requested"))
+    monkeypatch.setattr(page, "picture_ready", told.append)
+    dashboard.session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    preview, final = (replace(settle(chain, samples=8), final=final) for final in (False, True))
+    dashboard.pictures._accept(preview)
+    dashboard.received({"do": "set", "name": "f", "value": 2001.0})
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert told == ["requested"]
+    for found in (preview, final):
+        dashboard.pictures._accept(found)
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert told == ["requested", final], "a preview that is overtaken is left out"
+
+
 def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever changes on the page between the request and the thread that takes it."""
     asked, changed = threading.Event(), threading.Event()

@@ -24,7 +24,7 @@ def listed(title: str) -> dict[str, list[str]]:
 LISTED = listed("owner")
 READ = {script.strip("`"): messages for script, messages in listed("read by").items()}
 #: In the scripts: `do: "name"`, or an argument of a function that sends it.
-SENT = re.compile(r'\bdo: "([\w-]+)"|\b(?:send|request)\("([\w-]+)"|\b(?:control|act)\("[^"]+", "([\w-]+)"')
+SENT = re.compile(r'\bdo:\s*"([\w-]+)"|\b(?:send|request)\(\s*"([\w-]+)"|\b(?:control|act)\(\s*"[^"]+",\s*"([\w-]+)"')
 
 
 def test_the_table_of_messages_is_the_one_that_is_understood() -> None:
@@ -41,7 +41,7 @@ def test_every_message_of_a_script_is_understood() -> None:
 
 
 #: In the scripts: a comparison of the message's type with a name.
-READS = re.compile(r'(?:\bmessage\.|(?<![.\w]))type [!=]== "([\w-]+)"')
+READS = re.compile(r'(?:\bmessage\.|(?<![.\w]))type [!=]==\s+"([\w-]+)"')
 #: In Python: `send(type="name")`, and the type of a message that a function makes for `send`.
 SENDS = re.compile(r'send\b[(,]\s*type="([\w-]+)"|"type": "([\w-]+)"')
 

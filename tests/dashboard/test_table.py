@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +20,14 @@ def test_a_name_that_is_taken_is_refused(row: TabSpec) -> None:
 def test_every_folder_of_a_page_has_its_row() -> None:
     folders = {path.parent.name for path in (Path(__file__).parents[2] / "app" / "pages").glob("*/__init__.py")}
     assert folders == {row.page.__module__.split(".")[2] for row in PAGES}
+
+
+def test_every_tab_without_a_page_over_the_pictures_is_drawn_by_the_browser_itself() -> None:
+    """Such a tab has nothing to open, and without a function of its own it would have one sentence at most."""
+    script = (Path(__file__).parents[2] / "app" / "dashboard" / "tabs.js").read_text(encoding="utf-8")
+    listed = script.partition("const TABS = {")[2].partition("};")[0]
+    drawn = {name.strip('"') for name in re.findall(r'("[^"]+"|\w+):', listed)}
+    assert {row.name for row in TABS if not getattr(row, "view", None)} <= drawn <= {row.name for row in TABS}
 
 
 def test_the_browser_calls_the_curve_as_the_server_does() -> None:

@@ -52,7 +52,7 @@ def test_no_style_uses_a_role_that_no_theme_has(path: Path) -> None:
 def names_in(script: str, constant: str) -> tuple[str, ...]:
     """The names that a script has as this constant."""
     (names,) = re.findall(rf"const {constant} = \[([^\]]+)\]", (SCRIPTS / script).read_text(encoding="utf-8"))
-    return tuple(name.strip('" ') for name in names.split(","))
+    return tuple(re.findall(r'"([^"]+)"', names))
 
 
 def test_a_theme_is_known_everywhere() -> None:

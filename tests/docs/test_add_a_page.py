@@ -18,7 +18,8 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A copy of the repository with the page's edits made, and the tests of its architecture."""
     copy = tmp_path_factory.mktemp("page") / "tree"
     for part in ("docs", "granchain", "granchain_start", "tests/architecture", "tests/browser",
-                 "tests/dashboard/test_messages.py", "tests/dashboard/test_table.py", "tests/host.py", "tests/waiting.py"):
+                 "tests/dashboard/test_messages.py", "tests/dashboard/test_table.py", "tests/host.py", "tests/waiting.py",
+                 *(f"tests/pages/{name}.py" for name in ("conftest", "page_host", "test_every_page"))):
         copied(part, copy)
     return edited_copy(PAGE, copy)
 
@@ -109,6 +110,13 @@ def test_the_new_page_fits_into_the_dashboard(tree: Path) -> None:
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "architecture")),
                      str(Path("tests", "dashboard")), "-k", "transmission or table or map or circle or message")
     assert " passed" in printed and "deselected" in printed
+
+
+def test_the_new_page_keeps_to_what_every_page_does(tree: Path) -> None:
+    """Without a browser; the table of pages has it, and nothing is written for it."""
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "pages", "test_every_page.py")),
+                     "-k", "transmission", own_kernels=False)
+    assert "11 passed" in printed
 
 
 @pytest.mark.long

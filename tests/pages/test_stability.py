@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from host import FakeHost
+from page_host import PageHost
 
 from app.pages.stability import page as module
 from app.pages.stability import work
@@ -25,6 +25,7 @@ from app.pages.stability.view import (
     verdict,
 )
 from app.pages.stability.work import OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
+from app.session.session import Session
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
 from granchain_core.regime import Regime, exponent_words, modulus_words
 from granchain_core.stop import Stop
@@ -158,14 +159,14 @@ def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
         analyse(OrbitTarget(shown.run.scene, 1, far, True), False, 0, Stop())
 
 
-class Page(FakeHost):
+class Page(PageHost):
     """The host of the page, with what the page shows and sends."""
 
     def __init__(self, mode: str = "settled") -> None:
         super().__init__()
-        self.session = SimpleNamespace(mode=mode, started_from=None, scene=scene("sec2"))
+        self.session = Session(scene=scene("sec2"), mode=mode)
         self.told: list[dict[str, Any]] = []
-        view = SimpleNamespace(
+        view: Any = SimpleNamespace(
             state={}, update_state=lambda **changes: view.state.update(changes),
             send=lambda **message: self.told.append(message),
             need_figures=lambda: None, section=lambda shown: self.told.append(section_message(shown)))
@@ -194,14 +195,14 @@ def page() -> Page:
 
 def opened(page: Page) -> StabilityPage:
     """The view, on the screen."""
-    view = StabilityPage(page, page.view)  # type: ignore[arg-type]
+    view = StabilityPage(page, page.view)
     view.visibility_changed(True)
     return view
 
 
 def test_nothing_is_computed_while_nobody_looks(page: Page, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "analyse", lambda *_: pytest.fail("computed"))
-    view = StabilityPage(page, page.view)  # type: ignore[arg-type]
+    view = StabilityPage(page, page.view)
     view.picture_ready(picture())
     page.work(lambda: not page.callbacks)
     assert view.activity[1] == "off" and "plane" not in page.state

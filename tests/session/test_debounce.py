@@ -9,7 +9,7 @@ from app.session.debounce import Debounce
 
 def test_only_the_last_start_is_called() -> None:
     host, called = FakeHost(), list[str]()
-    quiet = Debounce(host, 0.35)  # type: ignore[arg-type]
+    quiet = Debounce(host, 0.35)
     assert not quiet.pending
     quiet.start(called.append, "first")
     quiet.start(called.append, "second")
@@ -20,7 +20,7 @@ def test_only_the_last_start_is_called() -> None:
 
 def test_nothing_is_called_after_a_cancel_and_a_new_start_counts() -> None:
     host, called = FakeHost(), list[str]()
-    quiet = Debounce(host, 0.35)  # type: ignore[arg-type]
+    quiet = Debounce(host, 0.35)
     quiet.start(called.append, "cancelled")
     quiet.cancel()
     assert not quiet.pending
@@ -33,7 +33,7 @@ def test_nothing_is_called_after_a_cancel_and_a_new_start_counts() -> None:
 
 def test_an_action_may_start_it_again() -> None:
     host, called = FakeHost(), list[int]()
-    quiet = Debounce(host, 0.35)  # type: ignore[arg-type]
+    quiet = Debounce(host, 0.35)
 
     def again(left: int) -> None:
         called.append(left)

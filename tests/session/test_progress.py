@@ -31,8 +31,9 @@ def test_who_waits_for_a_compiler_is_told_for_how_long(words: StatusWords) -> No
 
 def test_what_is_over_has_nothing_to_say_unless_it_was_stopped() -> None:
     for status in ("none", "done", "failed"):
-        assert BRANCHES.of(status) == {"status": status, "progress": "", "running": False}
-    assert BRANCHES.of("stopped") == {"status": "stopped", "progress": "stopped; the orbits found so far are kept", "running": False}
+        assert BRANCHES.of(status) == {"status": status, "progress": "", "running": False, "failure": ""}
+    assert BRANCHES.of("stopped") == {"status": "stopped", "progress": "stopped; the orbits found so far are kept", "running": False,
+                                       "failure": ""}
     assert HARD_CASES.of("stopped")["progress"] == "stopped"
 
 
@@ -50,8 +51,8 @@ def test_every_status_is_under_way_or_still() -> None:
 
 def test_every_page_stops_with_the_same_word() -> None:
     scripts = {path: path.read_text(encoding="utf-8") for path in PAGES.rglob("*.js")}
-    stops = re.compile(r'do: "\w+-stop"|send\("\w+-stop"\)')
-    found = {path.name: (len(stops.findall(text)), len(re.findall(r'button\("stop"|button\("✕"', text)))
+    stops = re.compile(r'do:\s*"\w+-stop"|send\(\s*"\w+-stop"\s*\)')
+    found = {path.name: (len(stops.findall(text)), len(re.findall(r'button\(\s*"(?:stop|✕)"', text)))
              for path, text in scripts.items() if stops.search(text)}
     assert len(found) > 2 and all(messages == buttons for messages, buttons in found.values()), found
     assert not [path for path, text in scripts.items() if '"cancel"' in text]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
+from itertools import count
 
 import pytest
 from host import FakeHost
@@ -35,7 +36,7 @@ def host() -> SayingHost:
 @pytest.fixture
 def task(host: SayingHost) -> Task:
     """A task on a queue of its own."""
-    return Task(host, Queue("test", 1), host.say, "The measurement")  # type: ignore[arg-type]
+    return Task(host, Queue("test", 1), host.say, "The measurement")
 
 
 #: What is said of an error of granchain itself.
@@ -88,12 +89,12 @@ def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sen
 
 def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: SayingHost) -> None:
     problem = BadInput("f must be positive.")
-    task = Task(host, Queue("test", 1), host.say, failed=host.failed)  # type: ignore[arg-type]
+    task = Task(host, Queue("test", 1), host.say, tell_host=True)
     task.start(failing(problem))
     host.run_callbacks_until(lambda: not task.running)
     assert host.failures == [problem]
     fault = ZeroDivisionError("1/0")
-    task = Task(host, Queue("test", 1), say_nothing, "The measurement", host.failed)  # type: ignore[arg-type]
+    task = Task(host, Queue("test", 1), say_nothing, "The measurement", tell_host=True)
     task.start(failing(fault))
     host.run_callbacks_until(lambda: bool(host.faults))
     assert host.faults == [(fault, FAULT)] and host.failures == [problem]
@@ -107,7 +108,7 @@ def test_nothing_of_cancelled_work_arrives(host: SayingHost, task: Task) -> None
         entered.set()
         assert leave.wait(20)
         assert job.stop
-        job.say("late")
+        job.say("computing")
 
     task.start(work)
     assert entered.wait(20)
@@ -134,7 +135,7 @@ def test_cancelled_is_no_failure(host: SayingHost, task: Task) -> None:
 def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: SayingHost) -> None:
     queue, leave = Queue("test", 1), threading.Event()
     queue.submit(leave.wait, 20)
-    task = Task(host, queue, host.say)  # type: ignore[arg-type]
+    task = Task(host, queue, host.say)
     task.start(failing(AssertionError("begun")))
     task.cancel()
     leave.set()
@@ -145,31 +146,31 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: SayingHost) -
 
 def test_work_gives_way_to_a_moving_knob(monkeypatch: pytest.MonkeyPatch) -> None:
     """The picture is awaited three times that the work looks for it, then it is there."""
-    looks: list[bool] = []
-    monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: looks.append(True) or len(looks) < 4))
+    looks = count(1)
+    monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: next(looks) < 4))
     host = SayingHost()
-    task = Task(host, Queue("test", 1), host.say)  # type: ignore[arg-type]
+    task = Task(host, Queue("test", 1), host.say)
     task.start(lambda job: job.give_way())
     host.run_callbacks_until(lambda: not task.running)
-    assert len(looks) == 4 and host.said == [("done", "")]
+    assert next(looks) == 5 and host.said == [("done", "")]
 
 
 def test_who_gives_way_for_long_looks_ever_more_rarely(host: SayingHost, monkeypatch: pytest.MonkeyPatch) -> None:
     pauses: list[float] = []
     monkeypatch.setattr("app.session.task.time.sleep", pauses.append)
-    Job(host, host.say).give_way(lambda: len(pauses) < 7)  # type: ignore[arg-type]
+    Job(host, host.say).give_way(lambda: len(pauses) < 7)
     assert pauses == [0.01, 0.02, 0.04, 0.08, 0.16, 0.2, 0.2]
 
 
 def test_progress_is_reported_in_steps_and_gives_way_before_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    looks: list[bool] = []
-    monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: bool(looks.append(True))))
-    host, reported = SayingHost(), []
-    progress = Job(host, host.say).progress(reported.append, steps=4)  # type: ignore[arg-type]
+    looks, reported = count(), list[float]()
+    monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: next(looks) < 0))
+    host = SayingHost()
+    progress = Job(host, host.say).progress(reported.append, steps=4)
     for i in range(11):
         progress(i / 10)
     host.run_callbacks_until(lambda: not host.callbacks)
-    assert reported == [0.3, 0.5, 0.8, 1.0] and len(looks) == 10
+    assert reported == [0.3, 0.5, 0.8, 1.0] and next(looks) == 10
 
 
 def test_compiling_is_said_and_given_up_with_the_job(host: SayingHost, task: Task, monkeypatch: pytest.MonkeyPatch) -> None:

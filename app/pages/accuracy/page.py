@@ -129,7 +129,7 @@ class AccuracyPage(Page):
 
     def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._view.update_state(**WORDS.of(status), failure=sentence, done=self.done)
+        self._view.update_state(**WORDS.of(status, sentence), done=self.done)
 
     def _used(self, now: PlacedSetting | None) -> str:
         """What the page uses, and why the error in the status line is another number."""

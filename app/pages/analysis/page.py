@@ -133,4 +133,4 @@ class AnalysisPage(Page):
     def _say(self, status: Status, sentence: str = "") -> None:
         if status == "waiting":
             self._view.update_state(done=0.0)
-        self._view.update_state(**WORDS.of(status), failure=sentence)
+        self._view.update_state(**WORDS.of(status, sentence))

@@ -19,7 +19,7 @@ from ...session.host import Host
 from ...session.message_checks import listed, whole
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
-from ...session.session import slider_range, without_frequency
+from ...session.scene_facts import slider_range, without_frequency
 from ...session.task import Job, Task
 from .view import LONGEST_BRANCH_PERIOD, Branches
 
@@ -214,6 +214,6 @@ class BranchesPage(Page):
         words = f"{orbits} orbits, {special} special points" if arms else ""
         if status == "following":
             words += "; now at " + " and ".join(f"{arm.points[-1].knob:.1f} Hz" for arm in arms if not arm.ended)
-        self._view.update_state(**WORDS.of(status), failure=sentence, words=words,
+        self._view.update_state(**WORDS.of(status, sentence), words=words,
                                 ended=[arm.reason for arm in arms if arm.ended],
                                 unfinished=any(not arm.ended for arm in arms))

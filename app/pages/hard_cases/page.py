@@ -76,7 +76,7 @@ class HardCasesPage(Page):
             if case.name not in self.waiting:
                 self.waiting.append(case.name)
                 self._asked += 1
-                self._put(case.name, **WORDS.of("waiting"), failure="")
+                self._put(case.name, **WORDS.of("waiting"))
         if idle:
             self._begin_next()
         self._show()
@@ -116,7 +116,7 @@ class HardCasesPage(Page):
         else:
             self._process.close()
             self._process = CaseProcess()
-        self._change(name, **WORDS.of(status), failure=sentence)
+        self._change(name, **WORDS.of(status, sentence))
 
     def _put(self, name: str, **changes: Any) -> None:
         self._shown = {**self._shown, name: {**self._shown.get(name, {}), **changes}}

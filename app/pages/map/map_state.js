@@ -21,7 +21,7 @@ export const MAP = {
 };
 
 // Why a computation failed or, if it did not, how far it is.
-const wordsOf = ({ sentence, progress }) => sentence || progress;
+const wordsOf = ({ failure, progress }) => failure || progress;
 
 export function mapMessage(message) {
   if (message.type === "map-head") {

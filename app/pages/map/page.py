@@ -26,7 +26,7 @@ from ...session.host import Host
 from ...session.message_checks import listed
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
-from ...session.session import slider_range
+from ...session.scene_facts import slider_range
 from ...session.task import Job, Task
 from .view import cells_message, described_attractor, head_message
 
@@ -166,7 +166,7 @@ class MapPage(Page):
 
     def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._send(type="map-status", **WORDS.of(status), sentence=sentence)
+        self._send(type="map-status", **WORDS.of(status, sentence))
 
     def _send_all(self) -> None:
         assert self._grid is not None
@@ -213,7 +213,7 @@ class MapPage(Page):
 
     def _show_attractors(self, status: Status, sentence: str = "") -> None:
         shown = self._shown if self._found else []
-        self._send(type="map-attractors", **SEARCH_WORDS.of(status), sentence=sentence, attractors=shown)
+        self._send(type="map-attractors", **SEARCH_WORDS.of(status, sentence), attractors=shown)
 
     def _forget_attractors(self) -> None:
         self._search.cancel()

@@ -82,7 +82,7 @@ class ObserverPage {
 
   show() {
     const { state } = this.model;
-    this.said.textContent = state.sentence ?? "";
+    this.said.textContent = state.failure || state.sentence || "";
     this.status.textContent = state.progress ?? "";
     this.rates.textContent = rateWords(state);
     this.kappa.show(state.kappa ?? 0);
@@ -94,7 +94,7 @@ class ObserverPage {
     const { figures, state } = this.model;
     const page = window.granchain;
     const prediction = this.replay.now?.message.prediction ?? [];
-    this.known = { history: this.history, prediction, sentence: state.sentence, small: figures.small };
+    this.known = { history: this.history, prediction, sentence: state.failure || state.sentence, small: figures.small };
     page.publish("observer", this.known);
     if (page.overlay === "observer") showDistance(this.figure, figures.page, this.known);
   }

@@ -34,7 +34,7 @@ class ObserverPage(Page):
     def __init__(self, host: Host, view: Observer) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, PICTURES, self._said, "The observer", host.failed)
+        self._task = Task(host, PICTURES, self._said, "The observer", tell_host=True)
         self._run: ObserverRun | None = None
         self._asked = False
         self._wishes: list[str] = []
@@ -49,7 +49,7 @@ class ObserverPage(Page):
         scene = self._host.session.scene
         self._view.update_state(kappa=scene.kappa)
         if self._run is not None and self._run.scene.digest != scene.digest:
-            self._view.update_state(sentence="", predicted=None, measured=None)
+            self._view.update_state(sentence="", failure="", predicted=None, measured=None)
 
     def _wish(self, name: str) -> None:
         self._wishes.append(name)
@@ -65,10 +65,8 @@ class ObserverPage(Page):
         self._task.start(partial(self._next_in_thread, session.scene, session.settled, self._run, wishes))
 
     def _said(self, status: Status, sentence: str) -> None:
-        if status == "compiling":
-            self._view.update_state(**WORDS.of(status))
-        elif status == "failed":
-            self._view.update_state(**WORDS.of(status), sentence=sentence)
+        if status in ("compiling", "failed"):
+            self._view.update_state(**WORDS.of(status, sentence))
         elif self._asked:
             self._more()
 

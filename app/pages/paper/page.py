@@ -75,4 +75,4 @@ class PaperPage(Page):
     def _say(self, status: Status, sentence: str = "") -> None:
         if status == "waiting":
             self._view.update_state(done=0.0)
-        self._view.update_state(**WORDS.of(status), failure=sentence)
+        self._view.update_state(**WORDS.of(status, sentence))

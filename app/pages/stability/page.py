@@ -188,7 +188,7 @@ class StabilityPage(Page):
         before = self._trail.before(orbit.period) if analysis.target.followed else []
         self._view.need_figures()
         self._view.update_state(
-            **WORDS.of("done"), failure="", stale=False, sentence=verdict(orbit), observer=self._observer,
+            **WORDS.of("done"), stale=False, sentence=verdict(orbit), observer=self._observer,
             searched=not analysis.target.followed, rank=self._rank, period=orbit.period,
             count=len(orbit.multipliers), chosen=multiplier_sentence(orbit, self._rank),
             plane=plane_state(orbit, self._observer, self._rank, before))
@@ -212,7 +212,7 @@ class StabilityPage(Page):
     def _clear(self, sentence: str) -> None:
         """Show no multipliers, and a sentence that says why."""
         self._analysis, self.status = None, "none"
-        self._view.update_state(**WORDS.of("none"), failure="", stale=False, sentence=sentence,
+        self._view.update_state(**WORDS.of("none"), stale=False, sentence=sentence,
                                 plane=plane_state(None), count=0, chosen="", searched=False, evidence=[],
                                 observer=self._observer)
         self._view.send(type="no-mode")
@@ -222,7 +222,7 @@ class StabilityPage(Page):
 
     def _say(self, status: Status, sentence: str = "") -> None:
         self.status = status
-        self._view.update_state(**WORDS.of(status), failure=sentence)
+        self._view.update_state(**WORDS.of(status, sentence))
         if status == "failed" and self._analysis is None and self._target is not None:
             self._view.update_state(sentence=sentence, failure="", plane=plane_state(None), count=0, chosen="",
                                     stale=False)

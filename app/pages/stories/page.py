@@ -42,7 +42,7 @@ class StoriesPage(Page):
     def __init__(self, host: Host, view: Component) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, ANALYSES, say_nothing, "The story", host.failed)
+        self._task = Task(host, ANALYSES, say_nothing, "The story", tell_host=True)
         known, refused = _stories_read(host.overlays)
         self._stories = {one.name: one for one in known}
         self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}

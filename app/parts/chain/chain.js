@@ -76,7 +76,12 @@ class Chain {
   setUpScale() {
     const scale = document.getElementById("scale");
     const shares = Array.from({ length: 17 }, (_, i) => colourOf(this.model.state.palette, (i / 16) ** 2));
-    window.granchain.chain = { canvas: this.canvas, colours: shares, redraw: (on) => this.redraw(on) };
+    window.granchain.chain = {
+      canvas: this.canvas,
+      colours: shares,
+      redraw: (on) => this.redraw(on),
+      placeOf: (bead) => [this.drawing.home(bead), this.drawing.middle()], // at rest, in pixels of the canvas
+    };
     scale.querySelector("b").style.background = `linear-gradient(to right, ${shares.join(",")})`;
     this.energies = [...scale.querySelectorAll(".colours span")];
     this.scales = this.model.state.scales.map(([value, words, title]) =>

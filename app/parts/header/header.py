@@ -7,7 +7,8 @@ from typing import Any
 
 from ...scripts import module
 from ...session.export import EXPORTS
-from ...session.session import Session, presets
+from ...session.scene_facts import presets
+from ...session.session import Session
 from ...session.share import SPEEDS, VIEW_VALUES
 from ..toolkit.component import Component, text
 

@@ -6,7 +6,7 @@ import { element } from "../toolkit/dom.js";
 const STEPS = 1000;
 
 // From slider position (0 to 1) to value and back, for the three kinds of range.
-const RANGE = {
+export const RANGE = {
   linear: {
     value: (p, { low, high }) => low + p * (high - low),
     place: (v, { low, high }) => (v - low) / (high - low),
@@ -22,9 +22,9 @@ const RANGE = {
 };
 
 // A slider gives four figures; a typed value keeps all its figures.
-const rounded = (value) => Number(value.toPrecision(4));
+export const rounded = (value) => Number(value.toPrecision(4));
 
-const written = (value, factor) => {
+export const written = (value, factor) => {
   const shown = Number((value / factor).toPrecision(10));
   if (shown !== 0 && (Math.abs(shown) < 1e-3 || Math.abs(shown) >= 1e6))
     return Number(shown.toPrecision(6)).toExponential().replace("e+", "e");

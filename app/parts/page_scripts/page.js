@@ -76,13 +76,16 @@ window.granchain = (() => {
     scrollTo({ top: 0 });
     emit("curved", shown);
   };
-  // The name of the page over the pictures, or null. An open page stops the curve unless it needs the curve.
+  // The name of the page over the pictures, or null. An open page stops the curve unless it needs the curve. A name that
+  // no page over the pictures has opens none.
   let overlay = null;
-  const openPage = (name) => {
+  const openPage = (asked) => {
+    const sheets = [...document.querySelectorAll("[data-overlay]")];
+    const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
     if (name === overlay) return;
     overlay = name;
     document.getElementById("page").classList.toggle("overlaid", name !== null);
-    for (const one of document.querySelectorAll("[data-overlay]")) one.hidden = one.dataset.overlay !== name;
+    for (const one of sheets) one.hidden = one.dataset.overlay !== name;
     // The main landmark is the part that is on the screen; a page may have only one.
     document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
     emit("overlay", name);

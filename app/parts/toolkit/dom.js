@@ -1,6 +1,7 @@
 // Elements and controls that several parts of the page use.
 
-// Whether the page is arranged for a phone, or for another low window, as page.css has it.
+// Whether the page is arranged for a phone, or for another low window; every style asks the same
+// (tests/dashboard/test_phone.py).
 export const PHONE = matchMedia("(max-width: 820px), (max-height: 560px)");
 
 // An element with its properties and children.

@@ -115,6 +115,10 @@ class Queue:
         begin(thread)
 
     def _serve(self) -> None:
+        """Do one piece of work after the other, in a thread of its own.
+
+        A thread that work has given a lower priority ends, because it cannot get the usual one back.
+        """
         if self._low_priority:
             lower_priority()
         while True:
@@ -271,6 +275,7 @@ class LatestWins:
                 return
 
     def _do(self, work: TurnWork) -> None:
+        """Deliver the results of a computation; after each, end it if newer work waits. A failure is reported."""
         try:
             for result in work(self._stop):
                 if self._closed:

@@ -102,6 +102,10 @@ class Shared(Generic[Item]):
 
     @staticmethod
     def _awaited(computation: _Computation[Item], stop: Stop) -> Iterator[Item]:
+        """Each result once it is there, until the computation has ended; its error is raised after the last one.
+
+        Waiting ends at once when the flag goes up, or at the next check where the flag cannot call.
+        """
         def wake() -> None:
             with computation.changed:
                 computation.changed.notify_all()

@@ -1,0 +1,240 @@
+"""Functions of the page's scripts without the page: tables of values, steps of the history, a connection that is lost.
+
+The modules come from `app` as they are, to a page that has nothing else; no server runs, and the time is the test's.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import BrowserContext, Page, Route
+from server import until
+
+from app.format import prefixed
+from app.scripts import FILES, IN_PAGE
+
+APP = Path(__file__).parents[2] / "app"
+ORIGIN = "http://scripts.test/"
+#: The elements that the scripts in the page ask for, and what it has of Bokeh.
+BLANK = """<!doctype html><div id="page">
+  <div id="lost" hidden></div><div id="bar"></div><div id="side"></div><div id="stage"></div><div id="curves"><div id="curve"></div></div>
+  <div id="overlay"><div data-overlay="probe" hidden></div></div><div id="foot"></div></div>
+<script>window.Bokeh = { documents: [{ on_event: (name, act) => { window.closeSocket = act; } }] };</script>"""
+
+
+class Answers:
+    """What the address of the scripts answers: modules, the blank page, and `alive` for the server's health."""
+
+    alive = False
+
+    def __init__(self) -> None:
+        self.opened: list[str] = []
+
+    def __call__(self, route: Route) -> None:
+        """Answer a request."""
+        path = route.request.url.removeprefix(ORIGIN).partition("?")[0]
+        if path == "liveness":
+            route.fulfill(status=200 if self.alive else 502, body="")
+        elif path.endswith(".js"):
+            route.fulfill(path=APP / path, content_type="text/javascript")
+        else:
+            self.opened.append(route.request.url)
+            scripts = "".join(FILES[name].read_text(encoding="utf-8") for name in IN_PAGE)
+            route.fulfill(body=f"{BLANK}<script>{scripts}</script>", content_type="text/html")
+
+
+@pytest.fixture(scope="module")
+def blank(profile: BrowserContext) -> Iterator[Page]:
+    """A page for the modules."""
+    page = profile.new_page()
+    page.route(f"{ORIGIN}**", Answers())
+    page.goto(ORIGIN)
+    yield page
+    page.close()
+
+
+def called(page: Page, script: str, name: str, cases: list[Any]) -> list[Any]:
+    """What a function of a module returns for each list of arguments."""
+    return list(page.evaluate("""async ([script, name, cases]) => {
+      const module = await import(`/${script}`);
+      return cases.map((one) => module[name](...one));
+    }""", [script, name, cases]))
+
+
+@pytest.mark.parametrize(("scale", "low", "high", "middle"), [
+    ("linear", 10.0, 30.0, 20.0), ("log", 1.0, 100.0, 10.0), ("cubic", 0.0, 8.0, 1.0)])
+def test_a_slider_goes_from_place_to_value_and_back(blank: Page, scale: str, low: float, high: float, middle: float) -> None:
+    values, places = blank.evaluate("""async ([scale, low, high]) => {
+      const { RANGE } = await import("/parts/knob.js");
+      const values = [0, 0.25, 0.5, 0.75, 1].map((place) => RANGE[scale].value(place, { low, high }));
+      return [values, values.map((value) => RANGE[scale].place(value, { low, high }))];
+    }""", [scale, low, high])
+    assert places == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0])
+    assert (values[0], values[2], values[-1]) == pytest.approx((low, middle, high))
+
+
+#: A value in SI, the factor of its unit, and what stands in the field.
+WRITTEN = [(340.0, 1.0, "340"), (0.0, 1.0, "0"), (5e-7, 1e-6, "0.5"), (1.23456789, 1.0, "1.23457"), (1e-4, 1.0, "1e-4"),
+           (-2.5e-4, 1.0, "-2.5e-4"), (1234567.0, 1.0, "1.23457e6"), (193e9, 1e9, "193"), (0.1 + 0.2, 1.0, "0.3"), (999999.0, 1.0, "999999")]
+
+
+def test_a_number_in_a_knobs_field_has_six_figures(blank: Page) -> None:
+    assert called(blank, "parts/knob.js", "written", [case[:2] for case in WRITTEN]) == [case[2] for case in WRITTEN]
+    assert called(blank, "parts/knob.js", "rounded", [[340.123], [0.00123456], [99999]]) == [340.1, 0.001235, 100000]
+
+
+def test_ticks_are_round_and_inside(blank: Page) -> None:
+    assert called(blank, "parts/plot.js", "ticks", [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
+        [0, 2, 4, 6, 8, 10], [-1, -0.5, 0, 0.5, 1], [0.2, 0.4], [0, 5e-10, 1e-9], [50, 100, 150]]
+    assert called(blank, "parts/plot.js", "stepBelow", [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
+
+
+def test_the_browser_takes_the_prefixes_that_the_server_takes(blank: Page) -> None:
+    values = [0.0, 1e-19, 999.4e-18, 999.6e-9, 1e-6, 0.001, 0.9994, 0.9996, 1.0, 999.4, 999.6, 1e3, 4.2e6, 1e9, 1e12]
+    found = called(blank, "parts/plot.js", "prefixed", [[value] for value in values])
+    assert [letter for _, letter in found] == [prefixed(value)[1] for value in values]
+    assert [factor for factor, _ in found] == pytest.approx([prefixed(value)[0] for value in values], rel=1e-12, abs=0.0)
+
+
+def test_a_place_of_the_map_is_the_finest_cell_that_covers_it(blank: Page) -> None:
+    """A map of 4 × 3: the first cell of 4, one of 2 and one of its own."""
+    found = blank.evaluate("""async () => {
+      const { MAP, cellAt, finest, valuesOf } = await import("/pages/map/cells.js");
+      const none = cellAt(0, 0, (MAP.head = { x: [10, 20, 30, 40], y: [1, 2, 3] }));
+      MAP.cells.rows = { cells: { number: [0, 2, 5], spacing: [4, 2, 1] } };
+      return [none, [[0, 0], [1, 1], [1, 3], [2, 3], [0, 3]].map(([i, j]) => cellAt(i, j)), finest([0, 1, 2]), valuesOf(2)];
+    }""")
+    assert found == [-1, [0, 2, 1, 0, 1], 2, {"x": 20, "y": 2}]
+
+
+@pytest.fixture
+def answers() -> Answers:
+    """What the scripts in the page get from their address."""
+    return Answers()
+
+
+@pytest.fixture
+def page(profile: BrowserContext, answers: Answers) -> Iterator[Page]:
+    """The scripts in the page, at an address, with a clock that the test moves; the server has sent a link."""
+    page = profile.new_page()
+    page.route(f"{ORIGIN}**", answers)
+    page.clock.install()
+    page.goto(f"{ORIGIN}?v=1&scene=sec2")
+    page.evaluate("""() => {
+      granchain.knobNames = ["f", "k", "kappa"];
+      window.gone = [];
+      granchain.go = (query) => gone.push(query);
+      granchain.linkReceived("v=1&scene=sec2", [], ["mode", "scale"]);
+    }""")
+    page.clock.run_for(500)
+    yield page
+    page.close()
+
+
+def query(page: Page, expression: str = "granchain.address().search") -> str:
+    """The query of the address as it would be now."""
+    return str(page.evaluate(expression)).removeprefix("?")
+
+
+def test_requests_are_in_the_address_until_the_server_has_answered_them(page: Page) -> None:
+    page.evaluate("granchain.requested('f', 615)")
+    assert query(page) == "v=1&scene=sec2&f=615"
+    page.evaluate("granchain.requested('kappa', 0.001); granchain.requested('k', 5)")
+    assert query(page) == "v=1&scene=sec2&f=615&k=5", "k and kappa are one knob"
+    page.evaluate("granchain.linkReceived('v=1&scene=sec2&f=615&k=5&scale=fit', ['f', 'k', 'kappa'])")
+    page.evaluate("granchain.requested('scene', 'rig')")
+    assert query(page) == "v=1&scale=fit&scene=rig", "a scene takes no knobs of the one before"
+
+
+def test_a_picture_is_settled_when_it_is_final_and_of_the_knobs_that_were_asked_for(page: Page) -> None:
+    shown = "granchain.shown = { knobs: 'v=1&scene=sec2&f=615', final: true }"
+    assert not page.evaluate("granchain.isSettled()")
+    page.evaluate("granchain.requested('f', 615)")
+    assert not page.evaluate(f"{shown}; granchain.isSettled()"), "the server has not answered"
+    page.evaluate("granchain.linkReceived('v=1&scene=sec2&f=615&scale=fit', ['f'])")
+    assert page.evaluate("granchain.isSettled()")
+    assert not page.evaluate("granchain.shown.final = false; granchain.isSettled()")
+
+
+def test_a_change_followed_by_a_rest_is_a_step_and_a_refined_link_is_none(page: Page) -> None:
+    for link in ("f=615", "f=616"):
+        page.evaluate("link => granchain.linkReceived(`v=1&scene=sec2&${link}`, [])", link)
+        page.clock.run_for(200)
+    assert query(page, "location.search") == "v=1&scene=sec2"
+    page.clock.run_for(300)
+    assert query(page, "location.search") == "v=1&scene=sec2&f=616" and page.evaluate("granchain.steps.at") == 1
+    page.evaluate("granchain.linkRefined('v=1&scene=sec2&f=616&from=here')")
+    page.evaluate("granchain.setLocation({ tab: 'probe' })")
+    page.evaluate("granchain.setLocation({ tab: '' })")
+    page.clock.run_for(500)
+    assert page.evaluate("[granchain.steps.at, history.state.at]") == [2, 2]
+    page.evaluate("granchain.linkRefined('v=1&scene=sec2&f=616&from=there')")
+    page.clock.run_for(500)
+    assert query(page, "location.search").endswith("from=there") and page.evaluate("granchain.steps.at") == 2
+
+
+def test_undo_and_redo_go_to_the_server_and_wait_for_its_answer(page: Page) -> None:
+    page.evaluate("granchain.on('steps', (one) => { window.told = one; })")
+    for number in (1, 2):
+        page.evaluate("number => granchain.linkReceived(`v=1&scene=sec2&f=${number}`, [])", number)
+        page.clock.run_for(500)
+    assert page.evaluate("told") == {"back": True, "forward": False}
+    page.evaluate("granchain.undo()")
+    until(page, lambda: page.evaluate("gone") == ["v=1&scene=sec2&f=1"])
+    assert page.evaluate("[told, granchain.steps.returning]") == [{"back": True, "forward": True}, True]
+    page.evaluate("granchain.addressApplied('v=1&scene=sec2&f=1')")
+    assert not page.evaluate("granchain.steps.returning")
+    page.evaluate("granchain.redo()")
+    until(page, lambda: len(page.evaluate("gone")) == 2)
+    assert page.evaluate("granchain.steps.at") == 2
+    page.evaluate("granchain.addressApplied('v=1&scene=sec2&f=2'); granchain.redo()")
+    assert page.evaluate("[granchain.steps.at, granchain.steps.newest]") == [2, 2], "there is nothing ahead"
+
+
+def test_a_silent_server_is_asked_counted_as_lost_and_taken_back(page: Page) -> None:
+    page.evaluate("window.pings = 0; granchain.connect(() => { pings += 1; })")
+    page.clock.run_for(500)
+    assert page.evaluate("pings") == 1, "one ping is unanswered, and no other follows"
+    page.clock.run_for(1000)
+    assert not page.evaluate("granchain.lost")
+    page.clock.run_for(500)
+    assert page.evaluate("[granchain.lost, stage.inert, lost.hidden, lost.textContent.slice(0, 15)]") == [
+        True, True, False, "Connection lost"]
+    page.evaluate("granchain.answerReceived()")
+    assert page.evaluate("[granchain.lost, stage.inert, lost.hidden]") == [False, False, True]
+    for _ in range(4):
+        page.clock.run_for(500)
+        page.evaluate("granchain.answerReceived()")
+    assert not page.evaluate("granchain.lost") and page.evaluate("pings") == 5
+
+
+def test_a_hidden_window_asks_nothing_and_a_closed_socket_is_lost_at_once(page: Page) -> None:
+    page.evaluate("""() => {
+      window.pings = 0;
+      granchain.connect(() => { pings += 1; });
+      Object.defineProperty(document, "hidden", { configurable: true, get: () => true });
+    }""")
+    page.clock.run_for(3000)
+    assert page.evaluate("[pings, granchain.lost]") == [0, False]
+    page.evaluate("closeSocket()")
+    assert page.evaluate("granchain.lost")
+
+
+def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(page: Page, answers: Answers) -> None:
+    page.evaluate("""() => {
+      granchain.connect(() => {});
+      granchain.linkReceived("v=1&scene=sec2&f=616", []);
+      granchain.kept = { playing: false };
+      closeSocket();
+    }""")
+    page.clock.run_for(1000)
+    assert len(answers.opened) == 1, "it does not answer yet"
+    answers.alive = True
+    until(page, lambda: page.clock.run_for(500) is None and len(answers.opened) == 2)
+    assert answers.opened[-1] == f"{ORIGIN}?v=1&scene=sec2&f=616"
+    until(page, lambda: page.evaluate("window.granchain?.again?.playing") is False)
+    assert page.evaluate("[lost.hidden, lost.textContent.slice(0, 15), Boolean(document.getElementById('last-pictures'))]") == [
+        False, "Connected again", True]

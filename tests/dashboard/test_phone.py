@@ -1,0 +1,25 @@
+"""A phone, or another low window, is the same for every style sheet and for the scripts."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import app
+from app.scripts import FILES
+
+#: What `PHONE` of app/parts/dom.js asks for.
+(PHONE,) = re.findall(r'PHONE = matchMedia\("([^"]+)"\)', FILES["dom.js"].read_text(encoding="utf-8"))
+_WIDTH, _HEIGHT = PHONE.split(", ")
+(_WIDEST,) = re.findall(r"\d+", _WIDTH)
+#: Other windows that page.css has rules for: a phone by one of its two sides, one wider than a phone, large ones.
+OTHERS = {_WIDTH, _HEIGHT, f"(min-width: {int(_WIDEST) + 1}px) and {_HEIGHT}", f"(min-width: 600px) and {_HEIGHT}",
+          "(max-height: 950px)", "(max-width: 1100px)", "(min-width: 1700px)"}
+
+
+@pytest.mark.parametrize("path", sorted(Path(app.__file__).parent.rglob("*.css")), ids=lambda path: path.name)
+def test_a_style_asks_for_the_windows_that_are_known(path: Path) -> None:
+    asked = set(re.findall(r"@media ([^{]*\((?:min|max)-(?:width|height)[^{]*?)\s*\{", path.read_text(encoding="utf-8")))
+    assert asked <= {PHONE, *OTHERS}

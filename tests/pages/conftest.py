@@ -1,0 +1,26 @@
+"""Pages of the table, without a browser."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from page_host import Trial, picture
+
+from app.dashboard.table import PAGES
+from app.pages.map import page as map_page
+
+OpenPage = Callable[[str], Trial]
+
+
+@pytest.fixture
+def page_of(monkeypatch: pytest.MonkeyPatch) -> OpenPage:
+    """The page of this name, which nobody looks at yet; the visitor has a picture, and the map has few cells."""
+    monkeypatch.setattr(map_page, "COLUMNS", 6)
+    monkeypatch.setattr(map_page, "ROWS", 4)
+
+    def made(name: str) -> Trial:
+        trial = Trial(next(row for row in PAGES if row.name == name), monkeypatch)
+        trial.host.session.settled = picture()
+        return trial
+    return made

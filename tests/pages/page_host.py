@@ -1,0 +1,127 @@
+"""A page of the table on a host without a browser; what it wants computed is kept until the test computes it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+from host import FakeHost
+
+from app.dashboard.table import PageSpec, overlay_names
+from app.dashboard.tabs import Tabs
+from app.serve.compiling.compiler import COMPILER
+from app.serve.work.queues import Queue
+from app.session.page import Page
+from app.session.session import Session
+from app.session.task import Job
+from granchain_core import Scene, Settled, State, scene, settled
+
+
+@cache
+def picture(f: float = 2000.0) -> Settled:
+    """A settled picture of a short chain, as it is the final one for its knobs."""
+    return settled(scene("sec2").evolve(N=2, f=f), samples=8)
+
+
+class PageHost(FakeHost):
+    """The host of one page: one visitor's session, and what the page asks of the dashboard."""
+
+    overlays = overlay_names()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.session = Session(scene=picture().run.scene)
+        #: What the page wants shown: the scene, the state in which its motion begins, and mode or curves.
+        self.shown: list[tuple[Scene, State | None, str]] = []
+        self.addresses = 0
+
+    def activities(self) -> list[tuple[str, str, str]]:
+        return []
+
+    def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
+        self.shown.append((scene, state, mode))
+
+    def open(self, scene: Scene, state: State | None, curves: str) -> None:
+        self.shown.append((scene, state, curves))
+
+    def address_changed(self) -> None:
+        self.addresses += 1
+
+
+@dataclass(frozen=True)
+class Given:
+    """Work that a task gave to a queue."""
+
+    queue: str
+    run: Callable[[Callable[[Job], None], Job], None]
+    work: Callable[[Job], None]
+    job: Job
+
+
+class Trial:
+    """A page with its view, which no browser shows."""
+
+    def __init__(self, row: PageSpec, monkeypatch: Any) -> None:
+        self.row = row
+        self.host = PageHost()
+        self.view = (row.view or Tabs)()
+        self.told: list[dict[str, Any]] = []
+        self.given: list[Given] = []
+        monkeypatch.setattr(self.view, "send", lambda **message: self.told.append(message))
+        monkeypatch.setattr(Queue, "submit", lambda queue, run, work, job, owner=None: self.given.append(
+            Given(queue.name, run, work, job)))
+        for name in ("has", "await_piece", "load"):
+            monkeypatch.setattr(COMPILER, name, lambda *_: True)
+        self.page: Page = row.page(self.host, self.view)
+
+    def do(self, action: str, /, **message: Any) -> None:
+        """The visitor asks for an action."""
+        self.page.actions[action]({"do": action, **message})
+
+    def look(self, visible: bool = True) -> None:
+        """Somebody begins or ceases to look."""
+        self.page.visibility_changed(visible)
+
+    def settle(self, new: Settled | None = None) -> None:
+        """The picture of the present knobs is ready."""
+        self.host.session.settled = new or picture()
+        self.page.picture_ready(self.host.session.settled)
+        self.host.call_waiting()
+
+    def turn(self, **knobs: float) -> None:
+        """The visitor turns knobs: the dashboard calls its pages in this order."""
+        self.page.picture_requested()
+        self.host.session.scene = self.host.session.scene.evolve(**knobs)
+        self.page.scene_changed()
+
+    def rest(self) -> None:
+        """Time passes: what waited is called, and what that asks for, but nothing that is repeated without end."""
+        for _ in range(4):
+            self.host.call_waiting()
+
+    def compute(self, work: Callable[[Job], None] | None = None) -> None:
+        """Compute what was given to a queue and not cancelled, or `work` in its place, and take over the results."""
+        given, self.given = self.given, []
+        for one in given:
+            one.run(work or one.work, one.job)
+        self.rest()
+
+    @property
+    def under_way(self) -> list[Given]:
+        """The work that was given to a queue and neither computed nor cancelled."""
+        return [one for one in self.given if not one.job.stop]
+
+    @property
+    def state(self) -> dict[str, Any]:
+        """What the view has been told to show."""
+        return dict(self.view.state)
+
+    def last(self, kind: str) -> dict[str, Any]:
+        """The last message of a kind that was sent to the browser."""
+        return next(one for one in reversed(self.told) if one.get("type") == kind)
+
+    def said(self, words: str) -> bool:
+        """Whether the page shows these words, or has sent them, or has left them to the dashboard."""
+        return words in repr((self.state, self.told, self.host.failures, [sentence for _, sentence in self.host.faults]))

@@ -1,0 +1,81 @@
+"""The Accuracy page without a browser: when it measures, and to which chain and accuracy its rows belong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from page_host import Trial, picture
+
+from app.pages.accuracy import page as module
+from app.pictures.accuracy import points
+from granchain_core.accuracy import Row
+
+ROWS = [Row("rk4", "100 steps", 1e-3, 1e-4, 400, 100.0), Row("dop853", "1e-9", 2e-8, 3e-4, 900, 1e-9)]
+
+
+@pytest.fixture
+def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
+    """The page, whose measurement has its rows at once."""
+    def measure(scene: Any, stop: Any, *, report: Any, pause: Any, progress: Any) -> None:
+        pause()
+        progress(0.5)
+        report(SimpleNamespace(rows=ROWS, lesson=None, agreement=1e-9))
+
+    monkeypatch.setattr(module, "work_precision", measure)
+    monkeypatch.setattr(module, "described_reference", lambda found: {"reference": "dop853"})
+    return page_of("accuracy")
+
+
+def test_it_measures_when_it_is_first_looked_at_and_goes_on_hidden(page: Trial) -> None:
+    page.turn(f=2000.0)
+    assert page.told == [], "until it is opened there is nothing to see"
+    page.look()
+    assert [one.queue for one in page.given] == ["measurements"] and page.state["status"] == "waiting"
+    page.look(False)
+    assert len(page.under_way) == 1
+    page.compute()
+    assert page.state["status"] == "done" and page.state["done"] == 0.5 and page.state["reference"] == "dop853"
+    page.look()
+    assert page.under_way == [] and page.page.activity == ("accuracy of all methods", "ready", "2 settings measured")
+
+
+def test_the_cheapest_setting_follows_the_accuracy_that_is_asked_for(page: Trial) -> None:
+    page.look()
+    page.compute()
+    page.turn(accuracy=1e-2)
+    assert page.last("asked")["sentence"].startswith("The cheapest way to 1e-2 is rk4, 100 steps")
+    page.turn(accuracy=1e-7)
+    assert "is dop853, 1e-9" in page.last("asked")["sentence"] and not page.last("asked")["stale"]
+    page.turn(accuracy=1e-9)
+    assert page.last("asked")["sentence"] == "Nothing measured here reaches 1e-9; the nearest is dop853, 1e-9."
+
+
+def test_rows_of_another_chain_are_stale_until_it_is_measured(page: Trial) -> None:
+    page.look()
+    page.compute()
+    page.turn(f=2100.0)
+    assert page.last("asked")["stale"]
+    page.do("accuracy-measure")
+    assert not page.last("asked")["stale"] and page.state["done"] == 0.0
+    page.turn(f=picture().run.scene.f)
+    assert page.last("asked")["stale"]
+
+
+def test_a_stopped_measurement_keeps_its_rows(page: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+    def stopped(scene: Any, stop: Any, *, report: Any, **_: Any) -> None:
+        report(SimpleNamespace(rows=ROWS[:1], lesson=None, agreement=1e-9))
+        page.rest()
+        page.do("accuracy-stop")
+        assert stop
+        report(SimpleNamespace(rows=ROWS, lesson=None, agreement=1e-9))
+
+    monkeypatch.setattr(module, "work_precision", stopped)
+    page.look()
+    page.compute()
+    assert page.state["progress"] == "stopped; the measurements so far are kept"
+    assert page.state["drawn"] == points(ROWS[:1]) and page.page.activity[2] == "1 settings measured"
+    page.look()
+    assert page.under_way == [], "what was stopped is not measured again by itself"

@@ -1,0 +1,200 @@
+"""What every page of the table keeps to, a new one as well: when it begins work, when it ends it, and what is said.
+
+Each test plays the dashboard and calls the hooks and actions of the true page; only the work itself is left out. What a
+page says of its own is tested beside this file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from inspect import signature
+from typing import Any
+
+import pytest
+from page_host import PageHost, Trial, picture
+
+from app.dashboard.table import PAGES, PageSpec
+from app.pages.analysis.questions import QUESTIONS
+from app.pages.stories.page import story_places, story_step
+from app.pictures.theme import THEMES
+from app.session.host import Host
+from app.session.page import Page
+from app.session.progress import COMPUTING, OFF, READY
+from app.session.task import Job
+from granchain_core import BadInput
+from granchain_core.hard_cases import CASES
+
+OVERLAYS = tuple(row.name for row in PAGES if row.view)
+
+
+def told_by_others() -> dict[str, Any]:
+    """The message that opens a step whose motion is reached through others."""
+    place = next(place for place in story_places(OVERLAYS) if story_step(place, OVERLAYS).via)
+    name, _, step = place.partition(".")
+    return {"name": name, "step": int(step)}
+
+
+#: How a visitor asks for the work of a page whose actions need more than their name. Any other page is looked at, and
+#: each of its actions is asked for.
+ASKED: dict[str, tuple[tuple[str, dict[str, Any]], ...]] = {
+    "analysis": (("analysis-ask", {"question": next(reversed(QUESTIONS))}), ("analysis-compute", {})),
+    "hard": (("hard-run", {"case": CASES[0].name}),),
+    "stories": (("story-open", told_by_others()),),
+}
+#: Pages whose work is of no use for other knobs say so, or end it. The work of these is of use:
+FOR_ANY_KNOBS = {
+    "hard": "its cases have scenes of their own", "paper": "its figures have scenes of their own",
+    "observer": "the period under way is the last of the old chain, and the next belongs to the new one",
+    "effects": "the cost of an effect does not depend on the values of knobs",
+    "map": "it covers all f", "branches": "they cover all f",
+}
+
+
+@pytest.fixture(params=PAGES, ids=lambda row: row.name)
+def trial(request: pytest.FixtureRequest, page_of: Callable[[str], Trial]) -> Trial:
+    """Each page that the table has."""
+    row: PageSpec = request.param
+    return page_of(row.name)
+
+
+def asked(trial: Trial) -> bool:
+    """Look at the page and ask for its work; return whether it has any."""
+    trial.look()
+    for name, message in ASKED.get(trial.row.name, tuple((name, {}) for name in trial.page.actions if not stops(name))):
+        try:
+            trial.do(name, **message)
+        except BadInput:
+            assert trial.row.name not in ASKED
+    trial.rest()
+    return bool(trial.under_way)
+
+
+def stops(action: str) -> bool:
+    """Whether an action is the one that stops the page's work."""
+    return action.endswith("-stop")
+
+
+def hooks(page: Page) -> None:
+    """Everything of which the dashboard informs a page, except whether somebody looks."""
+    page.picture_requested()
+    page.scene_changed()
+    page.address_applied()
+    page.theme_changed(THEMES["dark"])
+    page.picture_ready(picture())
+    page.curve_ready()
+
+
+def test_the_host_of_these_tests_is_called_as_the_dashboard_is() -> None:
+    for name in (name for name in dir(Host) if not name.startswith("_")):
+        real, ours = getattr(Host, name), getattr(PageHost, name)
+        assert isinstance(real, property) or list(signature(ours).parameters) == list(signature(real).parameters), name
+
+
+def test_nothing_begins_while_nobody_looks(trial: Trial) -> None:
+    hooks(trial.page)
+    trial.rest()
+    assert trial.given == []
+
+
+def test_nothing_begins_after_somebody_has_looked_away(trial: Trial) -> None:
+    trial.look()
+    trial.look(False)
+    trial.given.clear()
+    hooks(trial.page)
+    trial.rest()
+    assert trial.given == []
+
+
+def test_a_page_is_looked_at_before_there_is_a_picture(trial: Trial) -> None:
+    trial.host.session.settled = None
+    trial.look()
+    trial.rest()
+    trial.turn(f=2100.0)
+    trial.settle(picture(2100.0))
+    assert trial.host.failures == [] and trial.host.faults == []
+
+
+@pytest.mark.parametrize("message", [{}, {name: {"none": "of them"} for name in (
+    "value", "name", "number", "case", "figure", "bead", "phase", "place", "arm", "period", "question", "values", "step")}],
+    ids=["bare", "nonsense"])
+def test_a_message_without_sense_is_answered_or_refused_in_a_sentence(trial: Trial, message: dict[str, Any]) -> None:
+    trial.look()
+    for action in trial.page.actions.values():
+        try:
+            action(message)
+        except BadInput as problem:
+            assert str(problem).endswith(".")
+
+
+def test_the_sentence_of_failed_work_is_shown(trial: Trial) -> None:
+    if not asked(trial):
+        return
+
+    def fails(_: Job) -> None:
+        raise BadInput("The chain is too long for this.")
+
+    trial.compute(fails)
+    assert trial.said("The chain is too long for this.") and trial.host.faults == []
+
+
+def test_a_fault_is_reported_once_for_each_work_and_said_once(trial: Trial) -> None:
+    if not asked(trial):
+        return
+    begun = len(trial.under_way)
+
+    def fails(_: Job) -> None:
+        raise ZeroDivisionError("1/0")
+
+    trial.compute(fails)
+    assert len(trial.host.faults) == begun and trial.said("an error in granchain (ZeroDivisionError); please report it.")
+    assert trial.host.failures == []
+
+
+def test_stopped_work_ends_and_the_page_says_so(trial: Trial) -> None:
+    if not (asked(trial) and any(map(stops, trial.page.actions))):
+        return
+    stopping = trial.under_way
+    for name in filter(stops, trial.page.actions):
+        trial.do(name)
+    ended = [one.job.stop for one in stopping]
+    assert all(ended) or (trial.row.name == "map" and any(ended)), "only the search of the tab map has no stop"
+    assert trial.said("'progress': 'stopped")
+    nothing_arrives(trial)
+
+
+def test_a_moved_knob_ends_the_work_or_the_page_calls_it_out_of_date(trial: Trial) -> None:
+    """And whatever the page computes next belongs to the new chain."""
+    if not asked(trial):
+        return
+    begun = trial.under_way
+    trial.turn(f=2100.0)
+    ended = all(one.job.stop for one in begun)
+    assert ended or trial.said("'stale': True") or trial.row.name in FOR_ANY_KNOBS
+    if ended:
+        nothing_arrives(trial)
+
+
+def test_work_ends_with_the_visit(trial: Trial) -> None:
+    asked(trial)
+    trial.host.leave()
+    assert trial.under_way == []
+    nothing_arrives(trial)
+
+
+def test_the_line_of_a_page_has_one_of_the_known_states(trial: Trial) -> None:
+    for step in (lambda: None, trial.look, lambda: asked(trial), lambda: trial.turn(f=2100.0), lambda: trial.look(False)):
+        step()
+        line = trial.page.activity
+        assert line is None or (line[0] and line[1] in (OFF, READY, COMPUTING) and line[2])
+
+
+def nothing_arrives(trial: Trial) -> None:
+    """What work has found after it was cancelled is not shown."""
+    trial.rest()
+    before = trial.state, len(trial.told)
+    for one in trial.given:
+        if one.job.stop:
+            one.job.next_tick(trial.view.send, type="late")
+            one.job.say("computing")
+    trial.rest()
+    assert (trial.state, len(trial.told)) == before

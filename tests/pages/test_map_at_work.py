@@ -1,0 +1,127 @@
+"""The Map tab without a browser: which cells are computed when, and what becomes of its attractors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from page_host import Trial, picture
+
+from app.pages.map import page as module
+from granchain_core import Cancelled
+from granchain_core.parameter_map.cells import CELL
+
+
+@pytest.fixture
+def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Trial:
+    """The tab, whose cells take no time."""
+    def cell(number: int) -> np.ndarray:
+        row = np.zeros((), dtype=CELL)
+        row["number"], row["period"], row["max_output_force"] = number, 1, 1.0 + number
+        return row
+
+    monkeypatch.setattr(module, "iter_diagram", lambda grid, missing, *_: iter(missing))
+    monkeypatch.setattr(module, "cell_of", cell)
+    return page_of("map")
+
+
+def interrupted(monkeypatch: pytest.MonkeyPatch, tab: Trial, cells: int) -> None:
+    """The visitor leaves the tab after so many cells."""
+    def some(grid: Any, missing: list[int], *_: Any) -> Iterator[int]:
+        yield from missing[:cells]
+        tab.look(False)
+        raise Cancelled
+
+    with monkeypatch.context() as patched:
+        patched.setattr(module, "CELLS_EVERY", 0.0)
+        patched.setattr(module, "iter_diagram", some)
+        tab.look()
+        given: Any = tab.given[0]
+        given.job.next_tick = lambda action, *arguments: action(*arguments)  # each cell arrives before the next
+        tab.compute()
+
+
+def test_the_map_is_computed_once_while_somebody_looks(tab: Trial) -> None:
+    tab.look()
+    assert [one.queue for one in tab.given] == ["long"] and tab.last("map-status")["status"] == "waiting"
+    tab.compute()
+    assert tab.last("map-status")["status"] == "done" and tab.last("map-cells")["done"] == 1.0
+    tab.look(False)
+    tab.look()
+    assert tab.under_way == [], "the map is complete"
+    assert len(tab.last("map-cells")["rows"]["cells"]["number"]) == module.ROWS * module.COLUMNS, "all of it is sent again"
+
+
+def test_only_the_cells_that_are_missing_are_computed_later(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+    interrupted(monkeypatch, tab, 7)
+    assert tab.last("map-status")["progress"] == "stopped; the cells computed so far are kept"
+    asked: list[list[int]] = []
+    monkeypatch.setattr(module, "iter_diagram", lambda grid, missing, *_: asked.append(missing) or iter(missing))
+    tab.look()
+    tab.compute()
+    assert len(asked[0]) == module.ROWS * module.COLUMNS - 7 and tab.last("map-status")["status"] == "done"
+
+
+def test_f_and_A0_move_the_mark_and_any_other_knob_asks_for_another_map(tab: Trial) -> None:
+    tab.look()
+    tab.compute()
+    tab.turn(f=2100.0)
+    tab.rest()
+    assert tab.last("map-now")["now"] and tab.under_way == [] and not tab.said("map-stale")
+    tab.turn(kappa=0.2)
+    assert tab.last("map-stale") and tab.under_way == [], "it begins when the knobs rest"
+    tab.turn(kappa=0.3)
+    tab.rest()
+    (given,) = tab.under_way
+    tab.turn(kappa=0.4)
+    assert given.job.stop
+    tab.rest()
+    assert len(tab.under_way) == 1
+    tab.look(False)
+    assert tab.under_way == [] and tab.last("map-status")["status"] == "stopped"
+
+
+def test_knobs_of_a_map_that_nobody_looks_at_are_followed_when_somebody_does(tab: Trial) -> None:
+    tab.look()
+    tab.compute()
+    tab.look(False)
+    before = len(tab.told)
+    tab.turn(kappa=0.2)
+    tab.rest()
+    assert len(tab.told) == before and tab.under_way == []
+    tab.look()
+    assert len(tab.under_way) == 1 and tab.last("map-head")
+
+
+def test_the_map_gives_way_to_picture_and_curve(tab: Trial) -> None:
+    page: Any = tab.page
+    assert not page._in_front()
+    tab.host.awaiting_picture = True
+    assert page._in_front()
+    tab.host.awaiting_picture, tab.host.curve_computing = False, True
+    assert page._in_front()
+
+
+def test_attractors_are_listed_loaded_and_forgotten_with_their_scene(tab: Trial, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = SimpleNamespace(scene=picture().run.scene, state=picture().state)
+    monkeypatch.setattr(module, "attractors", lambda scene, starts, stop: [found])
+    monkeypatch.setattr(module, "described_attractor", lambda one: {"words": "period 1"})
+    tab.look()
+    tab.given.clear()
+    tab.do("map-attractors")
+    assert tab.last("map-attractors")["progress"] == "waiting for its turn …"
+    tab.compute()
+    assert tab.last("map-attractors")["attractors"] == [{"words": "period 1"}]
+    tab.do("map-load", number=0)
+    assert tab.host.shown == [(found.scene, found.state, "settled")] and tab.host.session.start == "previous"
+    tab.turn(f=2100.0)
+    assert tab.last("map-attractors")["attractors"] == [] and tab.last("map-attractors")["status"] == "none"
+
+
+def test_a_click_turns_both_knobs(tab: Trial) -> None:
+    tab.do("map-choose", x=1900.0, y=1e-7)
+    ((scene, state, mode),) = tab.host.shown
+    assert (scene.f, scene.A0, state, mode) == (1900.0, 1e-7, None, "settled")

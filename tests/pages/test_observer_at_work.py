@@ -1,0 +1,115 @@
+"""The Observer page without a browser: a period for each one that was shown, of the chain as it is then."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from page_host import Trial, picture
+
+from app.pages.observer import page as module
+
+
+class Run:
+    """In place of the two chains: `done` has what was asked of them."""
+
+    def __init__(self, scene: Any, picture: Any, stop: Any, went_on: Any) -> None:
+        self.scene, self.went_on = scene, went_on
+        self.orbit = self.predicted = self.measured = None
+        self.failure, self.since, self.in_step, self.sentence = "", 0, False, "It follows its chain."
+        self.pair = SimpleNamespace(engine=SimpleNamespace(stop=stop))
+        self.done: list[str] = []
+
+    def predict(self, picture: Any) -> None:
+        """The orbit is found once."""
+        self.orbit, self.predicted = picture, 0.5
+        self.done.append("predict")
+
+    def nudge(self) -> None:
+        """A little aside."""
+        self.done.append("nudge")
+
+    def from_rest(self) -> None:
+        """From rest."""
+        self.done.append("rest")
+
+    def step(self) -> str:
+        """A period."""
+        self.done.append("step")
+        return "step"
+
+
+@pytest.fixture
+def page(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The page, whose periods take no time; `steps` has what the view was told."""
+    monkeypatch.setattr(module, "ObserverRun", Run)
+    trial: Any = page_of("observer")
+    trial.steps = []
+    monkeypatch.setattr(trial.view, "step", lambda *step: trial.steps.append(step))
+    return trial
+
+
+def run(page: Any) -> Run:
+    """The run of the page."""
+    return page.page._run
+
+
+def test_each_period_is_asked_for_and_none_is_computed_unasked(page: Any) -> None:
+    page.look()
+    page.settle()
+    assert page.under_way == []
+    page.do("observer-more")
+    assert [one.queue for one in page.given] == ["pictures"]
+    page.compute()
+    assert run(page).done == ["predict", "step"] and page.state["sentence"] == "It follows its chain."
+    assert page.under_way == []
+
+
+def test_what_is_asked_for_meanwhile_is_done_in_one_further_period(page: Any) -> None:
+    page.do("observer-more")
+    page.do("observer-nudge")
+    page.do("observer-rest")
+    assert len(page.given) == 1
+    page.compute()
+    page.compute()
+    assert run(page).done == ["predict", "step", "nudge", "rest", "step"] and page.under_way == []
+    assert [one[2] for one in page.steps] == [True, True]
+
+
+def test_a_turned_knob_goes_on_with_the_states_of_the_chain_before(page: Any) -> None:
+    page.do("observer-more")
+    page.compute()
+    before = run(page)
+    page.turn(kappa=0.2)
+    assert (page.state["kappa"], page.state["sentence"]) == (0.2, "")
+    page.do("observer-more")
+    page.compute()
+    assert run(page).went_on is before and run(page).done == ["step"], "the old picture's orbit is another chain's"
+    page.do("observer-again")
+    page.compute()
+    assert run(page).went_on is None
+
+
+def test_chains_in_step_rest_until_something_begins(page: Any) -> None:
+    page.do("observer-more")
+    page.compute()
+    run(page).in_step = True
+    page.do("observer-more")
+    page.compute()
+    assert run(page).done == ["predict", "step"]
+    page.do("observer-nudge")
+    page.compute()
+    assert run(page).done == ["predict", "step", "nudge", "step"]
+
+
+def test_a_final_picture_that_does_not_repeat_predicts_nothing(page: Any) -> None:
+    page.host.session.settled = None
+    page.do("observer-more")
+    page.compute()
+    assert run(page).done == ["step"] and page.state["predicted"] is None
+    page.settle(picture())
+    page.do("observer-more")
+    page.compute()
+    assert run(page).done == ["step", "predict", "step"], "as soon as there is one that does"

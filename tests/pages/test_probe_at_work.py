@@ -1,0 +1,59 @@
+"""Probe and Numbers without a browser: they follow the settled picture, and cost nothing while nobody looks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+from page_host import Trial, picture
+
+from granchain_core import BadInput, scene, settled
+
+
+@pytest.fixture
+def probe(page_of: Callable[[str], Trial]) -> Trial:
+    """The Probe page."""
+    return page_of("probe")
+
+
+@pytest.fixture
+def numbers(page_of: Callable[[str], Trial]) -> Trial:
+    """The Numbers tab."""
+    return page_of("numbers")
+
+
+def test_the_probe_draws_every_picture_while_somebody_looks(probe: Trial) -> None:
+    probe.settle()
+    assert probe.told == []
+    probe.look()
+    assert probe.state["sentence"].startswith("Bead 1 of 2") and len(probe.told) == 1
+    probe.settle(replace(picture(2100.0), final=False))
+    assert len(probe.told) == 2, "a preview, too"
+    probe.look(False)
+    probe.settle()
+    assert len(probe.told) == 2
+
+
+def test_the_probe_keeps_its_bead_and_a_shorter_chain_has_its_last_one(probe: Trial) -> None:
+    probe.look()
+    probe.do("probe-bead", bead=2)
+    assert (probe.state["bead"], probe.state["beads"]) == (2, 2)
+    probe.settle(picture(2100.0))
+    assert probe.state["bead"] == 2
+    probe.settle(settled(scene("sec2").evolve(N=1, f=2000.0), samples=8))
+    assert (probe.state["bead"], probe.state["beads"]) == (1, 1)
+    with pytest.raises(BadInput, match="bead '3' is not a whole number"):
+        probe.do("probe-bead", bead=3)
+
+
+def test_every_final_picture_is_summed_up_and_its_tables_are_for_who_looks(numbers: Trial) -> None:
+    numbers.settle(replace(picture(), final=False))
+    assert numbers.told == []
+    numbers.settle()
+    assert numbers.last("numbers")["summary"].startswith("At 2000 Hz") and "beads" not in numbers.last("numbers")
+    numbers.look()
+    assert len(numbers.last("numbers")["beads"]) == 2 and numbers.last("numbers")["forces"]
+    numbers.look(False)
+    numbers.settle(picture(2100.0))
+    assert numbers.last("numbers")["summary"].startswith("At 2100 Hz") and "beads" not in numbers.last("numbers")
