@@ -68,7 +68,7 @@ def called(page: Page, script: str, name: str, cases: list[Any]) -> list[Any]:
     ("linear", 10.0, 30.0, 20.0), ("log", 1.0, 100.0, 10.0), ("cubic", 0.0, 8.0, 1.0)])
 def test_a_slider_goes_from_place_to_value_and_back(blank: Page, scale: str, low: float, high: float, middle: float) -> None:
     values, places = blank.evaluate("""async ([scale, low, high]) => {
-      const { RANGE } = await import("/parts/knob.js");
+      const { RANGE } = await import("/parts/knobs/knob.js");
       const values = [0, 0.25, 0.5, 0.75, 1].map((place) => RANGE[scale].value(place, { low, high }));
       return [values, values.map((value) => RANGE[scale].place(value, { low, high }))];
     }""", [scale, low, high])
@@ -82,19 +82,19 @@ WRITTEN = [(340.0, 1.0, "340"), (0.0, 1.0, "0"), (5e-7, 1e-6, "0.5"), (1.2345678
 
 
 def test_a_number_in_a_knobs_field_has_six_figures(blank: Page) -> None:
-    assert called(blank, "parts/knob.js", "written", [case[:2] for case in WRITTEN]) == [case[2] for case in WRITTEN]
-    assert called(blank, "parts/knob.js", "rounded", [[340.123], [0.00123456], [99999]]) == [340.1, 0.001235, 100000]
+    assert called(blank, "parts/knobs/knob.js", "written", [case[:2] for case in WRITTEN]) == [case[2] for case in WRITTEN]
+    assert called(blank, "parts/knobs/knob.js", "rounded", [[340.123], [0.00123456], [99999]]) == [340.1, 0.001235, 100000]
 
 
 def test_ticks_are_round_and_inside(blank: Page) -> None:
-    assert called(blank, "parts/plot.js", "ticks", [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
+    assert called(blank, "parts/toolkit/plot.js", "ticks", [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
         [0, 2, 4, 6, 8, 10], [-1, -0.5, 0, 0.5, 1], [0.2, 0.4], [0, 5e-10, 1e-9], [50, 100, 150]]
-    assert called(blank, "parts/plot.js", "stepBelow", [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
+    assert called(blank, "parts/toolkit/plot.js", "stepBelow", [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
 
 
 def test_the_browser_takes_the_prefixes_that_the_server_takes(blank: Page) -> None:
     values = [0.0, 1e-19, 999.4e-18, 999.6e-9, 1e-6, 0.001, 0.9994, 0.9996, 1.0, 999.4, 999.6, 1e3, 4.2e6, 1e9, 1e12]
-    found = called(blank, "parts/plot.js", "prefixed", [[value] for value in values])
+    found = called(blank, "parts/toolkit/plot.js", "prefixed", [[value] for value in values])
     assert [letter for _, letter in found] == [prefixed(value)[1] for value in values]
     assert [factor for factor, _ in found] == pytest.approx([prefixed(value)[0] for value in values], rel=1e-12, abs=0.0)
 
@@ -102,7 +102,7 @@ def test_the_browser_takes_the_prefixes_that_the_server_takes(blank: Page) -> No
 def test_a_place_of_the_map_is_the_finest_cell_that_covers_it(blank: Page) -> None:
     """A map of 4 × 3: the first cell of 4, one of 2 and one of its own."""
     found = blank.evaluate("""async () => {
-      const { MAP, cellAt, finest, valuesOf } = await import("/pages/map/cells.js");
+      const { MAP, cellAt, finest, valuesOf } = await import("/pages/map/map_state.js");
       const none = cellAt(0, 0, (MAP.head = { x: [10, 20, 30, 40], y: [1, 2, 3] }));
       MAP.cells.rows = { cells: { number: [0, 2, 5], spacing: [4, 2, 1] } };
       return [none, [[0, 0], [1, 1], [1, 3], [2, 3], [0, 3]].map(([i, j]) => cellAt(i, j)), finest([0, 1, 2]), valuesOf(2)];

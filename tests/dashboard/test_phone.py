@@ -10,7 +10,7 @@ import pytest
 import app
 from app.scripts import FILES
 
-#: What `PHONE` of app/parts/dom.js asks for.
+#: What `PHONE` of app/parts/toolkit/dom.js asks for.
 (PHONE,) = re.findall(r'PHONE = matchMedia\("([^"]+)"\)', FILES["dom.js"].read_text(encoding="utf-8"))
 _WIDTH, _HEIGHT = PHONE.split(", ")
 (_WIDEST,) = re.findall(r"\d+", _WIDTH)
