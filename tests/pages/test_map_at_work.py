@@ -36,7 +36,7 @@ def interrupted(monkeypatch: pytest.MonkeyPatch, tab: Trial, cells: int) -> None
         raise Cancelled
 
     with monkeypatch.context() as patched:
-        patched.setattr(module, "CELLS_EVERY", 0.0)
+        patched.setattr(module, "_MESSAGE_EVERY", 0.0)
         patched.setattr(module, "iter_diagram", some)
         tab.look()
         given: Any = tab.given[0]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, fields
+from dataclasses import fields
 from typing import Any
 
 from granchain_core import Scene, scene
@@ -15,9 +15,10 @@ from .foundation import beside_kappa, foundation_words
 
 MAIN = tuple(name for name, quantity in QUANTITIES.items() if quantity.main)
 MORE = tuple(name for name in QUANTITIES if name not in MAIN)
-#: Knobs whose field of a scene has a default, such as those of unequal beads and of an impact, with that value: there
-#: they have no effect. A scene with other values shows these knobs among the main ones.
-_NEUTRAL = {one.name: one.default for one in fields(Scene) if one.name in QUANTITIES and one.default is not MISSING}
+#: Knobs of unequal beads and of an impact, with the values at which they have no effect. A scene with other values
+#: shows these knobs among the main ones.
+_NEUTRAL = {one.name: one.default for one in fields(Scene)
+            if one.name in ("dimer", "taper", "striker", "site", "impurity", "drive", "strike", "end")}
 #: What a knob is without a drive: its label and its meaning.
 _UNDRIVEN = {
     "f": ("time shown = 1/f", "This chain has no drive: 1/f is only the time that is shown."),
