@@ -65,7 +65,7 @@ class Dop853Stepper:
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
-        return self.stretch(y, first, len(samples.displacement) - 1, 1, samples, out)
+        return self.run_range(y, first, len(samples.displacement) - 1, 1, samples, out)
 
     def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
                 out: KernelIO) -> tuple[int, int]:
@@ -74,7 +74,7 @@ class Dop853Stepper:
         strobes[0] = y[:row], self.work.k[0, :row]
         for p in range(len(maxima)):
             next_period(out.log.peaks)
-            status, _ = self.stretch(y, 0, self.grid, self.grid if watch else 0, keep, out)
+            status, _ = self.run_range(y, 0, self.grid, self.grid if watch else 0, keep, out)
             if status != DONE:
                 return status, p
             strobes[p + 1] = y[:row], self.work.k[0, :row]
@@ -83,7 +83,7 @@ class Dop853Stepper:
                 maxima[p] = largest_forces(out.log.peaks)
         return DONE, len(maxima)
 
-    def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
+    def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         status, rows = run_dop853(self.method, self.trajectory(y), SampleRange(first, points, self.grid, every),

@@ -32,7 +32,7 @@ class Dop853RootStepper(Dop853Stepper):
         self._vectors = _workspace(scaled)
         super().use(scaled)
 
-    def stretch(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
+    def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
                 out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         status, rows = run_dop853_root(self.method, self._vectors, self.trajectory(y),
