@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
+import json
 import statistics
-import time
+import subprocess
+import sys
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
 
 import numpy as np
-
-from granchain_core import resonance_curve, scene
 
 from . import machine, problem
 from .case import Case, Peaks
@@ -24,6 +25,7 @@ EQUAL = 1e-4
 PATIENCE = 12.0
 #: Curves that are timed on all cores, and as many on one.
 _TURNS = 9
+_ROOT = Path(__file__).resolve().parents[2]
 
 
 @dataclass(frozen=True)
@@ -113,33 +115,26 @@ def _table(found: list[Answer], points: int, notes: list[str]) -> str:
 
 
 def product(frequencies: np.ndarray, accurate: np.ndarray, periodic: np.ndarray, tell: Callable[[str], None]) -> str:
-    """`resonance_curve` as a user calls it: settled states with proof, on all cores and on one."""
-    threads = (machine.unpin(), 1)
-    curves: dict[int, Any] = {}
-    times: dict[int, list[float]] = {workers: [] for workers in threads}
-    for turn in range(_TURNS):
-        for workers in threads:
-            tell(f"resonance_curve, {workers} threads, {turn + 1} of {_TURNS}")
-            machine.pin() if workers == 1 else machine.unpin()
-            if turn == 0:
-                resonance_curve(scene("sec2"), frequencies[::25], workers=workers)  # a compiler may be in the first one
-            began = time.perf_counter()
-            curves[workers] = resonance_curve(scene("sec2"), frequencies, workers=workers)
-            times[workers].append(time.perf_counter() - began)
+    """`resonance_curve` as a user calls it: settled states with proof, on all cores and on one (product.py)."""
+    tell(f"resonance_curve, {_TURNS} turns")
+    machine.unpin()
+    with tempfile.TemporaryDirectory() as folder:
+        wanted = Path(folder, "frequencies.json")
+        wanted.write_text(json.dumps(list(frequencies)), encoding="utf-8")
+        answer = subprocess.run([sys.executable, "-m", "tests.benchmarks.product", str(_TURNS), str(wanted)], cwd=_ROOT,
+                                capture_output=True, text=True, check=True)
     machine.pin()
     rows = []
-    for workers in threads:
-        curve = curves[workers]
-        settled = np.array([p.regime.name == "periodic" for p in curve.points])
+    for workers, found in json.loads(answer.stdout.strip().splitlines()[-1]).items():
+        settled = np.array(found["periodic"])
         both = settled & periodic
-        forces = curve.column("max_output_force_elastic") / _force_unit()
-        off = np.abs(forces / accurate - 1.0)[both]
-        rows.append(["resonance_curve", f"{workers} threads", seconds(statistics.median(times[workers])),
-                     seconds(min(times[workers])), f"{settled.sum()}", f"{both.sum()}", f"{off.max():.0e}",
+        off = np.abs(np.array(found["forces"]) / _force_unit() / accurate - 1.0)[both]
+        rows.append(["resonance_curve", f"{workers} threads", seconds(statistics.median(found["seconds"])),
+                     seconds(min(found["seconds"])), f"{settled.sum()}", f"{both.sum()}", f"{off.max():.0e}",
                      f"{np.median(off):.0e}"])
     return table("The product: settled or shown irregular at every point, not 120 periods",
                  ["call", "cores", "median", "least", "periodic", "compared", "worst", "median error"], rows,
-                 [f"Median and least of {_TURNS}, the two in turns."])
+                 [f"In a process of its own. Median and least of {_TURNS}, the two in turns."])
 
 
 def _force_unit() -> float:
