@@ -146,14 +146,15 @@ class ScaledChain:
     def step(self) -> float:
         """The fixed-step method's step in scaled time."""
         slots = self.slots
-        lightest = float(slots.chain.inverse_mass.max())
+        largest_inverse_mass = float(slots.chain.inverse_mass.max())
         stiffest = float(slots.chain.stiffness.max())
         static = float(slots.preload.static.max()) if slots.preload is not None else 0.0
         overlap = max(1.0, static, self._struck)
-        step = _STEP / math.sqrt(lightest * stiffest) / overlap**0.25
+        step = _STEP / math.sqrt(largest_inverse_mass * stiffest) / overlap**0.25
         stiffness, damping = self._body_rates
         if slots.dissipation is not None:
-            damping += 4.0 * slots.dissipation.coefficient * overlap ** exponent(slots.dissipation) * lightest
+            strength = slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
+            damping += 4.0 * strength * largest_inverse_mass
         if damping > 0.0:
             step = min(step, _DAMPING_LIMIT / damping)
         if stiffness > 0.0:

@@ -68,7 +68,7 @@ def table_of_regimes() -> str:
 
 #: The constants that decide what a motion is called, in the order of the definitions.
 _DECIDING = ("SETTLED_DISTANCE", "STANDARD_ERRORS", "_BOUNDED_GROWTH", "_LARGEST_NEUTRAL_EXPONENT", "_RETURN_FACTOR",
-             "_SHRINK_FACTOR")
+             "_SHRINK_FACTOR", "CLEAR_GROWTH", "_EXPONENT_DIFFERENCE", "LONGEST_LOCKED_PERIOD")
 
 
 def table_of_deciding() -> str:

@@ -188,7 +188,7 @@ class Controller:
     # What happens here
 
     def picture_ready(self, picture: Settled) -> None:
-        """A settled picture is ready: inform all that show something of it, the pages once it has been sent."""
+        """A settled picture is ready: inform all that show something of it, the pages once it is offered."""
         self.views.header.began_from(picture.start, self.session)
         self.pinned.picture_ready(picture)
         self.files.picture_ready(picture)

@@ -52,7 +52,7 @@ class LinksAndFiles:
 
     def _export(self, message: dict[str, Any]) -> None:
         what = message.get("what", "hdf5")
-        run = self._pictures.run()
+        run = self._pictures.shown_run()
         if run is None:
             raise BadInput(_NONE)
         if what == "hdf5":

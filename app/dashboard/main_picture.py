@@ -154,7 +154,7 @@ class MainPicture:
         """Take the next step of the live run: `samples`, or as many as the viewing time asks for."""
         self._jobs.submit(partial(self._live_step, samples, self._session.speed, self._session.insisted))
 
-    def run(self) -> Run | None:
+    def shown_run(self) -> Run | None:
         """The motion on the screen as a run."""
         if self.live is not None:
             return self.live.window_run()

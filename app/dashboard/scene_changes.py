@@ -87,7 +87,7 @@ class SceneChanges:
         self._pictures.compute(start)
 
     def picture_ready(self, picture: Settled) -> None:
-        """Inform the pages of a picture when it has been sent, unless another is requested or ready by then."""
+        """Inform the pages once a picture is offered to the browser, unless another is requested or ready by then."""
         self._untold = picture
         self._next_tick(self._tell_picture)
 

@@ -25,7 +25,11 @@ class Caller(Protocol):
 
 
 class WorkHost(Caller, Protocol):
-    """What a `Task` needs: calls, whether the picture is being computed, and whom to tell of errors."""
+    """What work in the background needs: calls, whether to wait for the picture, and whom to tell of errors.
+
+    A `Task` waits while `awaiting_picture`; peak names, pins and sweeps, which compute much, also wait for a live step
+    (`busy`).
+    """
 
     @property
     def busy(self) -> bool:

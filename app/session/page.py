@@ -39,7 +39,10 @@ class Page:
         """The session became what an address says: a visit, or a step back or forward."""
 
     def picture_ready(self, picture: Settled) -> None:
-        """A settled picture was sent to the browser; a better one for these knobs may follow unless `picture.final`."""
+        """A settled picture has been offered to the browser, whose pace may still hold it back.
+
+        A better one for these knobs may follow unless `picture.final`.
+        """
 
     def curve_ready(self) -> None:
         """The resonance curve from rest is complete: `Host.complete_curve` has it."""

@@ -1,14 +1,6 @@
 """Comparing results: whether two of them are the same steady state.
 
-Periodic results are the same if all their stroboscopic states agree for some shift by whole periods, so that the n
-copies of a period-n orbit count once: first within the errors stated for them, at most `_LARGEST_DIFFERENCE` each. Then
-the first of each group is brought onto its orbit by Newton's method, and groups whose orbits agree within the sum of
-their `_ORBIT_DIFFERENCE`/(1 − |μ|), with 1 − |μ| at least 1e-3, are joined. A group is not divided again.
-
-Motions that are not periodic are the same if their sections lie in each other: the median distance of the states of one
-to the nearest of the other is no larger than `_SECTION_FACTOR` times that between neighbours within each. Near a
-resonance the states of a closed curve come in short arcs, which shift slowly, so sections that differ are compared
-again with more states.
+docs/diagram.md ("All attractors of one setting") has the rules and the reasons.
 """
 
 from __future__ import annotations
@@ -31,6 +23,8 @@ from ..steady.steady_state import SteadyState
 _LARGEST_DIFFERENCE = 1e-3
 #: Orbits found by Newton's method that agree to this, over 1 − |μ|, are the same.
 _ORBIT_DIFFERENCE = 1e-7
+#: 1 − |μ| of an orbit counts as at least this.
+_LEAST_CONTRACTION = 1e-3
 #: Sections are different if their distance exceeds that between neighbouring states of one section by this factor.
 _SECTION_FACTOR = 3.0
 #: States in the section of a motion that is not periodic, taken after as many further periods, and in the longer ones
@@ -56,7 +50,7 @@ class Found:
     def tolerance(self) -> float:
         """How far its section may be from the true one, relative to the largest displacement or w."""
         if self.orbit is not None:
-            return _ORBIT_DIFFERENCE / max(1e-3, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
+            return _ORBIT_DIFFERENCE / max(_LEAST_CONTRACTION, 1.0 - min(1.0, float(np.abs(self.orbit.multipliers[0]))))
         return min(_LARGEST_DIFFERENCE, self.result.output_force_error or 0.0)
 
     def section_of(self, states: int) -> np.ndarray:

@@ -12,9 +12,7 @@ arclength s, on which Newton's method solves map(state, x) = state bordered by t
 need no special treatment; the root of the condition along s is found by secants. From one y to the next the curve is
 extrapolated, with steps that are halved where that fails.
 
-Newton's method here (`_Branch.solve`) is not that of orbits/branch. The condition needs the exact derivative at every
-point, and a secant search has a handful of them; orbits/branch follows hundreds of orbits and saves derivatives, by
-maps of lower accuracy that would be no use for the condition.
+docs/diagram.md says why Newton's method here (`_Branch.solve`) is not that of orbits/branch.
 
 Source: Kuznetsov 2004, chapter 10.
 """
@@ -82,9 +80,9 @@ class _Branch:
     stop: Stop | None
     near: complex | None = None
 
-    def at(self, x: float) -> Scene:
-        """The scene at a point's last entry."""
-        return self.scene.evolve(**{self.knob: float(x) * self.unit})
+    def at(self, ratio: float) -> Scene:
+        """The scene at a point's last entry, x / unit."""
+        return self.scene.evolve(**{self.knob: float(ratio) * self.unit})
 
     def map(self, X: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The map's end from X, and its derivative (2N, 2N)."""
@@ -155,12 +153,17 @@ def bifurcation_point(scene: Scene, kind: str, state: State | np.ndarray, period
     there is none near.
     """
     _check(scene, kind, x, y)
-    branch = _Branch(scene, x, float(scene.knobs[x]), period, stop)
+    branch = _Branch(scene, x, value_of(scene, x), period, stop)
     stroboscopic_map = StroboscopicMap(scene, period, stop)
     inner = (state if isinstance(state, np.ndarray)
              else stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(state)))
     along = np.append(np.zeros(len(inner)), 1.0)
     return _nearest(branch, kind, np.append(inner, 1.0), along, y)
+
+
+def value_of(scene: Scene, knob: str) -> float:
+    """The number that a knob stands at; of the wall, which may be named, its stiffness factor."""
+    return scene.wall_factor if knob == "wall" else float(scene.knobs[knob])
 
 
 def _check(scene: Scene, kind: str, x: str, y: str) -> None:
@@ -169,7 +172,7 @@ def _check(scene: Scene, kind: str, x: str, y: str) -> None:
     for knob in (x, y):
         if knob not in KNOBS:
             raise unknown_name("knob of a bifurcation curve", knob, KNOBS)
-        if not float(scene.knobs[knob] if knob != "wall" else scene.wall_factor) > 0.0:
+        if not value_of(scene, knob) > 0.0:
             raise BadInput(f"A bifurcation curve over {knob} begins at a value above 0; give the scene one.")
     if x == y:
         raise BadInput(f"Both knobs are {x}; give two distinct ones.")
@@ -184,7 +187,7 @@ def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y
         step = _FIRST_STEP * float(np.linalg.norm(before)) * branch.tangent(derivative, slope, along)
         for _ in range(_MOST_SECANTS):
             if _met(mu, kind):
-                return BifurcationPoint(float(before[-1]) * branch.unit, float(branch.scene.knobs[y]), mu, before[:-1])
+                return BifurcationPoint(float(before[-1]) * branch.unit, value_of(branch.scene, y), mu, before[:-1])
             X, there, mu = _advanced(branch, kind, before, step, slope)
             gain = condition - there
             factor = there / gain if gain != 0.0 else _LONGEST_SECANT

@@ -274,7 +274,7 @@ def typical_error(setting: Setting) -> float:
 
 def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.ndarray,
                 maxima: np.ndarray) -> np.ndarray:
-    """Lower bounds (3,) of the relative errors of the largest forces where these are at jumps (2,), with this step.
+    """What the stated relative errors (3,) of the largest forces must be at least where these are at jumps (2,).
 
     All in scaled units.
 

@@ -67,7 +67,8 @@ class Computations:
     Two computations may agree by chance (docs/accuracy.md, "Accuracy is measured, not trusted"). So the stated error is
     the largest of
       - the difference of the last two, times a factor;
-      - the previous difference, reduced by the method's order, or with error control by the ratio of the tolerances;
+      - the previous difference, times the same factor, reduced by the method's order, or with error control by the
+        ratio of the tolerances;
       - the typical error of a method with such steps;
       - the rounding of the steps, times the largest growth of errors that any of the computations showed; no growth is
         taken from a computation whose typical error is 1e-10 or less, and without any the term is 0;

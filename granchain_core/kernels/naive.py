@@ -1,6 +1,6 @@
 """The naive methods: the equations in (u, v), whose dashpot force jumps, with fixed steps across all events.
 
-Equation   m_i v̇_i = F_{i-1} − F_i − k u_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
+Equation   m_i v̇_i = F_{i-1} − F_i + P_i,  F_c = K δ^{3/2} + g(δ) δ̇ H(δ)         Zhang et al. 2016, eq. (1)
 Purpose    the usual first attempt, against which the gain of w-variables and located events is measured
 The second row of the state holds v here, not w; for the rest of the program nothing else differs. Importing this module
 registers the two methods' code for `step` of rk4/step.py (integrate/fixed.py does).

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import MISSING, fields
 from typing import Any
 
 from ..errors import BadInput
 from ..input_checks import unknown_name
-from ..quantities import QUANTITIES, WALL_FACTORS
+from ..quantities import QUANTITIES, WALL_FACTORS, Quantity
 from .description import BEAD_LIMITS, Bead, Description, is_number
 
 #: Longest text of a scene [characters].
@@ -18,11 +19,24 @@ _LONGEST = 10_000
 _MOST = int(QUANTITIES["N"].high)
 #: The smallest number above 0.
 _TINIEST = math.ulp(0.0)
-#: Knobs that are numbers above 0, those that may be 0, and those that are words, by their choices.
-_ABOVE_0 = ("f", "A0", "accuracy", "reference_overlap", "dimer", "taper", "striker", "impurity")
-_FROM_0 = ("D", "k", "F0", "strike")
-_COUNTS = ("N", "site")
-_WORDS = tuple((name, frozenset(QUANTITIES[name].choices)) for name in ("dissipation", "tension", "drive", "end"))
+
+
+def _least(quantity: Quantity) -> float:
+    """The least value of a knob in a scene; its range may begin higher."""
+    if quantity.low > 0.0:
+        return _TINIEST
+    return 0.0 if quantity.low == 0.0 else -sys.float_info.max
+
+
+#: The knobs that are fields of a scene; κ is computed. The wall, which may be named or a number, is checked by itself.
+_KNOBS = tuple(quantity for name, quantity in QUANTITIES.items()
+               if name in {field.name for field in fields(Description)} and name != "wall")
+#: Those that are numbers, by what they must be at least: above 0, 0 or above, or any finite number.
+_NUMBERS = (*((quantity.name, _least(quantity)) for quantity in _KNOBS if quantity.numeric and not quantity.whole),
+            ("reference_overlap", _TINIEST))
+#: Those that count, and those that are words, with their choices.
+_COUNTS = tuple(quantity.name for quantity in _KNOBS if quantity.whole)
+_WORDS = tuple((quantity.name, frozenset(quantity.choices)) for quantity in _KNOBS if not quantity.numeric)
 
 
 def checked_values(scene: Description) -> dict[str, Any]:
@@ -34,19 +48,18 @@ def checked_values(scene: Description) -> dict[str, Any]:
     """
     values: dict[str, Any] = vars(scene)
     other: dict[str, Any] = {}
-    for names, least in ((_ABOVE_0, _TINIEST), (_FROM_0, 0.0)):
-        for name in names:
-            value = values[name]
-            if type(value) is not float:
-                if not is_number(value):
-                    raise _refused(name, value)
-                other[name] = value = float(value)
-            if not least <= value < math.inf:
+    for name, least in _NUMBERS:
+        value = values[name]
+        if type(value) is not float:
+            if not is_number(value):
                 raise _refused(name, value)
+            other[name] = value = float(value)
+        if not least <= value < math.inf:
+            raise _refused(name, value)
     for name in _COUNTS:
         value = values[name]
         if type(value) is not int:
-            if not is_number(value) or int(value) != value:
+            if not is_number(value) or not math.isfinite(value) or int(value) != value:
                 raise _refused(name, value)
             other[name] = value = int(value)
         if value < 1:

@@ -63,8 +63,8 @@ def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
 def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, rounding: float = ROUNDING) -> Regime:
     """Periodic with the smallest n whose distance bound holds, else unsettled; strobes (P + 1, 2, N).
 
-    Changes below `rounding` are the method's own and count as none. Those that are lost in it may still be those of a
-    slow approach: the distance is no better known than rounding·r/(1 − r) with the decay r.
+    Changes below `rounding` are the method's own and count as none. A slow approach may hide below it, so the distance
+    is no better known than rounding·r/(1 − r) with the decay r.
     """
     periods_run = len(strobes) - 1
     period, decay, distance, *_ = periodicity.detect_period(np.ascontiguousarray(strobes), longest, rounding,

@@ -68,6 +68,32 @@ def test_files_named_in_the_source_exist():
     assert lost == []
 
 
+def test_files_named_by_their_place_in_a_package_exist():
+    """So does one that is named from its package on, as `flow/tangent.py` in a file of granchain_core."""
+    lost = []
+    for top in ("granchain_core", "app"):
+        for path in sorted((ROOT / top).rglob("*.py")):
+            for name in re.findall(r"(?<![\w./-])((?:[a-z_0-9]+/)+[a-z_0-9]+\.(?:py|js|css))\b", path.read_text(encoding="utf-8")):
+                places = [ROOT, ROOT / "granchain_core", ROOT / "app", *path.parents]
+                if not any((place / name).exists() for place in places):
+                    lost.append(f"{path.relative_to(ROOT)}: {name}")
+    assert lost == []
+
+
+def test_modules_named_in_the_docs_can_be_found():
+    """A dotted name such as `granchain_core.virtual_experiment` is a module, or a name in one."""
+    lost = []
+    for page in [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
+        for name in re.findall(r"`((?:granchain_core|app)(?:\.[a-z_0-9]+)+)", page.read_text(encoding="utf-8")):
+            module = ROOT.joinpath(*name.split("."))
+            owner = ROOT.joinpath(*name.split(".")[:-1])
+            found = module.is_dir() or module.with_suffix(".py").exists()
+            source = owner / "__init__.py" if owner.is_dir() else owner.with_suffix(".py")
+            if not found and not (source.exists() and name.rpartition(".")[2] in source.read_text(encoding="utf-8")):
+                lost.append(f"{page.name}: {name}")
+    assert lost == []
+
+
 def test_the_glossary_names_a_place_for_every_term():
     """Each row has a term, what it is, and at least one file or page."""
     rows = re.findall(r"^\| (?!symbol|---)(.+) \|$", (ROOT / "docs" / "glossary.md").read_text("utf-8"), re.MULTILINE)

@@ -4,7 +4,8 @@ they were made."""
 from __future__ import annotations
 
 import json
-from dataclasses import FrozenInstanceError, replace
+import math
+from dataclasses import FrozenInstanceError, fields, replace
 
 import numpy as np
 import pytest
@@ -151,3 +152,13 @@ def test_beads_that_are_thrown_and_do_not_exist_are_refused():
     thrown = replace(scene("sec2"), start_velocity=((9, 0.1),))
     with pytest.raises(BadInput, match="leaves no bead 9"):
         thrown.evolve(N=5)
+
+
+@pytest.mark.parametrize("name", [name for name, quantity in QUANTITIES.items()
+                                  if name in {field.name for field in fields(Scene)} and quantity.numeric])
+def test_every_knob_that_is_a_number_is_checked_where_a_scene_is_made_in_python(name: str) -> None:
+    """The check follows from the table of quantities, so a new knob cannot be forgotten."""
+    below = [] if math.isinf(QUANTITIES[name].low) else [-5.0]
+    for wrong in (math.nan, math.inf, "x", None, *below):
+        with pytest.raises(BadInput):
+            replace(scene("sec2"), **{name: wrong})

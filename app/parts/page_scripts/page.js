@@ -95,7 +95,7 @@ window.granchain = (() => {
     if (event.key === "Escape" && overlay) closePage();
   });
 
-  // Sealed: no script can add a member. The script that a comment names sets the members that are null here.
+  // Sealed: no script can add a member. The script that a comment names sets the members below the comment.
   return Object.seal({
     on,
     emit,

@@ -6,6 +6,7 @@ from typing import Any
 
 from granchain_core import Run, Settled
 from granchain_core.integrate import METHODS
+from granchain_core.kernels.strobes.periodicity import SETTLED_DISTANCE
 from granchain_core.regime import NEVER_REPEATING, Regime, modulus_words
 from granchain_core.steady.curve.resonance import STOP_BAND_PART, Place, place_words, push_words, pushes
 
@@ -34,8 +35,8 @@ _LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the loga
              "clearly above zero the motion is chaotic.")
 _FOLLOWED = ("Followed to its orbit: the motion approached it so slowly that the orbit was computed from the last "
              "periods, by Newton's method or extrapolation.")
-_SETTLED = ("Settled: number of drive periods after which the distance to the periodic orbit was below the stated "
-            "error.")
+_SETTLED = ("Settled: number of drive periods that were run until the bound on the distance to the periodic orbit was "
+            f"at most {SETTLED_DISTANCE:g} of the motion.")
 
 
 class StatusLine(Component):

@@ -25,7 +25,7 @@ from ..document.part_messages import dispatch
 from ..monitoring.metrics import METRICS
 from .compressed import CompressedFiles
 from .limits import USUAL_VISITORS
-from .message_rules import LARGEST_HEADER, RefusedMessage, check
+from .message_rules import LARGEST_HEADER, RefusedMessage, checked_content
 
 log = logging.getLogger("granchain.requests")
 
@@ -117,12 +117,12 @@ class Guard(RequestHandler):
 
     async def prepare(self) -> None:
         """Refuse a request that is for another server or not allowed."""
-        self.check()
+        self.check_request()
         looked = super().prepare()
         if looked is not None:
             await looked
 
-    def check(self) -> None:
+    def check_request(self) -> None:
         """Raise `HTTPError` if the request is refused."""
         if not self.rules.serves(self.request.host_name):
             raise HTTPError(421, "host %r is not served", self.request.host_name[:80])
@@ -165,12 +165,12 @@ class GuardedSocket(Guard):
     _refused = False
     _left = False
 
-    def check(self) -> None:
+    def check_request(self) -> None:
         """Also refuse a connection without a token of this server, or with one that was used before.
 
         Bokeh looks at the signature again, but only after the handshake.
         """
-        super().check()
+        super().check_request()
         offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
         try:
             token, secret = offered[1], self.application.secret_key  # type: ignore[attr-defined]
@@ -200,11 +200,11 @@ class GuardedSocket(Guard):
                     raise RefusedMessage("too long a header")
                 return None
             frames, self._frames = self._frames, ()
-            asked = check(frames[0], frames[2])
+            content = checked_content(frames[0], frames[2])
         except RefusedMessage as reason:
             self._refuse(str(reason))
             return None
-        return None if dispatch(getattr(self, "connection", None), asked) else self._to_bokeh(frames)
+        return None if dispatch(getattr(self, "connection", None), content) else self._to_bokeh(frames)
 
     async def _to_bokeh(self, frames: tuple[str, ...]) -> None:
         for frame in frames:

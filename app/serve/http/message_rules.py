@@ -34,17 +34,17 @@ class RefusedMessage(Exception):
     """A message that no page of ours sends; the text says why."""
 
 
-def check(header: str, content: str) -> dict[str, Any]:
+def checked_content(header: str, content: str) -> dict[str, Any]:
     """The content of a message; raise `RefusedMessage` for one that is not let through."""
-    asked = _object("header", header)
-    if not isinstance(asked.get("msgid"), str) or asked.get("msgtype") not in KINDS:
+    head = _object("header", header)
+    if not isinstance(head.get("msgid"), str) or head.get("msgtype") not in KINDS:
         raise RefusedMessage("unknown kind of message")
-    if asked.get("num_buffers", 0) != 0:
+    if head.get("num_buffers", 0) != 0:
         raise RefusedMessage("binary data")
     given = _object("content", content)
     if len(content) > LARGEST_PLAIN_CONTENT and not _is_upload(given):
         raise RefusedMessage("too long a message")
-    if asked["msgtype"] == "PULL-DOC-REQ":
+    if head["msgtype"] == "PULL-DOC-REQ":
         return given
     events = given.get("events")
     if not isinstance(events, list) or not events:

@@ -138,7 +138,7 @@ class Queue:
                     self._free += 1
 
 
-#: One thread for each visitor whose picture is awaited; default steps, energy accounts and drafts are computed in it.
+#: One thread for each visitor whose picture is awaited; live steps, energy accounts and drafts are computed in it.
 VISITORS = Queue("visitors", 1000)
 #: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
 #: for the compiler keeps its thread.

@@ -53,7 +53,7 @@ class BatchState(NamedTuple):
     overlaps (N+1, L)        overlaps of the contacts one step ago
     end_contacts (4, L)      one step ago: overlap and rate of the first contact, overlap and rate of the last
     phase (2, L)             sine and cosine of the drive phase
-    peaks (PEAKS, L)         largest forces (forces/peaks.py)
+    peaks (PEAKS, L)         largest forces and jumps, and the last four values of each force (forces/peaks.py)
     steps, steps_left (L,)   steps in a period, and how many of them are left
     periods, return_at (L,)  periods run, and the period at which the kernel returns at the latest
     next_check (L,)          next period at which the strobes are checked

@@ -39,9 +39,10 @@ class CompileLock:
         return self._file is not None
 
     def acquire(self, patience: float = PATIENCE) -> None:
-        """Wait for the lock, no longer than `patience` [s]; look for the kernel then, whether the lock is held or not.
+        """Wait for the lock, no longer than `patience` [s].
 
-        Another process may have compiled it meanwhile, without a wait as well: between the last look and this call.
+        The caller must look for the kernel afterwards, whether it got the lock or not: another
+        process may have compiled it meanwhile, even without a wait, between the caller's last look and this call.
         """
         if fcntl is None or self.held:
             return

@@ -18,7 +18,7 @@ import numba
 
 from ..batch_size import BATCH_SIZE, processor
 
-#: Sources that decide where compiled code is stored but do not change it.
+#: Sources that decide where compiled code is stored and how it is called but do not change it.
 _KEEPERS = tuple(f"compiling/{name}.py" for name in ("cache", "cache_folder", "compile_lock", "entry", "sources"))
 #: Settings of Numba (environment variables with NUMBA_ before them) that change machine code and are not among the
 #: names of its own cache: optimisation level, bounds checks, debug information, vectorisers, AVX.

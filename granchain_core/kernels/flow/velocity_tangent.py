@@ -1,6 +1,6 @@
 """The tangent flow in (u, v), the second route: tangents jump where a dashpot contact opens or closes.
 
-Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + λ_{i-1} δδ̇_{i-1} − λ_i δδ̇_i + δP_i,   δu̇_i = δv_i
+Equation   m_i δv̇_i = s_{i-1} δδ_{i-1} − s_i δδ_i + g_{i-1} δδ̇_{i-1} − g_i δδ̇_i + δP_i,   δu̇_i = δv_i
 Saltation  at the onset of contact c   δv_c −= (λ/m_c) δδ_c,   δv_{c+1} += (λ/m_{c+1}) δδ_c,   at release the reverse:
            neighbouring trajectories cross the event at different times
 Source     saltation matrices: Leine & Nijmeijer 2004, chapter 7; for this force they are constant shears

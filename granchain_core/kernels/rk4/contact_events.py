@@ -23,13 +23,13 @@ MOST_SPLITS = 64
 
 @internal
 def first_event(ends, contacts, h):
-    """Fraction of a step of size h at which the first contact opens or closes and that contact; (2, −1) if none."""
-    first, contact = 2.0, -1
+    """(contact, fraction) of the first opening or closing in a step of size h; (−1, 2) if there is none."""
+    contact, first = -1, 2.0
     for c in range(contacts):
         root = contact_root(ends[OVERLAP, c], h * ends[RATE, c], ends[OVERLAP_END, c], h * ends[RATE_END, c])
         if root < first:
-            first, contact = root, c
-    return first, contact
+            contact, first = c, root
+    return contact, first
 
 
 @by_slot

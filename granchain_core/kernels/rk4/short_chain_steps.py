@@ -54,7 +54,7 @@ def split_short_step(short, trajectory, j, u_end, v_end, out):
     last = slots.chain.stiffness.size - 1
     reset_corrections(ends)
     for _ in range(MOST_SPLITS):
-        first, contact = first_event(ends, last + 1, h * (1.0 - done))
+        contact, first = first_event(ends, last + 1, h * (1.0 - done))
         if first > 1.0:
             return
         part, start = first * (1.0 - done), load_state(short, BEGIN)

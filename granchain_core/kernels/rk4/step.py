@@ -216,7 +216,7 @@ def split(trajectory, j, u_end, v_end, out):
     write_overlaps(slots, y, k[0], ends, OVERLAP, RATE)
     for _ in range(MOST_SPLITS):
         write_overlaps(slots, end, k[3], ends, OVERLAP_END, RATE_END)
-        first, contact = first_event(ends, last + 1, h * (1.0 - done))
+        contact, first = first_event(ends, last + 1, h * (1.0 - done))
         if first > 1.0:
             break
         part = first * (1.0 - done)

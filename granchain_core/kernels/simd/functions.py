@@ -22,7 +22,7 @@ from .vector import VECTOR_WIDTH, VectorType, as_vector
 #: Whether the processor has `vrsqrt14pd` for eight doubles, and `rsqrtps` for four floats.
 _HAS_RSQRT14, _HAS_RSQRT_PS = has_avx512(), is_x86()
 #: Smallest number whose root is computed; smaller ones are replaced by it. Its power 3/2, the force of such an overlap,
-#: is negligible. As a float it must not be zero, where the inverse root is that of floats.
+#: is negligible. Where `rsqrtps` is used it must not become zero in single precision.
 _LEAST_ARGUMENT = 1e-280 if BATCH_SIZE == VECTOR_WIDTH else 1e-30
 
 

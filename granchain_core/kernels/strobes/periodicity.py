@@ -1,6 +1,6 @@
 """Periodicity of stroboscopic states: changes, their decay, the shortest period.
 
-Called thousands of times for one curve.
+A curve calls these functions thousands of times.
 
 States are rows (P, 2, N) of displacement and velocity, or of displacement and w, one per drive period. A change of
 displacements is relative to the largest displacement in the record, a change of velocities (or w) to the largest of

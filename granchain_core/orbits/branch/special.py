@@ -6,10 +6,8 @@ period_doubling  a real multiplier passes −1 (PD); at the end of a doubled bra
 neimark_sacker   a complex pair passes the unit circle (TR in AUTO, NS in MatCont)
 grazing          a contact touches or separates once more, or once less, along the orbit; not in AUTO and MatCont
 
-Each change lies between two computed orbits. For period doublings, Neimark–Sacker points and grazings the interval is
-that of the two orbits. The interval of a fold extends beyond them by a bound from both tangents, which assumes that the
-branch turns by less than 30° between them. Test functions only choose the next orbit to compute, so a wrong test
-function cannot make an interval wrong.
+Each change lies between two computed orbits (docs/branches.md says what the interval is). Test functions only choose
+the next orbit to compute, so a wrong test function cannot make an interval wrong.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ def test_the_first_of_several_contacts_is_taken() -> None:
     for c, root in enumerate((0.6, 0.25, 0.8)):
         ends[OVERLAP, c], ends[RATE, c], ends[OVERLAP_END, c], ends[RATE_END, c] = ends_of(root)
     ends[[RATE, RATE_END]] /= 0.5  # rates are in time, for a step of 0.5
-    found, contact = events.first_event.py_func(ends, 3, 0.5)
+    contact, found = events.first_event.py_func(ends, 3, 0.5)
     assert (found, contact) == (pytest.approx(0.25, rel=1e-11), 1)
 
 

@@ -11,7 +11,14 @@ import pytest
 from event_loop import run_async
 
 from app.serve.http import guard
-from app.serve.http.message_rules import DEEPEST, LARGEST_HEADER, REPORTED_PROPERTIES, UPLOAD, RefusedMessage, check
+from app.serve.http.message_rules import (
+    DEEPEST,
+    LARGEST_HEADER,
+    REPORTED_PROPERTIES,
+    UPLOAD,
+    RefusedMessage,
+    checked_content,
+)
 
 pytestmark = pytest.mark.quick
 
@@ -43,7 +50,7 @@ def nested(depth: int) -> list[Any]:
 @pytest.mark.parametrize("value", [
     None, 5, "text", [1, [2]], {"type": "number", "value": "nan"}, {"type": "map", "entries": [["a", {"id": "p2"}]]}, nested(DEEPEST)])
 def test_plain_values_pass(value: Any) -> None:
-    check(ASKED, content(value))
+    checked_content(ASKED, content(value))
 
 
 @pytest.mark.parametrize("value", [
@@ -53,13 +60,13 @@ def test_plain_values_pass(value: Any) -> None:
     {"type": "map", "entries": [["a", {"type": "bytes", "data": "AAAA"}]]}, nested(DEEPEST + 1)])
 def test_values_that_no_page_sends_are_refused(value: Any) -> None:
     with pytest.raises(RefusedMessage, match="too deep" if isinstance(value, list) else "of a kind that no page sends"):
-        check(ASKED, content(value))
+        checked_content(ASKED, content(value))
 
 
 @pytest.mark.parametrize("name", sorted(REPORTED_PROPERTIES))
 @pytest.mark.parametrize("value", [413, 0.5, None])
 def test_a_figure_reports_its_size(name: str, value: float | None) -> None:
-    check(ASKED, changed(name, value))
+    checked_content(ASKED, changed(name, value))
 
 
 @pytest.mark.parametrize("name", ["tags", "name", "data", "children", "state", "subscribed_events", "js_property_callbacks", "title",
@@ -67,23 +74,23 @@ def test_a_figure_reports_its_size(name: str, value: float | None) -> None:
 def test_no_other_property_is_set_by_a_browser(name: object) -> None:
     """Bokeh keeps what a browser writes into `tags` of any model: 60 messages would take half a gigabyte."""
     with pytest.raises(RefusedMessage, match="property that no page reports"):
-        check(ASKED, changed(name, 1))
+        checked_content(ASKED, changed(name, 1))
 
 
 @pytest.mark.parametrize("value", ["text", [1], {"type": "number", "value": "nan"}, {"type": "map", "entries": []}])
 def test_a_size_is_a_number(value: object) -> None:
     with pytest.raises(RefusedMessage, match="no number"):
-        check(ASKED, changed("inner_width", value))
+        checked_content(ASKED, changed("inner_width", value))
 
 
 def test_only_an_upload_is_long() -> None:
-    check(ASKED, uploaded(UPLOAD))
+    checked_content(ASKED, uploaded(UPLOAD))
     for given in (uploaded("go"), uploaded(UPLOAD, ["more", "text"]), content("x" * 200_000), changed("tags", "x" * 200_000),
                   json.dumps({"events": [json.loads(uploaded(UPLOAD))["events"][0]] * 2})):
         with pytest.raises(RefusedMessage, match="too long a message"):
-            check(ASKED, given)
+            checked_content(ASKED, given)
     with pytest.raises(RefusedMessage, match="too long a message"):
-        check(json.dumps({"msgid": "1", "msgtype": "PULL-DOC-REQ"}), json.dumps({"a": "x" * 200_000}))
+        checked_content(json.dumps({"msgid": "1", "msgtype": "PULL-DOC-REQ"}), json.dumps({"a": "x" * 200_000}))
 
 
 @pytest.mark.parametrize(("header", "given", "why"), [
@@ -94,7 +101,7 @@ def test_only_an_upload_is_long() -> None:
     (ASKED, '{"events": [5]}', "kind of event"), (ASKED, content(1, "RootAdded"), "kind of event")])
 def test_messages_that_no_page_sends_are_refused(header: str, given: str, why: str) -> None:
     with pytest.raises(RefusedMessage, match=why):
-        check(header, given)
+        checked_content(header, given)
 
 
 class Socket:
