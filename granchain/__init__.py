@@ -17,6 +17,9 @@ from granchain_core import __version__ as __version__
 
 if TYPE_CHECKING:
     from granchain_core import *  # noqa: F403
+    from granchain_core import continue_branch as continue_branch
+    from granchain_core import periodic_orbit as periodic_orbit
+    from granchain_core import settled as settled
 
     from .pictures import figure
     from .server import Dashboard, dashboard
@@ -31,7 +34,7 @@ def __getattr__(name: str) -> Any:
     """A public name, imported when it is first asked for."""
     if name in _OWN:
         return getattr(importlib.import_module(f".{_OWN[name]}", __name__), name)
-    if name in granchain_core.__all__:
+    if name in granchain_core.__all__ or name in granchain_core.OLDER_NAMES:
         return getattr(granchain_core, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 

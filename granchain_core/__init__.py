@@ -4,7 +4,10 @@
     result = run(scene("sec2").evolve(f=340.0))
 
 This is the public API: what is listed in `__all__` is public, everything else may change. Most commands have a
-function of the same name; README.md lists the others ("Python"), docs/python.md older names.
+function of the same name; README.md lists the others ("Python"), docs/python.md older names, which still work.
+
+Some functions have the name of a package (`run`, `fit`, `attractors`, `bifurcation_curves`). `from granchain_core.run
+import budget` imports from the package; `import granchain_core.run.budget as budget` does not work.
 """
 
 from __future__ import annotations
@@ -31,9 +34,11 @@ if TYPE_CHECKING:
     from .bifurcation_curves import BifurcationCurve, bifurcation_curves
     from .fit import Fit, fit
     from .observe import Observation, observe
-    from .orbits import Branch, Orbit, continue_branch, periodic_orbit
+    from .orbits import Branch, Orbit
     from .orbits import continue_branch as branch
+    from .orbits import continue_branch as continue_branch
     from .orbits import periodic_orbit as orbit
+    from .orbits import periodic_orbit as periodic_orbit
     from .parameter_map import Diagram, diagram
     from .prescribed_drive import Driven, Signal, drive
     from .regime import Regime
@@ -45,7 +50,8 @@ if TYPE_CHECKING:
     from .steady.curve.curve import Curve, CurvePoint
     from .steady.curve.resonance_curve import iter_curve, resonance_curve
     from .steady.settling.outcome import Settled
-    from .steady.settling.settle import settle, settled, settling
+    from .steady.settling.settle import settle, settling
+    from .steady.settling.settle import settled as settled
     from .stop import Stop
     from .store import load, save
 
@@ -72,15 +78,17 @@ _MODULE_OF = {name: module for module, names in _MODULES.items() for name in nam
 #: Public names of functions that the modules call by their older names: there `orbit` and `branch` are variables.
 _SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
+#: Older names, which still work (docs/python.md).
+OLDER_NAMES = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch"}
+
 __all__ = [
     "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "BifurcationCurve", "Branch", "Cancelled",
     "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed",
     "Observation", "Orbit", "OverBudget", "Pulse", "Regime", "RotationNumber", "Run", "Runs", "Scene", "Settled",
     "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors",
-    "bands", "basins", "bifurcation_curves", "branch", "continue_branch", "diagram", "drive", "fit", "iter_curve",
-    "load", "lyapunov_spectrum", "observe", "orbit", "periodic_orbit", "pulse", "resonance_curve", "rotation_number",
-    "run", "run_many", "save", "scene", "scene_names", "settle", "settled", "settling", "spectrum", "strobe_diagram",
-    "transfer", "work_precision",
+    "bands", "basins", "bifurcation_curves", "branch", "diagram", "drive", "fit", "iter_curve", "load",
+    "lyapunov_spectrum", "observe", "orbit", "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save",
+    "scene", "scene_names", "settle", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
 ]
 
 

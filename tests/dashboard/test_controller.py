@@ -75,7 +75,7 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
     monkeypatch.setattr(links_and_files, "save",
                         lambda run, path, measured: (threads.append(threading.current_thread().name), save(run, path, measured)))
     shown = run(scene("sec2"), periods=0, record=1, samples=24)
-    monkeypatch.setattr(dashboard.pictures, "run", lambda: shown)
+    monkeypatch.setattr(dashboard.pictures, "shown_run", lambda: shown)
     dashboard.received({"do": "export"})
     dashboard.run_callbacks_until(lambda: any(message["type"] == "file" for message in dashboard.told))
     (file,) = [message for message in dashboard.told if message["type"] == "file"]
@@ -107,7 +107,7 @@ def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, m
     dashboard.run_callbacks_until(lambda: len(sent) == 1)
     dashboard.received({"do": "scale", "value": "fit"})
     dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
-    shown = pictures.run()
+    shown = pictures.shown_run()
     assert len(sent) == 2 and [message["fit"] for message in sent] == [False, True]
     assert shown is not None and len(shown.time) == 8, "no sample follows the seven of the first picture"
 

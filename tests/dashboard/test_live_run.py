@@ -49,7 +49,7 @@ def test_a_live_run_is_made_in_a_thread(dashboard: Dashboard, monkeypatch: pytes
     pictures.begin_live(replace(rest(session.scene), phase=0.5))
     assert threads == []
     pictures.advance(7)
-    dashboard.run_callbacks_until(lambda: pictures.run() is not None)
+    dashboard.run_callbacks_until(lambda: pictures.shown_run() is not None)
     assert threads == ["visitors", "visitors"]
 
 

@@ -13,9 +13,7 @@ import pytest
 import granchain
 import granchain_core
 
-#: Names that are another name's second one.
-SECOND = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch"}
-NAMES = [name for name in granchain_core.__all__ if name not in SECOND and name != "__version__"]
+NAMES = [name for name in granchain_core.__all__ if name != "__version__"]
 #: Those of pictures and the dashboard, which the core does not have.
 OWN = ["Dashboard", "dashboard", "figure"]
 NAMES += OWN
@@ -64,9 +62,9 @@ def test_both_packages_have_the_same_names_but_for_pictures_and_dashboard() -> N
         granchain.sceen  # noqa: B018
 
 
-@pytest.mark.parametrize(("second", "name"), SECOND.items())
-def test_the_longer_names_are_the_same_functions(second: str, name: str) -> None:
-    assert getattr(granchain_core, second) is getattr(granchain_core, name)
+@pytest.mark.parametrize(("older", "name"), granchain_core.OLDER_NAMES.items())
+def test_older_names_are_the_same_functions(older: str, name: str) -> None:
+    assert getattr(granchain, older) is getattr(granchain_core, older) is getattr(granchain_core, name)
 
 
 def alone(program: str) -> str:
