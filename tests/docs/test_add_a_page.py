@@ -116,7 +116,7 @@ def test_the_new_page_keeps_to_what_every_page_does(tree: Path) -> None:
     """Without a browser; the table of pages has it, and nothing is written for it."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "pages", "test_every_page.py")),
                      "-k", "transmission", own_kernels=False)
-    assert "11 passed" in printed
+    assert "10 passed, 1 skipped" in printed
 
 
 @pytest.mark.long
