@@ -22,15 +22,15 @@ from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
 from .needed import warn_of_missing
 from .serve.compiling.compiler import COMPILER
+from .serve.computing.queues import PICTURES, SWEEPS
+from .serve.computing.shared import Shared
+from .serve.computing.turns import TURNS
 from .serve.http.guard import Rules, guard_handlers, guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.monitoring import logs
 from .serve.monitoring.metrics import METRICS, Liveness, MetricsPage
 from .serve.opening.bokeh_defaults import remember_defaults
 from .serve.opening.panel_pages import remember_resources
-from .serve.work.queues import PICTURES, SWEEPS
-from .serve.work.shared import Shared
-from .serve.work.turns import TURNS
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].

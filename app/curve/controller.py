@@ -14,8 +14,8 @@ from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..pictures.curve import WORDS
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
-from ..serve.work.queues import CURVES, LatestWins
-from ..serve.work.turns import TurnFlag
+from ..serve.computing.queues import CURVES, LatestWins
+from ..serve.computing.turns import TurnFlag
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce

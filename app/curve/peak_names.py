@@ -28,10 +28,10 @@ from granchain_core.steady.curve.resonance import (
 from granchain_core.stop import Stop
 
 from ..frames import samples_for
-from ..serve.work.cpu_time import CpuTime
-from ..serve.work.queues import ANALYSES, SWEEPS
-from ..serve.work.shared import Shared
-from ..serve.work.turns import TurnFlag
+from ..serve.computing.cpu_time import CpuTime
+from ..serve.computing.queues import ANALYSES, SWEEPS
+from ..serve.computing.shared import Shared
+from ..serve.computing.turns import TurnFlag
 from ..session.host import WorkHost
 from ..session.scene_facts import without_frequency
 from ..session.task import Job, Task, say_nothing

@@ -12,9 +12,9 @@ import numpy as np
 from granchain_core import CurvePoint, Scene, iter_curve
 from granchain_core.stop import Stop
 
-from ..serve.work.cpu_time import CpuTime
-from ..serve.work.queues import SWEEPS
-from ..serve.work.shared import Shared
+from ..serve.computing.cpu_time import CpuTime
+from ..serve.computing.queues import SWEEPS
+from ..serve.computing.shared import Shared
 from ..session.scene_facts import slider_range, without_frequency
 from ..session.task import Job
 

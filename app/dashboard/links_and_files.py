@@ -13,7 +13,7 @@ from granchain_core.experiment import Measured, Series
 from granchain_core.store import save
 
 from ..curve.controller import CurveController
-from ..serve.work.queues import FILES
+from ..serve.computing.queues import FILES
 from ..session.export import EXPORTS, TEXTS, Screen
 from ..session.host import Host
 from ..session.message_checks import quoted

@@ -18,11 +18,11 @@ from granchain_core.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
 
 from ..frames import Frames, prepared_frames, samples_for
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words
+from ..serve.computing.queues import PICTURES, LatestWins
+from ..serve.computing.shared import Shared
+from ..serve.computing.turns import TurnFlag
 from ..serve.document.pacing import FramePacer
 from ..serve.monitoring.metrics import METRICS
-from ..serve.work.queues import PICTURES, LatestWins
-from ..serve.work.shared import Shared
-from ..serve.work.turns import TurnFlag
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_account import with_account
 from ..session.host import Host

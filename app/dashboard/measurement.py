@@ -32,8 +32,8 @@ from granchain_core.stop import Stop
 from ..curve.controller import CurveController
 from ..format import given_in_words, in_words, signed_in_words
 from ..serve.compiling.compiler import PICTURE_PIECES
+from ..serve.computing.queues import ANALYSES, FILES, LONG
 from ..serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
-from ..serve.work.queues import ANALYSES, FILES, LONG
 from ..session.budget import WHOLE_PICTURE, check_first_picture
 from ..session.host import Host
 from ..session.page import Actions

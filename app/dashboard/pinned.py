@@ -12,8 +12,8 @@ from ..curve.sweep import Progress, Sweep
 from ..frames import samples_for
 from ..parts.stage.pinned_trains import SIGNS
 from ..serve.compiling.compiler import PICTURE_PIECES
-from ..serve.work.cpu_time import CpuTime
-from ..serve.work.queues import ANALYSES, CURVES
+from ..serve.computing.cpu_time import CpuTime
+from ..serve.computing.queues import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
 from ..session.host import Host
 from ..session.message_checks import listed

@@ -12,8 +12,8 @@ from granchain_core.integrate.start import at_phase_0
 from granchain_core.run.live import joined
 
 from ..frames import PERIODS, Frames, LiveWindow, samples_for
-from ..serve.work.cpu_time import CpuTime
-from ..serve.work.turns import TurnFlag
+from ..serve.computing.cpu_time import CpuTime
+from ..serve.computing.turns import TurnFlag
 
 #: Viewing time that the first step of a run, or the first after a pause, makes up for [s]: two frames of a screen.
 _FIRST_STEP = 0.03

@@ -11,7 +11,7 @@ from typing import Any
 
 from granchain_core import BadInput, Scene, Settled, State, scene
 
-from ..serve.work.cpu_time import CpuTime
+from ..serve.computing.cpu_time import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
 from .share import BROWSER_FIELDS, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in

@@ -10,8 +10,8 @@ from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
 from granchain_core.stop import Stop
 
 from ..serve.compiling.compiler import COMPILER
-from ..serve.work.queues import Queue
-from ..serve.work.turns import Flag
+from ..serve.computing.queues import Queue
+from ..serve.computing.turns import Flag
 from .host import WorkHost
 from .progress import Status
 

@@ -108,10 +108,10 @@ def allowed(folder: str) -> set[str]:
 def test_the_order_of_the_map_is_read() -> None:
     """A family's own folders, and those that other folders use with it."""
     assert {"serve", "parts", "pages"} == FAMILIES
-    assert allowed("serve.compiling") == {"serve.compiling", "serve.work", "serve.monitoring"}
+    assert allowed("serve.compiling") == {"serve.compiling", "serve.computing", "serve.monitoring"}
     assert {"parts.toolkit", "serve.document", "pictures"} <= allowed("parts.stage")
     assert not {"parts.chain", "curve", "pages"} & allowed("parts.stage")
-    assert {"parts.chain", "serve.work"} <= allowed("pages.map") and "pages.probe" not in allowed("pages.map")
+    assert {"parts.chain", "serve.computing"} <= allowed("pages.map") and "pages.probe" not in allowed("pages.map")
 
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app.")])

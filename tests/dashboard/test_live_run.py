@@ -13,7 +13,7 @@ from headless_dashboard import Dashboard
 
 from app.dashboard.layout import Views
 from app.dashboard.show import show_live
-from app.serve.work.cpu_time import CpuTime
+from app.serve.computing.cpu_time import CpuTime
 from app.session import live as live_module
 from app.session.live import LiveRun
 from app.session.session import Session

@@ -12,7 +12,7 @@ from host import FakeHost
 from app.dashboard.table import PageSpec, overlay_names
 from app.dashboard.tabs import Tabs
 from app.serve.compiling.compiler import COMPILER
-from app.serve.work.queues import Queue
+from app.serve.computing.queues import Queue
 from app.session.page import Page
 from app.session.session import Session
 from app.session.task import Job

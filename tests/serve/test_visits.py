@@ -17,7 +17,7 @@ from listening import Listening
 from waiting import until
 
 from app.dashboard.controller import Controller
-from app.serve.work.queues import PICTURES, VISITORS
+from app.serve.computing.queues import PICTURES, VISITORS
 from app.server import Access
 from granchain_core import OverBudget, scene
 from granchain_core.run.budget import refuse_long_picture

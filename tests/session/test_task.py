@@ -10,7 +10,7 @@ from itertools import count
 import pytest
 from host import FakeHost
 
-from app.serve.work.queues import Queue
+from app.serve.computing.queues import Queue
 from app.session.task import Job, Task, say_nothing
 from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 

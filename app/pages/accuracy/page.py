@@ -13,7 +13,7 @@ from granchain_core.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP
 
 from ...format import duration, short_error
 from ...pictures.accuracy import Annotations
-from ...serve.work.queues import MEASUREMENTS
+from ...serve.computing.queues import MEASUREMENTS
 from ...session.active_setting import PlacedSetting, locate, page_setting
 from ...session.activities import Activity
 from ...session.host import Host

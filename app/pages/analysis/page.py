@@ -7,7 +7,7 @@ from typing import Any
 from granchain_core import BadInput, Settled
 from granchain_core.pieces import ORBIT_KERNELS
 
-from ...serve.work.queues import LONG
+from ...serve.computing.queues import LONG
 from ...session.host import Host
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords

@@ -13,7 +13,7 @@ from granchain_core.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_K
 from granchain_core.stop import Stop
 
 from ...pictures.branches import BranchRows
-from ...serve.work.queues import LONG
+from ...serve.computing.queues import LONG
 from ...session.budget import curve_affordable
 from ...session.host import Host
 from ...session.message_checks import listed, whole

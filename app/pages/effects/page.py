@@ -14,7 +14,7 @@ from granchain_core.warm import structure
 
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
-from ...serve.work.queues import MEASUREMENTS
+from ...serve.computing.queues import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.debounce import Debounce
 from ...session.host import Host

@@ -8,7 +8,7 @@ from typing import Any
 from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard_cases import CASES, Case, Check, Picture
 
-from ...serve.work.queues import MEASUREMENTS
+from ...serve.computing.queues import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.host import Host
 from ...session.message_checks import quoted

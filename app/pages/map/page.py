@@ -20,7 +20,7 @@ from ...parts.toolkit.component import Component
 from ...pictures.diagram import now_row
 from ...pictures.theme import THEMES, Theme
 from ...serve.compiling.compiler import PICTURE_PIECES
-from ...serve.work.queues import LONG
+from ...serve.computing.queues import LONG
 from ...session.debounce import Debounce
 from ...session.host import Host
 from ...session.message_checks import listed

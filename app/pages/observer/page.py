@@ -8,7 +8,7 @@ from functools import partial
 from granchain_core import Scene, Settled
 from granchain_core.pieces import ADAPTIVE_KERNELS, OBSERVER_KERNELS
 
-from ...serve.work.queues import PICTURES
+from ...serve.computing.queues import PICTURES
 from ...session.host import Host
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords

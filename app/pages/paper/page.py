@@ -8,7 +8,7 @@ from granchain_core import scene
 from granchain_core.paper import PaperFigure, Result, compute, figure_of
 from granchain_core.pieces import CURVE_KERNELS, MOTION_KERNELS, OBSERVER_KERNELS, ORBIT_KERNELS
 
-from ...serve.work.queues import LONG
+from ...serve.computing.queues import LONG
 from ...session.host import Host
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords

@@ -9,7 +9,7 @@ from granchain_core import BadInput, Settled, State
 
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import PICTURE_PIECES
-from ...serve.work.queues import ANALYSES
+from ...serve.computing.queues import ANALYSES
 from ...session.host import Host
 from ...session.message_checks import whole
 from ...session.page import Actions, Page

@@ -20,7 +20,7 @@ from granchain_core.pieces import COMPILE_SECONDS, CURVE_KERNELS, MOTION_KERNELS
 from granchain_core.stop import Stop
 from granchain_core.warm import compile_piece, is_warm, structure
 
-from ..work.queues import COMPILATIONS, LOADING
+from ..computing.queues import COMPILATIONS, LOADING
 
 #: Time between two checks of a stop flag while another process compiles [s].
 _STOP_CHECK_INTERVAL = 0.05

@@ -23,11 +23,11 @@ from app.curve.sweep import CURVES_SHARED
 from app.dashboard.main_picture import PICTURES_SHARED
 from app.pages.analysis import questions
 from app.serve.compiling.compiler import Compiler
+from app.serve.computing.queues import LONG
 from app.serve.http import guard
 from app.serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from app.serve.http.message_rules import LARGEST_PLAIN_CONTENT
 from app.serve.monitoring.metrics import MetricsPage
-from app.serve.work.queues import LONG
 from app.server import Access
 from app.session import starts
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE

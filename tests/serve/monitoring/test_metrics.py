@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import threading
 
+from app.serve.computing.cpu_time import CpuTime
+from app.serve.computing.turns import FairScheduler
 from app.serve.monitoring.metrics import Metrics
-from app.serve.work.cpu_time import CpuTime
-from app.serve.work.turns import FairScheduler
 from granchain_core import Stop
 
 

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from app.serve.work.cpu_time import CpuTime
-from app.serve.work.priorities import has_lower_priority, lower_priority
-from app.serve.work.queues import LatestWins, Queue
-from app.serve.work.turns import FairScheduler, TurnFlag
+from app.serve.computing.cpu_time import CpuTime
+from app.serve.computing.priorities import has_lower_priority, lower_priority
+from app.serve.computing.queues import LatestWins, Queue
+from app.serve.computing.turns import FairScheduler, TurnFlag
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the niceness is that of the process")
 

@@ -7,7 +7,7 @@ import threading
 import pytest
 import waiting
 
-from app.serve.work.queues import LatestWins, Queue
+from app.serve.computing.queues import LatestWins, Queue
 
 pytestmark = pytest.mark.quick
 

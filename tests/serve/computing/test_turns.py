@@ -7,8 +7,8 @@ import threading
 import pytest
 from waiting import until
 
-from app.serve.work.cpu_time import CpuTime, SharedCpuTime
-from app.serve.work.turns import FairScheduler, TurnFlag
+from app.serve.computing.cpu_time import CpuTime, SharedCpuTime
+from app.serve.computing.turns import FairScheduler, TurnFlag
 from granchain_core import Stop
 
 pytestmark = pytest.mark.quick
@@ -35,7 +35,7 @@ def test_shared_computation_charges_members_and_ranks_by_the_least_used() -> Non
 
 
 def test_a_stopped_computation_leaves_the_queue_before_the_next_check(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.serve.work.turns._CHECK_INTERVAL", 3600.0)
+    monkeypatch.setattr("app.serve.computing.turns._CHECK_INTERVAL", 3600.0)
     turns = FairScheduler(1, lambda: 0.0)
     held = turns.begin(CpuTime(), Stop())
     flags = [TurnFlag(CpuTime(), turns) for _ in range(3)]
