@@ -10,7 +10,7 @@ import pytest
 from knobs import COMPILED, Visit, settled, type_into
 from layout_faults import faults
 from playwright.sync_api import Page, expect
-from server import ROOT, until
+from server import ROOT, at_rest, until
 
 from app.pictures.theme import THEMES, style_sheet
 
@@ -146,7 +146,7 @@ def test_a_moved_knob_moves_no_picture(at: Visit, theme: str) -> None:
     page = at(f"?v=1&scene=sec2&look={theme}")
     settled(page)
     expect(page.locator("#foot b")).not_to_contain_text("being computed")
-    boxes, said = page.evaluate(BOXES), set()
+    boxes, said = at_rest(page, f"({BOXES})()"), set()
     for name, value in (("f", "1130"), ("f", "951.5"), ("f", "1300"), ("f", "2500"), ("D", "60"), ("f", "380"), ("A0", "0.1")):
         type_into(page, name, value)
         settled(page)
