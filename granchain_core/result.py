@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import asdict, dataclass, field
 from typing import Protocol
 
@@ -114,7 +115,7 @@ class ForceErrors:
     @classmethod
     def of(cls, errors: np.ndarray | None) -> ForceErrors:
         """From an array (3,) in that order; a force that is zero has no relative error."""
-        return cls() if errors is None else cls(*(float(e) if np.isfinite(e) else None for e in errors))
+        return cls() if errors is None else cls(*(e if math.isfinite(e) else None for e in errors.tolist()))
 
     @property
     def row(self) -> tuple[float, float, float]:

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -67,6 +67,18 @@ class Scales:
         return self.force * self.length
 
 
+class StepLimits(NamedTuple):
+    """What limits the fixed-step method's step, whatever the drive frequency; in scaled units.
+
+    `contacts` is the longest step for the contacts' springs, `damping` the fastest damped rate of their dashpots,
+    `struck` the speed of the fastest bead at the start.
+    """
+
+    contacts: float
+    damping: float
+    struck: float
+
+
 @dataclass(frozen=True)
 class ScaledChain:
     """A scene ready for the kernels."""
@@ -75,6 +87,7 @@ class ScaledChain:
     scales: Scales
     slots: Slots
     beta: float
+    step_limits: StepLimits
 
     @property
     def beads(self) -> int:
@@ -145,16 +158,9 @@ class ScaledChain:
     @cached_property
     def step(self) -> float:
         """The fixed-step method's step in scaled time."""
-        slots = self.slots
-        largest_inverse_mass = float(slots.chain.inverse_mass.max())
-        stiffest = float(slots.chain.stiffness.max())
-        static = float(slots.preload.static.max()) if slots.preload is not None else 0.0
-        overlap = max(1.0, static, self._struck)
-        step = _STEP / math.sqrt(largest_inverse_mass * stiffest) / overlap**0.25
-        stiffness, damping = self._body_rates
-        if slots.dissipation is not None:
-            strength = slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
-            damping += 4.0 * strength * largest_inverse_mass
+        limits = self.step_limits
+        step, (stiffness, damping) = limits.contacts, self._body_rates
+        damping += limits.damping
         if damping > 0.0:
             step = min(step, _DAMPING_LIMIT / damping)
         if stiffness > 0.0:
@@ -168,26 +174,13 @@ class ScaledChain:
         They are taken at one drive amplitude and the largest speed, from the same linearisation as the tangents, so a
         new force needs no entry here.
         """
-        struck = float(np.abs(self.scene.velocities_at_start()).max()) / self.scales.velocity
-        speed = _FASTEST * max(struck, self.beta if self.scene.is_driven else 0.0)
+        speed = _FASTEST * max(self.step_limits.struck, self.beta if self.scene.is_driven else 0.0)
         beads = np.arange(1, self.beads + 1)
         slopes = [add_force_slope(self.slots, beads, 0.0, 1.0, speed, *direction, 1.0)
                   for direction in ((1.0, 0.0), (0.0, 1.0))]
         # a number where there is no such force; np.min would take longer than all the rest
         stiffness, damping = (-float(slope if isinstance(slope, float) else slope.min()) for slope in slopes)
         return stiffness, damping
-
-    @property
-    def _struck(self) -> float:
-        """Overlap that the fastest bead at the start can make, all its energy in one contact, in scaled units.
-
-        (2/5) K δ^{5/2} = m v²/2.
-        """
-        speed, slots = np.abs(self.scene.velocities_at_start()) / self.scales.velocity, self.slots
-        if not speed.any():
-            return 0.0
-        energy = 0.5 * float((speed**2 / slots.chain.inverse_mass[1 : self.scene.N + 1]).max())
-        return (2.5 * energy / float(slots.chain.stiffness.min())) ** 0.4
 
     def steps_per_period(self, multiple_of: int = 1) -> int:
         """Steps of the fixed-step method in one period, a multiple of `multiple_of`."""
@@ -230,6 +223,21 @@ for _effect in EFFECTS:
         raise TypeError(f"effect {_effect.name!r}: Slots (kernels/equations/motion.py) has no field {_effect.slot!r}.")
 
 
+def _step_limits(scene: Scene, scales: Scales, slots: Slots) -> StepLimits:
+    """The limits of the step for contacts that overlap as the drive, the preload or a struck bead make them."""
+    largest_inverse_mass = float(slots.chain.inverse_mass.max())
+    stiffness, struck = slots.chain.stiffness, np.abs(scene.velocities_at_start()) / scales.velocity
+    overlap = max(1.0, float(slots.preload.static.max()) if slots.preload is not None else 0.0)
+    if struck.any():  # all of a bead's energy in one contact: (2/5) K δ^{5/2} = m v²/2
+        energy = 0.5 * float((struck**2 / slots.chain.inverse_mass[1 : scene.N + 1]).max())
+        overlap = max(overlap, (2.5 * energy / float(stiffness.min())) ** 0.4)
+    step, damping = _STEP / math.sqrt(largest_inverse_mass * float(stiffness.max())) / overlap**0.25, 0.0
+    if slots.dissipation is not None:
+        strength = slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
+        damping = 4.0 * strength * largest_inverse_mass
+    return StepLimits(step, damping, float(struck.max()))
+
+
 def scale_chain(scene: Scene, account: bool = False) -> ScaledChain:
     """Scaled arrays and slots of `scene`; `account` adds the energy account to the equations."""
     scales = scales_of(scene)
@@ -243,7 +251,7 @@ def scale_chain(scene: Scene, account: bool = False) -> ScaledChain:
         account=EnergyAccount(1) if account else None,
         **filled,
     )
-    return ScaledChain(scene, scales, slots, beta)
+    return ScaledChain(scene, scales, slots, beta, _step_limits(scene, scales, slots))
 
 
 def scale_like(known: ScaledChain, scene: Scene) -> ScaledChain:
@@ -252,7 +260,7 @@ def scale_like(known: ScaledChain, scene: Scene) -> ScaledChain:
         return scale_chain(scene)
     beta = 2 * math.pi * scene.f / known.scales.phi
     driver = known.slots.driver._replace(beta=beta)
-    return ScaledChain(scene, known.scales, known.slots._replace(driver=driver), beta).own()
+    return replace(known, scene=scene, slots=known.slots._replace(driver=driver), beta=beta).own()
 
 
 _TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}

@@ -124,10 +124,10 @@ class Batch:
             if slot is not None:
                 for rows, value in zip(slot, its, strict=True):
                     rows[:, member] = value
-        half = np.pi / steps
-        members.turn[:, member] = np.cos(half), np.sin(half)
+        half = math.pi / steps
+        members.turn[0, member], members.turn[1, member] = math.cos(half), math.sin(half)
         members.beta[0, member], members.h[0, member] = scaled.beta, scaled.period / steps
-        state.phase[:, member] = 0.0, 1.0
+        state.phase[0, member], state.phase[1, member] = 0.0, 1.0
         state.peaks[:, member] = 0.0
         state.steps[member] = state.steps_left[member] = steps
         state.y[:, member], state.overlaps[:, member] = y, 0.0

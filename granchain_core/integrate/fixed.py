@@ -79,9 +79,11 @@ class FixedStep:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
         sine, cosine = _half_steps(self.grid)
         driver = scaled.slots.driver
-        if driver is None:
-            return np.zeros((sine.size, 2))
-        return np.stack([driver.amplitude * sine, driver.amplitude * driver.beta * cosine], 1)
+        table = np.zeros((sine.size, 2))
+        if driver is not None:
+            np.multiply(sine, driver.amplitude, out=table[:, 0])
+            np.multiply(cosine, driver.amplitude * driver.beta, out=table[:, 1])
+        return table
 
     def new_simd_workspace(self) -> LongChain | ShortChain | None:
         """The workspace of SIMD steps: a driven chain with no effect that they do not know."""

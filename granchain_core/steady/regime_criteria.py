@@ -60,6 +60,18 @@ def changes(strobes: np.ndarray, period: int, count: int) -> np.ndarray:
     return out
 
 
+def window_changes(strobes: np.ndarray, window: int, windows: int, longest: int) -> list[list[float]]:
+    """The largest relative change over 1, 2, … `longest` periods in each of the last `windows` windows of `window`
+    strobes, the oldest first; strobes (P, 2, N), at least windows·window + longest of them.
+
+    Lists: a regime is decided number by number, for which an array takes longer.
+    """
+    seen, workspace = np.zeros((longest, windows)), np.zeros((_STATES_AT_ONCE, *strobes.shape[1:]))
+    periodicity.window_changes(np.ascontiguousarray(strobes), window, np.zeros(2), workspace, seen)
+    found: list[list[float]] = seen.tolist()
+    return found
+
+
 def find_period(strobes: np.ndarray, longest: int = LONGEST_LOCKED_PERIOD, rounding: float = ROUNDING) -> Regime:
     """Periodic with the smallest n whose distance bound holds, else unsettled; strobes (P + 1, 2, N).
 
@@ -165,13 +177,9 @@ def agree(one: Regime, other: Regime) -> bool:
     return abs(a - b) <= max(STANDARD_ERRORS * math.hypot(error_a, error_b), _EXPONENT_DIFFERENCE)
 
 
-def _windows(strobes: np.ndarray, longest: int = LONGEST_PERIOD) -> np.ndarray:
-    """Largest changes over 1, 2, … periods in three windows in a row, (longest, 3); none for a short record."""
-    if len(strobes) < SLOW_RECORD:
-        return np.zeros((0, 3))
-    seen, workspace = np.zeros((longest, 3)), np.zeros((_STATES_AT_ONCE, *strobes.shape[1:]))
-    periodicity.window_changes(np.ascontiguousarray(strobes), _SLOW_WINDOW, np.zeros(2), workspace, seen)
-    return seen
+def _windows(strobes: np.ndarray, longest: int = LONGEST_PERIOD) -> list[list[float]]:
+    """Largest changes over 1, 2, … `longest` periods, each in three windows in a row; none for a short record."""
+    return window_changes(strobes, _SLOW_WINDOW, 3, longest) if len(strobes) >= SLOW_RECORD else []
 
 
 def converging(strobes: np.ndarray) -> bool:
@@ -179,6 +187,7 @@ def converging(strobes: np.ndarray) -> bool:
 
     On a closed curve or a strange attractor their largest value does not change, or some grow while others shrink.
     """
+    strobes = np.ascontiguousarray(strobes)  # once for both looks at it
     # most irregular motions show growth over one or two periods, and the other fourteen need not be looked at
     return not _some_grow(_windows(strobes, 2)) and _converging(_windows(strobes))
 
@@ -188,15 +197,15 @@ def departing(strobes: np.ndarray) -> bool:
     return _departing(_windows(strobes))
 
 
-def _some_grow(seen: np.ndarray) -> bool:
+def _some_grow(seen: list[list[float]]) -> bool:
     return any(second < _SHRINK_FACTOR * third for _, second, third in seen)
 
 
-def _converging(seen: np.ndarray) -> bool:
+def _converging(seen: list[list[float]]) -> bool:
     return not _some_grow(seen) and any(_shrinks(*row) for row in seen)
 
 
-def _departing(seen: np.ndarray) -> bool:
+def _departing(seen: list[list[float]]) -> bool:
     some = False
     for a, b, c in seen:
         if c < _SHRINK_FACTOR * b:
@@ -209,20 +218,21 @@ def _shrinks(first: float, second: float, third: float) -> bool:
     return second < _SHRINK_FACTOR * first and third < _SHRINK_FACTOR * second
 
 
-def _neither_converges_nor_departs(seen: np.ndarray) -> bool:
+def _neither_converges_nor_departs(seen: list[list[float]]) -> bool:
     """Whether a record that is long enough for windows shows a motion that neither converges nor leaves an orbit."""
     return len(seen) > 0 and not _converging(seen) and not _departing(seen)
 
 
-def _window_ratios(seen: np.ndarray) -> tuple[float, float] | None:
+def _window_ratios(seen: list[list[float]]) -> tuple[float, float] | None:
     """Smallest and largest ratio of a window's largest change to that of the window before, over all periods.
 
     None where the record is too short for three windows.
     """
-    if len(seen) == 0 or not (seen[:, :2] > 0.0).all():
+    before = [change for row in seen for change in row[:-1]]
+    if not before or min(before) <= 0.0:
         return None
-    ratios = seen[:, 1:] / seen[:, :2]
-    return float(ratios.min()), float(ratios.max())
+    ratios = [now / then for then, now in zip(before, (change for row in seen for change in row[1:]), strict=True)]
+    return min(ratios), max(ratios)
 
 
 def return_distance(strobes: np.ndarray) -> float:
@@ -230,7 +240,8 @@ def return_distance(strobes: np.ndarray) -> float:
     nearest = np.zeros(len(strobes) - len(strobes) // 2)
     order = np.argsort(strobes[: len(strobes) // 2, 0, 0], kind="stable")
     periodicity.nearest_neighbours(np.ascontiguousarray(strobes), order, np.zeros(2), nearest)
-    return float(np.median(nearest))
+    nearest.sort()  # np.median takes longer than the search
+    return 0.5 * float(nearest[(len(nearest) - 1) // 2] + nearest[len(nearest) // 2])
 
 
 def return_limit(strobes: np.ndarray) -> float:

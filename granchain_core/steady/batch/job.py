@@ -112,7 +112,7 @@ class BatchJob:
         farther = max(distance, regime.distance)
         left = force_distances(farther, self.scaled, maxima, y)
         errors = errors_of_two_orbits(relative_changes(maxima, before), _FINER_ERROR, regime.assumed_contraction) + left
-        if jumps.any() and (jumps > AT_A_JUMP * maxima[:2]).any():
+        if (jumps > AT_A_JUMP * maxima[:2]).any():
             at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
             located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
             maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, located_errors, errors)

@@ -12,6 +12,7 @@ from ...cores import usable_cores
 from ...errors import BadInput, Cancelled
 from ...input_checks import numbers_in
 from ...integrate.batch import can_share_batch
+from ...quantities import QUANTITIES
 from ...scene import Amplitude, Scene
 from ...scene.refusals import refuse_undriven
 from ...scheduler import dealt, results
@@ -24,22 +25,29 @@ from ..settling.single_chain import settle_or_failure
 from .curve import Curve, CurvePoint
 from .order import used_and_missing
 
+#: The knobs of one point of a curve that differ from its neighbours', by their names.
+Knobs = dict[str, float]
 #: Most points of one curve.
 MOST_POINTS = 100_000
 #: Points of one task of a scheduler's worker.
 POINTS_IN_TASK = 64
 
 
-def checked_frequencies(scene: Scene, frequencies: Sequence[float] | np.ndarray,
-                        amplitude: Amplitude | None = None) -> list[Scene]:
-    """The scenes of a curve; `BadInput` for no points, too many, or a frequency or amplitude out of range."""
+def checked_points(scene: Scene, frequencies: Sequence[float] | np.ndarray,
+                   amplitude: Amplitude | None = None) -> list[Knobs]:
+    """The knobs that change from point to point of a curve: f, and A0 where it follows the frequency.
+
+    Raises `BadInput` for no points, too many, or a frequency or amplitude out of range.
+    """
     refuse_undriven(scene)
     numbers = numbers_in("Frequencies", frequencies)
     if not 1 <= len(numbers) <= MOST_POINTS:
         raise BadInput(f"A curve has 1 to {MOST_POINTS} points, not {len(numbers)}.")
-    if amplitude is None:
-        return [scene.evolve(f=f) for f in numbers]
-    return [scene.evolve(f=f, A0=amplitude.at(f)) for f in numbers]
+    points = [{"f": f} if amplitude is None else {"f": f, "A0": amplitude.at(f)} for f in numbers]
+    for knobs in points:
+        for name, value in knobs.items():
+            QUANTITIES[name].check(value)
+    return points
 
 
 def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
@@ -78,66 +86,69 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     >>> [point.frequency for point in points]
     [2000.0, 1800.0]
     """
-    yield from _computed(_parted(scene, frequencies, start)[1], None, start, stop, workers)
+    yield from _computed(scene, _parted(scene, frequencies, start)[1], None, start, stop, workers)
 
 
 def _parted(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str,
             known: Sequence[CurvePoint] = (),
-            amplitude: Amplitude | None = None) -> tuple[list[CurvePoint], list[Scene]]:
-    """The known points that can be used and the scenes that are left, both in the order of computing."""
-    scenes = checked_frequencies(scene, frequencies, amplitude)
-    used, missing = used_and_missing([point.frequency for point in known], [one.f for one in scenes], start)
-    return [known[i] for i in used], [scenes[i] for i in missing]
+            amplitude: Amplitude | None = None) -> tuple[list[CurvePoint], list[Knobs]]:
+    """The known points that can be used and the knobs of those that are left, both in the order of computing."""
+    points = checked_points(scene, frequencies, amplitude)
+    used, missing = used_and_missing([point.frequency for point in known], [knobs["f"] for knobs in points], start)
+    return [known[i] for i in used], [points[i] for i in missing]
 
 
-def _computed(left: list[Scene], before: CurvePoint | None, start: str, stop: Stop | None,
+def _computed(scene: Scene, left: list[Knobs], before: CurvePoint | None, start: str, stop: Stop | None,
               workers: int | None) -> Iterator[CurvePoint]:
-    """The points of the scenes that are left; where the state is carried along, from that of the point before."""
+    """The points that are left; where the state is carried along, from that of the point before."""
     if left and start == "rest":
-        yield from _from_rest(left, stop, workers)
+        yield from _from_rest(scene, left, stop, workers)
     elif left:
-        yield from _carried(left, before, stop)
+        yield from _carried(scene, left, before, stop)
 
 
-def _carried(scenes: list[Scene], before: CurvePoint | None, stop: Stop | None) -> Iterator[CurvePoint]:
+def _carried(scene: Scene, left: list[Knobs], before: CurvePoint | None, stop: Stop | None) -> Iterator[CurvePoint]:
     """Points one after another, each from the state of the one before; from rest after one that failed."""
     stop = Stop() if stop is None else stop
     state = None if before is None or before.failure else before.state
-    for one in scenes:
+    for knobs in left:
         if stop:
             return
         try:
-            found = settle_or_failure(one, state, stop)
+            found = settle_or_failure(scene.evolve(**knobs), state, stop)
         except Cancelled:
             return
         state = found.state if not found.failure else None
         yield CurvePoint.of(found)
 
 
-def _from_rest(scenes: list[Scene], stop: Stop | None, workers: int | None) -> Iterator[CurvePoint]:
+def _from_rest(scene: Scene, left: list[Knobs], stop: Stop | None, workers: int | None) -> Iterator[CurvePoint]:
     """Independent points on all cores: in batches where they can, else one by one; closing the generator stops them."""
     ended = Stop()
-    yield from on_all_cores(lambda shared: _points(shared, ended), scenes, ended, stop,
-                            min(workers or usable_cores(), len(scenes)))
+    yield from on_all_cores(lambda shared: _points(scene, shared, ended), left, ended, stop,
+                            min(workers or usable_cores(), len(left)))
 
 
-def _points(scenes: Iterator[Scene], ended: Stop) -> Iterator[CurvePoint]:
-    for found in settle_starts(map(Start, scenes), ended):
+def _points(scene: Scene, left: Iterator[Knobs], ended: Stop) -> Iterator[CurvePoint]:
+    """Points from rest in one thread, which makes the scenes: made beforehand, all other threads would wait for them.
+    """
+    for found in settle_starts((Start(scene.evolve(**knobs)) for knobs in left), ended):
         yield CurvePoint.of(found)
 
 
-def _scheduled(scheduler: Any, scenes: list[Scene], stop: Stop | None) -> Iterator[CurvePoint]:
+def _scheduled(scheduler: Any, scene: Scene, left: list[Knobs], stop: Stop | None) -> Iterator[CurvePoint]:
     """Independent points by the workers of a scheduler."""
     try:
-        for _, points in results(scheduler, block_points, [(block,) for block in dealt(scenes, POINTS_IN_TASK)], stop):
+        for _, points in results(scheduler, block_points, [(scene, block) for block in dealt(left, POINTS_IN_TASK)],
+                                 stop):
             yield from points
     except Cancelled:
         return
 
 
-def block_points(scenes: list[Scene]) -> list[CurvePoint]:
-    """The points of scenes of one structure, computed in this thread: the work of one worker."""
-    return list(_points(iter(scenes), Stop()))
+def block_points(scene: Scene, left: list[Knobs]) -> list[CurvePoint]:
+    """Points of one structure from rest, computed in this thread: the work of one worker."""
+    return list(_points(scene, iter(left), Stop()))
 
 
 def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: Stop) -> list[CurvePoint]:
@@ -146,10 +157,11 @@ def draft_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, stop: S
     Coarse steps and few periods: no errors are stated, and motions that are not periodic by then are unsettled. Empty
     for scenes that a batch cannot run. Raises `BadInput` and `Cancelled`.
     """
-    scenes = checked_frequencies(scene, frequencies)
+    points = checked_points(scene, frequencies)
     if not can_share_batch(scene):
         return []
-    return [CurvePoint.of(result) for result in batch_results(iter(scenes), stop, draft=True)]
+    scenes = (scene.evolve(**knobs) for knobs in points)
+    return [CurvePoint.of(result) for result in batch_results(scenes, stop, draft=True)]
 
 
 def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: str = "rest",
@@ -210,8 +222,8 @@ def resonance_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, sta
         raise BadInput("A sweep carries its state from point to point and cannot be divided among the workers of a "
                        'scheduler; use start="rest".')
     curve = Curve(scene, start, used, amplitude=amplitude)
-    for point in (_computed(left, used[-1] if used else None, start, stop, workers) if scheduler is None else
-                  _scheduled(scheduler, left, stop)):
+    for point in (_computed(scene, left, used[-1] if used else None, start, stop, workers) if scheduler is None else
+                  _scheduled(scheduler, scene, left, stop)):
         curve.points.append(point)
         if on_point is not None:
             on_point(point)

@@ -8,7 +8,6 @@ must approach the orbit about as fast as the multipliers say.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -18,7 +17,7 @@ from ...errors import NumbersFailed
 from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
 from ...stop import Stop
-from ..regime_criteria import changes
+from ..regime_criteria import changes, window_changes
 from ..returns import relative_change, shorter_periods
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 
@@ -34,7 +33,7 @@ NEAR_AN_ORBIT = 0.1
 #: orbit near it is examined. On closed curves of section 2 and of the rig the least change was 1.8e-3 or more, on slow
 #: approaches 2.2e-4 or less.
 _ALMOST_PERIODIC = 1e-3
-#: [quasi-periodic] Last changes, at least, that must be below this: on a closed curve a motion may hardly move for some
+#: [quasi-periodic] Last changes that must be below this: on a closed curve a motion may hardly move for some
 #: periods, and then goes on.
 _ALMOST_PERIODIC_CHANGES = 32
 #: [followed] The period tried is the shortest over which the motion changes by at most this many times the least
@@ -172,15 +171,19 @@ def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: f
 def is_almost_periodic(strobes: np.ndarray) -> bool:
     """Whether a motion with these last strobes (P, 2, N) changes so little over some period that an orbit may be near.
 
-    It may approach the orbit so slowly that its Lyapunov exponent is zero within the error.
+    It may approach the orbit so slowly that its Lyapunov exponent is zero within the error. False for a record that is
+    too short to tell.
     """
-    return min(_changes_over_periods(strobes, _ALMOST_PERIODIC_CHANGES), default=math.inf) < _ALMOST_PERIODIC
+    if len(strobes) < _ALMOST_PERIODIC_CHANGES + LONGEST_PERIOD:
+        return False
+    seen = window_changes(strobes, _ALMOST_PERIODIC_CHANGES, 1, LONGEST_PERIOD)
+    return min(change for (change,) in seen) < _ALMOST_PERIODIC
 
 
-def _changes_over_periods(strobes: np.ndarray, least: int = 1) -> list[float]:
-    """Largest of the last n changes over n periods, or of the last `least`, for every n that a batch looks for."""
+def _changes_over_periods(strobes: np.ndarray) -> list[float]:
+    """Largest of the last n changes over n periods, for every n that a batch looks for."""
     most = min(LONGEST_PERIOD, (len(strobes) - 1) // 2)
-    return [float(changes(strobes, n, min(max(n, least), len(strobes) - n)).max()) for n in range(1, most + 1)]
+    return [float(changes(strobes, n, n).max()) for n in range(1, most + 1)]
 
 
 def orbits_beside(scene: Scene, strobes: np.ndarray, x: np.ndarray, stop: Stop) -> Iterator[NearbyOrbit]:
