@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.dop853.run import SampleRange, run_dop853
 from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace, DriveCycle
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
@@ -23,6 +24,9 @@ LEAST_STEPS_PER_PERIOD = 16
 _FIRST_STEP = 0.01
 #: Least scale of displacements and of w, in which tolerances are measured.
 _LEAST_SCALE = 1e-3
+# Kernels that are called once a period.
+_RUN_DOP853 = Entries(run_dop853)
+_EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
 
 
 class Dop853Stepper:
@@ -38,6 +42,11 @@ class Dop853Stepper:
             k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
             slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
             next_step=np.array([min(_FIRST_STEP, largest)]), forces=scaled.forces())
+        self.structure = self._types()
+
+    def _types(self) -> Any:
+        """A key for the types of what kernels are given, by which their compiled versions are found."""
+        return types_of((self.method, self.scaled.slots, self.work))
 
     @property
     def slope(self) -> np.ndarray:
@@ -48,6 +57,7 @@ class Dop853Stepper:
         """Go on with other values in the same slots, or with other effects."""
         self.scaled = scaled
         self.work = self.work._replace(forces=scaled.forces())
+        self.structure = self._types()
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: errors are measured on its scale."""
@@ -61,7 +71,8 @@ class Dop853Stepper:
 
     def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute driver state and dy/dt for y."""
-        evaluate_at_phase(self.scaled.slots, theta, y, self.work.k[0], self.work.forces, from_velocity)
+        slots, work = self.scaled.slots, self.work
+        _EVALUATE_AT_PHASE(self.structure, slots, theta, y, work.k[0], work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
@@ -86,8 +97,8 @@ class Dop853Stepper:
     def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
              out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
-        status, rows = run_dop853(self.method, self.trajectory(y), SampleRange(first, points, self.grid, every),
-                                  samples, out)
+        wanted = SampleRange(first, points, self.grid, every)
+        status, rows = _RUN_DOP853(self.structure, self.method, self.trajectory(y), wanted, samples, out)
         return status, rows
 
     def step_at(self, grid_index: int) -> int | None:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from ..errors import BadInput
+from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.dop853.run import SampleRange
 from ..kernels.dop853.step import ALL_STAGES
@@ -19,13 +22,18 @@ from .adaptive import Dop853Stepper
 from .fixed import SHORT_CHAIN, chain_width, short_chain_workspace
 from .stepper import CallStart, empty_samples
 
+_RUN_DOP853_ROOT = Entries(run_dop853_root)
+
 
 class Dop853RootStepper(Dop853Stepper):
     """Dormand–Prince 8 in (u, w) at a relative tolerance per step, in a transformed time next to contact events."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
-        super().__init__(tolerance, scaled, samples)
         self._vectors = _workspace(scaled)
+        super().__init__(tolerance, scaled, samples)
+
+    def _types(self) -> Any:
+        return super()._types(), types_of(self._vectors)
 
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects. Raises `BadInput`."""
@@ -35,8 +43,9 @@ class Dop853RootStepper(Dop853Stepper):
     def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
                 out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
-        status, rows = run_dop853_root(self.method, self._vectors, self.trajectory(y),
-                                  SampleRange(first, points, self.grid, every), samples, out)
+        wanted = SampleRange(first, points, self.grid, every)
+        status, rows = _RUN_DOP853_ROOT(self.structure, self.method, self._vectors, self.trajectory(y), wanted,
+                                        samples, out)
         return status, rows
 
     def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
@@ -63,7 +72,7 @@ def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:
                        f"one.{named}")
 
     def rows(count: int) -> Stages:
-        return Stages(aligned(count, width), aligned(count, width), aligned(count, VECTOR_WIDTH))
+        return Stages(aligned(count, width), aligned(count, width), *(aligned(count, VECTOR_WIDTH) for _ in range(2)))
 
     return Dop853RootWorkspace(short_chain_workspace(scaled, width), rows(ALL_STAGES), rows(7), rows(1),
                            aligned(STATE_ROWS, width), aligned(1, width), np.zeros(8))

@@ -12,8 +12,8 @@ from ..flow.event_time import nonnegative_root
 from ..simd.sums import inverse_sixteenth_root, largest_of
 from ..simd.vector import at, splat8, with_first
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
-from .chain import ROOT, TIME, Point, powers, transform_at
-from .changes import StepInXi, changes_in, first_event, size_in_xi
+from .chain import Point, powers, transform_at
+from .changes import StepInXi, changes_in, first_event, may_change, size_in_xi
 from .forces import end_forces, in_xi, may_exceed
 from .step import Units, attempt, prepare_dense_rows
 
@@ -104,7 +104,7 @@ def accepted_attempt(constants, begin, chosen, dt, units):
         q = nonnegative_root(at(begin.rates.overlap, chosen), constants.power)
         pace, _, _ = powers(constants.power, q)
         h, limited = size_in_xi(constants.power, q, at(begin.rates.rate, chosen), dt)
-    start, status = Point(begin.point.u, begin.point.w, with_first(splat8(begin.t), q)), DONE
+    start, status = Point(begin.point.u, begin.point.w, splat8(q), splat8(begin.t)), DONE
     while True:
         error, end, end_rates = attempt(constants.values, constants.driver, constants.work, transform, start,
                                         begin.rates, h, units)
@@ -124,7 +124,7 @@ def accepted_attempt(constants, begin, chosen, dt, units):
             break
     end_pace = 1.0
     if chosen >= 0:
-        end_pace, _, _ = powers(constants.power, at(end.clock, ROOT))
+        end_pace, _, _ = powers(constants.power, at(end.q, 0))
     return status, StepInXi(transform, h, start, begin.rates, pace, end, end_rates, end_pace, error, limited), dt
 
 
@@ -142,8 +142,9 @@ def accepted_step(constants, begin, chosen, dt, units, g):
         forces, contact, x, prepared, exceeds = begin.forces, -1, 2.0, False, False
         if status == DONE:
             crossed, turned = changes_in(step, begin.bits, constants.last + 1)
+            turned = may_change(step, constants.power, begin.bits, turned)
             changes = crossed | turned != 0
-            prepared = changes or (g + 1) * constants.spacing <= at(step.end.clock, TIME) + constants.near
+            prepared = changes or (g + 1) * constants.spacing <= at(step.end.t, 0) + constants.near
             if constants.every > 0:
                 forces = end_forces(values, constants.driver, step.end, step.end_rates, constants.last)
                 if not prepared:

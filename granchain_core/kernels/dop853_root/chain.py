@@ -10,52 +10,52 @@ q. At a release q passes through zero with everything else smooth, so that a ste
 then a root on the step's dense output: nothing is repeated. Contacts that are open stay so within a step, for the same
 reason. Far from events ξ is the time.
 
-Lane 0 is the driver, which moves as an oscillator: no stage needs a sine.
+Lane 0 is the driver, which moves as an oscillator: no stage needs a sine. q and t have vectors of their own, with the
+same number in all lanes: a number that is taken out of a vector and put into another one makes the next stage wait.
 """
 
 from __future__ import annotations
 
-from math import copysign
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import inline_llvm
+from ..compiling.jit import by_slot, inline_llvm
 from ..effects.contact import positive_part
-from ..effects.dissipation import unit_primitive
+from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.driver import driver_acceleration
 from ..effects.preload import row_overlap
 from ..equations.body_forces import force_on_bead
 from ..flow.event_time import smooth_power
 from ..rk4.short_chain import chain_velocity
-from ..simd.functions import root
-from ..simd.sums import only_lane
+from ..simd.functions import gate, root
+from ..simd.sums import only_lane, repeat_like
 from ..simd.vector import at, blank, from_left, from_right, store, with_first
 
-#: Lane of the clock that holds q; all others hold t, and `TIME` is the first of them.
-ROOT, TIME = range(2)
 #: Rows of the workspace's state, and their number.
 DISPLACEMENT, VELOCITY, ELASTIC, W, STATE_ROWS = range(5)
 
 
 class Stages(NamedTuple):
-    """Rows of displacements, of w (rows, width) and of the clock (rows, 8)."""
+    """Rows of displacements, of w (rows, width), of q and of t (rows, 8)."""
 
     u: np.ndarray
     w: np.ndarray
-    clock: np.ndarray
+    q: np.ndarray
+    t: np.ndarray
 
 
 class Dop853RootWorkspace(NamedTuple):
     """Workspace of steps along a short chain.
 
-    `slopes` are those in ξ of 16 stages, `dense` the 7 rows of the dense output, `begin` (1 row) the step's start. Rows
-    of `state` (4, width) are named above; `closed` (1, width) is 1 where a contact is closed. `polynomial` (8,) is one
-    quantity of the dense output: its seven rows, then its value at the start.
+    `increments` are the slopes in ξ of 16 stages times the size of the step, `dense` the 7 rows of the dense output,
+    `begin` (1 row) the step's start. Rows of `state` (4, width) are named above; `closed` (1, width) is 1 where a
+    contact is closed. `polynomial` (8,) is one quantity of the dense output: its seven rows, then its value at the
+    start.
     """
 
     chain: Any
-    slopes: Stages
+    increments: Stages
     dense: Stages
     begin: Stages
     state: np.ndarray
@@ -66,24 +66,28 @@ class Dop853RootWorkspace(NamedTuple):
 class TimeTransform(NamedTuple):
     """The transformed time ξ: that of the event of `contact` (`active` 1), or the time itself (0).
 
-    `others` is 1 for the closed contacts but that one, `chosen` for that one; `stiffness` and `chosen_stiffness` are
-    the contacts' stiffness times these.
+    `others` is 1 for the closed contacts but that one; `stiffness` and `chosen_stiffness` are the stiffness of those
+    and of that one. `pull` is 1 on the bead after that contact and −1 on the one before it: what it does to its two
+    beads is added at the end, because q, on which it depends, is known last. `damping_pull` is λ/m times that, None
+    without damping, and `stiff_pull` the stiffness.
     """
 
     active: float
     contact: int
     others: Any
-    chosen: Any
     stiffness: Any
     chosen_stiffness: Any
+    damping_pull: Any
+    stiff_pull: Any
 
 
 class Point(NamedTuple):
-    """Displacements and w with the driver in lane 0, and the clock: q, t, t, …"""
+    """Displacements and w with the driver in lane 0; q and t, each in all lanes."""
 
     u: Any
     w: Any
-    clock: Any
+    q: Any
+    t: Any
 
 
 class Rates(NamedTuple):
@@ -109,32 +113,63 @@ def powers(power, q):
 def signed_primitive(law, power, q):
     """G/λ at the overlap q^p, continued to q < 0 as a power of q."""
     _, r, d = powers(power, q)
-    return unit_primitive(law, d, r) if power == 2 else copysign(1.0, q) * unit_primitive(law, d, r)
+    primitive = unit_primitive(law, d, r)
+    return primitive if power == 2 else gate(q, primitive) - gate(-q, primitive)
+
+
+@by_slot
+def pull_of_damping(law, damping_over_mass, pull):
+    """λ/m times the signs with which a contact acts on its beads. Absent: None."""
+    return None
+
+
+@pull_of_damping.of(*LAWS)
+def _(law, damping_over_mass, pull):
+    return damping_over_mass * pull
+
+
+@by_slot
+def with_damping_of(law, du, damping_pull, power, q):
+    """Velocities du with what the damping of the contact at q adds to those of its beads."""
+    return du
+
+
+@with_damping_of.of(*LAWS)
+def _(law, du, damping_pull, power, q):
+    return du + damping_pull * signed_primitive(law, power, q)
 
 
 @inline_llvm
 def rates_at(values, driver, transform, point):
     """All rates in t at a point."""
-    law, q, u = values.slots.dissipation, at(point.clock, ROOT), point.u
-    power = smooth_power(law)
+    law, u = values.slots.dissipation, point.u
+    power, q = smooth_power(law), repeat_like(u, point.q)
     _, r, d = powers(power, q)
     overlap = row_overlap(values.preload, u, from_right(u, blank(u)))
     pressed = positive_part(overlap)
-    roots = root(pressed)
-    elastic = transform.stiffness * (pressed * roots) + transform.chosen_stiffness * (d * r)
-    primitives = (transform.others * unit_primitive(law, pressed, roots)
-              + transform.chosen * signed_primitive(law, power, q))
-    du = chain_velocity(law, point.w, values.damping_over_mass, primitives)
-    net_force = force_on_bead(values.slots, None, from_left(blank(elastic), elastic) - elastic, u, du)
+    roots, chosen = root(pressed), d * r
+    elastic = transform.stiffness * (pressed * roots)
+    du = chain_velocity(law, point.w, values.damping_over_mass, transform.others * unit_primitive(law, pressed, roots))
+    du = with_damping_of(law, du, transform.damping_pull, power, q)
+    contacts = from_left(blank(elastic), elastic) - elastic + transform.stiff_pull * chosen
+    net_force = force_on_bead(values.slots, None, contacts, u, du)
     dw = with_first(values.inverse_mass * net_force, driver_acceleration(driver, at(u, 0)))
-    return Rates(du, dw, overlap, du - from_right(du, blank(du)), elastic)
+    return Rates(du, dw, overlap, du - from_right(du, blank(du)), elastic + transform.chosen_stiffness * chosen)
+
+
+@inline_llvm
+def transform_of(values, closed, chosen, active, contact):
+    """The transformed time next to the event of a contact, for which `chosen` is 1; nowhere, for the time itself."""
+    others, pull = closed * (1.0 - chosen), from_left(blank(chosen), chosen) - chosen
+    return TimeTransform(active, contact, others, others * values.stiffness, chosen * values.stiffness,
+                         pull_of_damping(values.slots.dissipation, values.damping_over_mass, pull),
+                         from_left(blank(chosen), chosen * values.stiffness) - chosen * values.stiffness)
 
 
 @inline_llvm
 def no_transform(values, closed):
     """ξ is the time."""
-    zero = blank(closed)
-    return TimeTransform(0.0, 0, closed, zero, closed * values.stiffness, zero)
+    return transform_of(values, closed, blank(closed), 0.0, 0)
 
 
 @inline_llvm
@@ -142,9 +177,7 @@ def transform_at(values, closed, contact):
     """The transformed time next to the event of a contact, or the time itself where `contact` is −1."""
     if contact < 0:
         return no_transform(values, closed)
-    chosen = only_lane(closed, contact)
-    others = closed * (1.0 - chosen)
-    return TimeTransform(1.0, contact, others, chosen, others * values.stiffness, chosen * values.stiffness)
+    return transform_of(values, closed, only_lane(closed, contact), 1.0, contact)
 
 
 @inline_llvm

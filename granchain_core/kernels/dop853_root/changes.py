@@ -7,10 +7,9 @@ from typing import Any, NamedTuple
 
 from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..contact_cubic import hermite_turn, hermite_value, turns
-from ..flow.event_time import nonnegative_root, smooth_power
+from ..flow.event_time import nonnegative_root
 from ..simd.sums import largest_of, lowest_bit
 from ..simd.vector import at, positive_mask
-from .chain import ROOT
 from .inside import change_before, take_distance, turn_of
 
 #: Time is transformed if the contact's nearest event, at its present speed, is at most this many steps away.
@@ -89,9 +88,25 @@ def may_touch(d0, s0, d1, s1):
     return top + _MISSED_PART * (top - max(d0, d1)) > 0.0
 
 
+@inline_numba
+def may_change(step, power, bits, turned):
+    """Bits of those contacts in `turned` that may have opened or closed within the step and back."""
+    left, found = turned, 0
+    while left != 0:
+        c, left = lowest_bit(left), left & (left - 1)
+        sign, s0, s1 = -1.0 if (bits >> c) & 1 != 0 else 1.0, at(step.rates.rate, c), at(step.end_rates.rate, c)
+        d0, d1, s0, s1 = at(step.rates.overlap, c), at(step.end_rates.overlap, c), step.pace * s0, step.end_pace * s1
+        if step.transform.active != 0.0 and c == step.transform.contact:
+            d0, d1 = at(step.start.q, 0), at(step.end.q, 0)
+            s0, s1 = at(step.rates.rate, c) / power, at(step.end_rates.rate, c) / power
+        if may_touch(sign * d0, sign * step.h * s0, sign * d1, sign * step.h * s1):
+            found |= 1 << c
+    return found
+
+
 @inline_llvm
 def changes_in(step, bits, contacts):
-    """Bits of the contacts that have opened or closed at the step's end, and of those that may have done so and back.
+    """Bits of the contacts that have opened or closed at the step's end, and of those that have turned in between.
 
     Bit c of `bits` says whether contact c was closed at the start.
     """
@@ -100,7 +115,7 @@ def changes_in(step, bits, contacts):
     turned = turns(bits, rising, risen)
     if step.transform.active != 0.0:
         own = 1 << step.transform.contact
-        crossed = crossed | own if at(step.end.clock, ROOT) < 0.0 else crossed & ~own
+        crossed = crossed | own if at(step.end.q, 0) < 0.0 else crossed & ~own
     every = (1 << contacts) - 1
     return crossed & every, turned & ~crossed & every
 
@@ -108,7 +123,7 @@ def changes_in(step, bits, contacts):
 @inline_numba
 def first_event(slots, work, step, bits, crossed, turned):
     """(contact, fraction) of the first change in the step, whose dense output is prepared; (−1, 2) if there is none."""
-    first, contact, power, h = 2.0, -1, smooth_power(slots.dissipation), step.h
+    first, contact = 2.0, -1
     for c in range(slots.chain.stiffness.size):
         if ((crossed | turned) >> c) & 1 == 0:
             continue
@@ -116,13 +131,6 @@ def first_event(slots, work, step, bits, crossed, turned):
         chosen = step.transform.active != 0.0 and c == step.transform.contact
         take_distance(slots, work, c, chosen, sign)
         if (crossed >> c) & 1 == 0:
-            end, s1, slope, end_slope = sign * at(step.end_rates.overlap, c), at(step.end_rates.rate, c), 0.0, 0.0
-            if chosen:
-                end, slope, end_slope = sign * at(step.end.clock, ROOT), s0 / power, s1 / power
-            else:
-                slope, end_slope = step.pace * s0, step.end_pace * s1
-            if not may_touch(work.polynomial[7], sign * h * slope, end, sign * h * end_slope):
-                continue
             high, top = turn_of(work.polynomial, 1.0)
             if top <= 0.0:
                 continue

@@ -10,7 +10,6 @@ from ..compiling.jit import internal
 from ..dop853.bracket import top_inside, value_at
 from ..dop853.step import TURN_SECTIONS, interpolant
 from ..effects.preload import overlap
-from .chain import ROOT, TIME
 
 #: A fraction of the step is checked when it changes by less than this; the next change would be far smaller.
 _ROOT_CHANGE = 1e-9
@@ -28,9 +27,9 @@ def take_distance(slots, work, contact, chosen, sign):
     """Make the overlap of a contact, or q if it is the one that is `chosen`, times a sign, the polynomial."""
     p, begin, dense = work.polynomial, work.begin, work.dense
     if chosen:
-        p[7] = sign * begin.clock[0, ROOT]
+        p[7] = sign * begin.q[0, 0]
         for k in range(7):
-            p[k] = sign * dense.clock[k, ROOT]
+            p[k] = sign * dense.q[k, 0]
     else:
         p[7] = sign * overlap(slots.preload, begin.u[0], contact)
         for k in range(7):
@@ -40,9 +39,9 @@ def take_distance(slots, work, contact, chosen, sign):
 @internal
 def take_time(work, instant):
     """Make the time since an instant the polynomial."""
-    work.polynomial[7] = work.begin.clock[0, TIME] - instant
+    work.polynomial[7] = work.begin.t[0, 0] - instant
     for k in range(7):
-        work.polynomial[k] = work.dense.clock[k, TIME]
+        work.polynomial[k] = work.dense.t[k, 0]
 
 
 @internal
@@ -57,13 +56,13 @@ def _(quantity, step, x):
 
 
 @internal
-def zero_between(p, low, high):
-    """Where the polynomial passes from negative to positive: secants within a bracket, else its middle.
+def zero_between(p, low, high, f_low, f_high):
+    """Where the polynomial passes from negative, f_low, to positive, f_high: secants within a bracket, else its middle.
 
     They need fewer evaluations than `root_inside` (dop853/bracket.py), which halves a value at each end that stays. 60
     evaluations are more than halving to rounding would take.
     """
-    last, x, f_last, f = low, high, polynomial_at(p, low), polynomial_at(p, high)
+    last, x, f_last, f = low, high, f_low, f_high
     for _ in range(60):
         nearer = x - f * (x - last) / (f - f_last)
         if not low <= nearer <= high:
@@ -96,11 +95,10 @@ def time_inside(work, x):
 def fraction_at(work, instant, high):
     """Fraction of the step, up to `high`, at which it is `instant`."""
     take_time(work, instant)
-    if polynomial_at(work.polynomial, 0.0) >= 0.0:
+    first, last = work.polynomial[7], polynomial_at(work.polynomial, high)
+    if first >= 0.0:
         return 0.0
-    if polynomial_at(work.polynomial, high) <= 0.0:
-        return high
-    return zero_between(work.polynomial, 0.0, high)
+    return high if last <= 0.0 else zero_between(work.polynomial, 0.0, high, first, last)
 
 
 @internal
@@ -115,4 +113,4 @@ def change_before(p, falls, high):
         before = -lowest
     if before >= 0.0 or low >= high:
         return 0.0
-    return zero_between(p, low, high)
+    return zero_between(p, low, high, before, polynomial_at(p, high))

@@ -32,8 +32,6 @@ from .accepted_step import ATTEMPTS, RunConstants, StepBegin, accepted_step, is_
 from .chain import (
     DISPLACEMENT,
     ELASTIC,
-    ROOT,
-    TIME,
     VELOCITY,
     Point,
     W,
@@ -87,7 +85,7 @@ def begin_of_run(constants, t, y, bodies):
     for i in range(bodies):
         work.state[DISPLACEMENT, i], work.state[W, i] = y[i], y[bodies + i]
     width = work.chain.width
-    point = Point(load_row(width, work.state, DISPLACEMENT), load_row(width, work.state, W), splat8(t))
+    point = Point(load_row(width, work.state, DISPLACEMENT), load_row(width, work.state, W), splat8(0.0), splat8(t))
     rates = rates_at(values, constants.driver, no_transform(values, 1.0 + blank(point.u)), point)
     bits = positive_mask(rates.overlap) & ((1 << (bodies - 1)) - 1)
     for c in range(bodies - 1):
@@ -101,7 +99,7 @@ def with_driver_in_place(constants, begin):
     """`StepBegin` with the driver where its phase has it, and the rates there."""
     driver, values, theta = constants.driver, constants.values, constants.beta * begin.t
     point = Point(with_first(begin.point.u, driver_displacement(driver, theta)),
-                  with_first(begin.point.w, driver_velocity(driver, theta)), splat8(begin.t))
+                  with_first(begin.point.w, driver_velocity(driver, theta)), splat8(0.0), splat8(begin.t))
     rates = rates_at(values, driver, no_transform(values, begin.closed), point)
     constants.out.counts[EVALUATIONS] += 1
     forces = begin.forces
@@ -115,7 +113,7 @@ def end_of_step(constants, begin, checked, g, left):
     """The end of a step past point g of the grid: where a contact changes, or at the last of the `left` points."""
     step, contact, x = checked.step, checked.contact, checked.x
     end, end_rates = step.end, step.end_rates
-    time, passed = at(end.clock, TIME), 0
+    time, passed = at(end.t, 0), 0
     if contact >= 0:
         time = time_inside(constants.work, x)
     while passed < left and (g + passed + 1) * constants.spacing <= time + constants.near:
@@ -145,7 +143,7 @@ def record_step(constants, begin, checked, end, g, row, samples):
     if end.cut:
         forces = end_forces(values, driver, end.point, end.rates, constants.last)
         if step.transform.active != 0.0:
-            end_pace, _, _ = powers(constants.power, at(end.point.clock, ROOT))
+            end_pace, _, _ = powers(constants.power, at(end.point.q, 0))
     first, last = in_xi(begin.forces, step.pace), in_xi(forces, end_pace)
     if checked.prepared:
         exceeds = may_exceed(first, last, x * step.h, out.log.peaks)

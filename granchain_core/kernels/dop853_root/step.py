@@ -8,9 +8,9 @@ from ..compiling.jit import inline_llvm
 from ..dop853.step import interpolant
 from ..dop853.tableau import DENSE_WEIGHTS, E3, E5, STAGES, A
 from ..flow.event_time import smooth_power
-from ..simd.sums import sum_of, weighted_rows
-from ..simd.vector import at, load_like, splat8, store, with_first
-from .chain import ROOT, TIME, Point, powers, rates_at
+from ..simd.sums import moved_by_rows, repeat_like, sum_of, weighted_rows
+from ..simd.vector import at, load_like, splat8, store
+from .chain import Point, powers, rates_at
 
 
 class Units(NamedTuple):
@@ -24,31 +24,46 @@ class Units(NamedTuple):
     components: float
 
 
+class StepSize(NamedTuple):
+    """The size of a step in ξ, and h/p of one next to an event, else 0."""
+
+    xi: float
+    root: float
+
+
 @inline_llvm
-def keep_slope(work, law, transform, q, rates, row):
-    """Write the slopes in ξ of one stage; returns them."""
-    power = smooth_power(law)
-    pace, _, _ = powers(power, q)
-    pace = 1.0 - transform.active + transform.active * pace
-    rise = transform.active / power * at(rates.rate, transform.contact)
-    slope = Point(rates.du * pace, rates.dw * pace, with_first(splat8(pace), rise))
-    store(work.slopes.u, row, slope.u)
-    store(work.slopes.w, row, slope.w)
-    store(work.slopes.clock, row, slope.clock)
-    return slope
+def step_size(law, transform, h):
+    """`StepSize` of h in ξ."""
+    return StepSize(h, h * transform.active / smooth_power(law))
+
+
+@inline_llvm
+def keep_increment(work, law, transform, h, q, rates, row):
+    """Write the increments of one stage, its slopes in ξ times the size of the step; returns them."""
+    pace, _, _ = powers(smooth_power(law), q)
+    dt = h.xi * (1.0 - transform.active + transform.active * pace)
+    whole = repeat_like(rates.du, dt)
+    contact = transform.contact
+    rise = splat8(at(rates.du, contact)) - splat8(at(rates.du, contact + 1))  # `rates.rate` is known later
+    increment = Point(rates.du * whole, rates.dw * whole, h.root * rise, dt)
+    store(work.increments.u, row, increment.u)
+    store(work.increments.w, row, increment.w)
+    store(work.increments.q, row, increment.q)
+    store(work.increments.t, row, increment.t)
+    return increment
 
 
 def _stage(row):
-    """Code of one stage: from the slope of the stage before it to its own."""
-    total = weighted_rows(A[row], row - 1)
+    """Code of one stage: from the increment of the stage before it to its own."""
+    moved = moved_by_rows(A[row], row - 1)
 
     @inline_llvm
-    def stage(values, driver, work, transform, start, h, slope):
-        slopes = work.slopes
-        point = Point(start.u + h * total(slope.u, slopes.u), start.w + h * total(slope.w, slopes.w),
-                      start.clock + h * total(slope.clock, slopes.clock))
+    def stage(values, driver, work, transform, start, h, increment):
+        increments = work.increments
+        point = Point(moved(start.u, increment.u, increments.u), moved(start.w, increment.w, increments.w),
+                      moved(start.q, increment.q, increments.q), moved(start.t, increment.t, increments.t))
         rates = rates_at(values, driver, transform, point)
-        return point, rates, keep_slope(work, values.slots.dissipation, transform, at(point.clock, ROOT), rates, row)
+        return point, rates, keep_increment(work, values.slots.dissipation, transform, h, point.q, rates, row)
 
     return stage
 
@@ -65,7 +80,9 @@ def attempt(values, driver, work, transform, start, rates, h, units):
 
     `rates` are those at the start; `units` are `Units`.
     """
-    k = keep_slope(work, values.slots.dissipation, transform, at(start.clock, ROOT), rates, 0)
+    law = values.slots.dissipation
+    h = step_size(law, transform, h)
+    k = keep_increment(work, law, transform, h, start.q, rates, 0)
     _, _, k = _stage1(values, driver, work, transform, start, h, k)
     _, _, k = _stage2(values, driver, work, transform, start, h, k)
     _, _, k = _stage3(values, driver, work, transform, start, h, k)
@@ -78,45 +95,47 @@ def attempt(values, driver, work, transform, start, rates, h, units):
     _, _, k = _stage10(values, driver, work, transform, start, h, k)
     _, _, k = _stage11(values, driver, work, transform, start, h, k)
     end, end_rates, _ = _stage12(values, driver, work, transform, start, h, k)
-    slopes = work.slopes
-    u5, w5 = units.u * _fifth(start.u, slopes.u), units.w * _fifth(start.w, slopes.w)
-    u3, w3 = units.u * _third(start.u, slopes.u), units.w * _third(start.w, slopes.w)
-    t5 = units.w * at(_fifth(start.clock, slopes.clock), TIME)
-    t3 = units.w * at(_third(start.clock, slopes.clock), TIME)
+    increments = work.increments
+    u5, w5 = units.u * _fifth(start.u, increments.u), units.w * _fifth(start.w, increments.w)
+    u3, w3 = units.u * _third(start.u, increments.u), units.w * _third(start.w, increments.w)
+    t5, t3 = units.w * at(_fifth(start.t, increments.t), 0), units.w * at(_third(start.t, increments.t), 0)
     fifth, third = sum_of(u5 * u5 + w5 * w5) + t5 * t5, sum_of(u3 * u3 + w3 * w3) + t3 * t3
     norm = fifth + 0.01 * third  # as in `error_norm` (dop853/step.py)
-    square = 0.0 if norm == 0.0 else h * h * fifth * fifth / (norm * units.components)
+    square = 0.0 if norm == 0.0 else fifth * fifth / (norm * units.components)
     return square, end, end_rates
 
 
 @inline_llvm
-def _dense_rows(slopes, dense, start, end, h):
+def _dense_rows(increments, dense, start, end):
     """The seven rows of the dense output of one part of the state."""
-    change, first, last = end - start, load_like(start, slopes, 0), load_like(start, slopes, STAGES)
+    change, first, last = end - start, load_like(start, increments, 0), load_like(start, increments, STAGES)
     store(dense, 0, change)
-    store(dense, 1, h * first - change)
-    store(dense, 2, 2.0 * change - h * (last + first))
-    store(dense, 3, h * _dense3(start, slopes))
-    store(dense, 4, h * _dense4(start, slopes))
-    store(dense, 5, h * _dense5(start, slopes))
-    store(dense, 6, h * _dense6(start, slopes))
+    store(dense, 1, first - change)
+    store(dense, 2, 2.0 * change - (last + first))
+    store(dense, 3, _dense3(start, increments))
+    store(dense, 4, _dense4(start, increments))
+    store(dense, 5, _dense5(start, increments))
+    store(dense, 6, _dense6(start, increments))
 
 
 @inline_llvm
 def prepare_dense_rows(values, driver, work, transform, start, end, h):
-    """Fill the dense output of the step, with three more slopes, and keep its start."""
-    slopes, dense, begin = work.slopes, work.dense, work.begin
-    k = Point(load_like(start.u, slopes.u, STAGES), load_like(start.w, slopes.w, STAGES),
-              load_like(start.clock, slopes.clock, STAGES))
+    """Fill the dense output of the step, with three more stages, and keep its start."""
+    increments, dense, begin = work.increments, work.dense, work.begin
+    h = step_size(values.slots.dissipation, transform, h)
+    k = Point(load_like(start.u, increments.u, STAGES), load_like(start.w, increments.w, STAGES),
+              load_like(start.q, increments.q, STAGES), load_like(start.t, increments.t, STAGES))
     _, _, k = _stage13(values, driver, work, transform, start, h, k)
     _, _, k = _stage14(values, driver, work, transform, start, h, k)
     _, _, k = _stage15(values, driver, work, transform, start, h, k)
-    _dense_rows(slopes.u, dense.u, start.u, end.u, h)
-    _dense_rows(slopes.w, dense.w, start.w, end.w, h)
-    _dense_rows(slopes.clock, dense.clock, start.clock, end.clock, h)
+    _dense_rows(increments.u, dense.u, start.u, end.u)
+    _dense_rows(increments.w, dense.w, start.w, end.w)
+    _dense_rows(increments.q, dense.q, start.q, end.q)
+    _dense_rows(increments.t, dense.t, start.t, end.t)
     store(begin.u, 0, start.u)
     store(begin.w, 0, start.w)
-    store(begin.clock, 0, start.clock)
+    store(begin.q, 0, start.q)
+    store(begin.t, 0, start.t)
 
 
 @inline_llvm
@@ -133,6 +152,6 @@ def point_inside(work, start, x):
     """The chain at fraction x of the step, whose dense output is prepared."""
     dense = work.dense
     return Point(_dense_vector(dense.u, start.u, x), _dense_vector(dense.w, start.w, x),
-                 _dense_vector(dense.clock, start.clock, x))
+                 _dense_vector(dense.q, start.q, x), _dense_vector(dense.t, start.t, x))
 
 

@@ -83,20 +83,24 @@ def write_scale(strobes, scale):
 
 
 @internal
+def change_in(strobes, q, now, then):
+    """Largest change of displacements or velocities (q) from state `then` to state `now`."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four, so that none of them waits for the one before
+    beads = strobes.shape[2]
+    for i in range(0, beads - 3, 4):
+        a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
+        b = max(b, abs(strobes[now, q, i + 1] - strobes[then, q, i + 1]))
+        c = max(c, abs(strobes[now, q, i + 2] - strobes[then, q, i + 2]))
+        d = max(d, abs(strobes[now, q, i + 3] - strobes[then, q, i + 3]))
+    for i in range(beads - beads % 4, beads):
+        a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
+    return max(max(a, b), max(c, d))
+
+
+@internal
 def change_between(strobes, scale, now, then):
     """Largest relative change from state `then` to state `now`."""
-    change, beads = 0.0, strobes.shape[2]
-    for q in range(2):
-        a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four, so that none of them waits for the one before
-        for i in range(0, beads - 3, 4):
-            a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
-            b = max(b, abs(strobes[now, q, i + 1] - strobes[then, q, i + 1]))
-            c = max(c, abs(strobes[now, q, i + 2] - strobes[then, q, i + 2]))
-            d = max(d, abs(strobes[now, q, i + 3] - strobes[then, q, i + 3]))
-        for i in range(beads - beads % 4, beads):
-            a = max(a, abs(strobes[now, q, i] - strobes[then, q, i]))
-        change = max(change, max(max(a, b), max(c, d)) / scale[q])
-    return change
+    return max(change_in(strobes, 0, now, then) / scale[0], change_in(strobes, 1, now, then) / scale[1])
 
 
 @internal
@@ -244,7 +248,9 @@ def nearest_neighbours(strobes, order, scale, nearest):
         for step in (-1, 1):
             k = place - 1 if step < 0 else place
             while 0 <= k < half and abs(strobes[order[k], 0, 0] - own) < nearest[p] * scale[0]:
-                nearest[p] = min(nearest[p], change_between(strobes, scale, half + p, order[k]))
+                distance = change_in(strobes, 0, half + p, order[k]) / scale[0]
+                if distance < nearest[p]:  # else the velocities do not matter
+                    nearest[p] = min(nearest[p], max(distance, change_in(strobes, 1, half + p, order[k]) / scale[1]))
                 k += step
 
 
