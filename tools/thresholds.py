@@ -62,7 +62,7 @@ def printed(value: float) -> str:
 
 #: How the text of a threshold of `period n` begins if it holds for one of the two ways to a steady state, and the
 #: heading of the table of these.
-_WAYS = {"": "Period n", "A batch: ": "Period n, in a batch", "A chain alone: ": "Period n, of a chain settled alone"}
+_WAYS = {"": "period n", "A batch: ": "period n, in a batch", "A chain alone: ": "period n, of a chain settled alone"}
 
 
 def tables_of_regimes() -> str:
@@ -75,9 +75,9 @@ def tables_of_regimes() -> str:
         parts[heading] = [_row(one, begin) for one in period_n if _way(one) == begin]
     for one in rows:
         if one.mark != "period n":
-            heading = "Every regime" if one.mark == "all" else one.mark[0].upper() + one.mark[1:]
+            heading = "every regime" if one.mark == "all" else one.mark
             parts.setdefault(heading, []).append(_row(one))
-    return "\n\n".join("\n".join([f"### {heading}", "", *_HEAD, *cells]) for heading, cells in parts.items())
+    return "\n\n".join("\n".join([f"### Thresholds: {heading}", "", *_HEAD, *cells]) for heading, cells in parts.items())
 
 
 def _way(one: Marked) -> str:
