@@ -29,8 +29,8 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
     **options
         Of some pictures: `elastic` and `measured` of a curve (a measurement that `read_experiment` of
         granchain_core.experiment has read), `shown` ("force", "regime" or "both") and `curves` (what
-        `bifurcation_curves` found) of a diagram, `bead` of a strobe diagram, `asked` (an accuracy) of a work-precision
-        diagram, `now` (a value of the knob) of a branch, `rank` of an orbit.
+        `bifurcation_curves` found) of a parameter map, `bead` of a bifurcation diagram, `asked` (an accuracy) of a
+        work-precision diagram, `now` (a value of the knob) of a branch, `rank` of an orbit.
 
     Returns
     -------

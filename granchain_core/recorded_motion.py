@@ -43,7 +43,11 @@ class RecordedMotion(Labelled):
 
     @property
     def error_estimate(self) -> float | None:
-        """`displacement_error` by the name that it has in the command line's JSON."""
+        """`displacement_error` by the name that it has in the command line's JSON.
+
+        In curves, parameter maps and attractors this name is the
+        error of the output force (docs/result-files.md, "Which name is which error").
+        """
         return self.displacement_error
 
     @property

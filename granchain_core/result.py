@@ -174,7 +174,8 @@ class Run(RecordedMotion):
         bound (docs/accuracy.md), not a proof; None where none is stated.
     displacement_error : float or None
         Stated largest error of any displacement over the largest displacement: numerical error only, an empirical
-        bound (docs/accuracy.md), not a proof; None where none is stated. Also called `error_estimate`.
+        bound (docs/accuracy.md), not a proof; None where none is stated. Also called `error_estimate`
+        (docs/result-files.md, "Which name is which error").
     energy_residual : float or None
         |work − loss − change of stored energy| over the largest of |work|, |loss| and the peak of the stored
         energy; None where no account was kept.

@@ -33,16 +33,20 @@ def allowed(knob: Quantity) -> str:
     return f"{words}, or {numbers}" if words else numbers + (", whole" if knob.whole else "")
 
 
-def table_of_methods() -> str:
-    """The table of docs/method.md: every method with its orders in theory and as observed, and what it cannot do."""
+def list_of_methods() -> str:
+    """The list of docs/method.md: every method, what it is, and its limits."""
+    items = (f"- **`{one.name}`**: {one.title}. *Limits:* {one.restrictions}." for one in METHODS.values())
+    return "\n".join("\n".join(textwrap.wrap(item, 120, subsequent_indent="  ")) for item in items)
+
+
+def table_of_orders() -> str:
+    """The table of docs/method.md: the orders of every method in theory and as observed."""
     rows = []
     for one in METHODS.values():
-        orders = (one.order, one.order_at_events, one.observed_smooth, one.observed_order, one.observed_with_cut)
-        cells = [one.title, *("–" if math.isnan(order) else f"{order:g}" for order in orders), one.restrictions]
-        rows.append(f"| `{one.name}` | {' | '.join(cells)} |")
-    return "\n".join(["| method | what it is | order in theory, smooth | … at contact events | observed order, smooth "
-                      "| … at contact events | … with a tension cut | restrictions |",
-                      "|---|---|---|---|---|---|---|---|", *rows])
+        orders = (one.order, one.observed_smooth, one.order_at_events, one.observed_order, one.observed_with_cut)
+        rows.append(f"| `{one.name}` | {' | '.join('–' if math.isnan(order) else f'{order:g}' for order in orders)} |")
+    return "\n".join(["| method | smooth: theory | smooth: observed | events: theory | events: observed "
+                      "| tension cut: observed |", "|---|---|---|---|---|---|", *rows])
 
 
 def table_of_scenes() -> str:

@@ -18,6 +18,8 @@ from pathlib import Path
 _CORE = Path(__file__).resolve().parents[1] / "granchain_core"
 #: A comment with a mark, and the name of the constant below it.
 _MARKED = re.compile(r"^#: \[([a-z, -]+)\] ((?:.*\n)(?:#: .*\n)*)(\w+)\b.*=", re.MULTILINE)
+#: The first two lines of a table.
+_HEAD = ("| what | threshold | constant and file |", "|---|---|---|")
 _REGIMES = ("period n", "followed", "chaotic", "quasi-periodic", "unsettled", "all")
 
 
@@ -58,12 +60,35 @@ def printed(value: float) -> str:
     return short if float(short) == value else str(Fraction(value).limit_denominator(100))
 
 
-def table_of_regimes() -> str:
-    """The table of docs/regimes.md, in the order of the regimes."""
-    rows = [one for one in marked_constants() if one.mark.split(", ")[0] in _REGIMES]
-    rows.sort(key=lambda one: [_REGIMES.index(regime) for regime in one.mark.split(", ")])
-    return "\n".join(["| regime | what | threshold | constant and file |", "|---|---|---|---|",
-                      *(f"| {one.mark} | {one.cells}" for one in rows)])
+#: How the text of a threshold of `period n` begins if it holds for one of the two ways to a steady state, and the
+#: heading of the table of these.
+_WAYS = {"": "period n", "A batch: ": "period n, in a batch", "A chain alone: ": "period n, of a chain settled alone"}
+
+
+def tables_of_regimes() -> str:
+    """The tables of docs/regimes.md, one below a heading for each set of regimes, in their order."""
+    parts: dict[str, list[str]] = {}
+    rows = sorted((one for one in marked_constants() if one.mark.split(", ")[0] in _REGIMES),
+                  key=lambda one: [_REGIMES.index(regime) for regime in one.mark.split(", ")])
+    period_n = [one for one in rows if one.mark == "period n"]
+    for begin, heading in _WAYS.items():
+        parts[heading] = [_row(one, begin) for one in period_n if _way(one) == begin]
+    for one in rows:
+        if one.mark != "period n":
+            heading = "every regime" if one.mark == "all" else one.mark
+            parts.setdefault(heading, []).append(_row(one))
+    return "\n\n".join("\n".join([f"### Thresholds: {heading}", "", *_HEAD, *cells]) for heading, cells in parts.items())
+
+
+def _way(one: Marked) -> str:
+    """How the text of a threshold begins: a key of `_WAYS`."""
+    return next((begin for begin in _WAYS if begin and one.what.startswith(begin)), "")
+
+
+def _row(one: Marked, begin: str = "") -> str:
+    """A row without the words that the heading above it has."""
+    cells = one.cells.removeprefix(begin)
+    return f"| {cells[0].upper()}{cells[1:]}"
 
 
 #: The constants that decide what a motion is called, in the order of the definitions.
@@ -101,5 +126,4 @@ def table_of_branches() -> str:
 def _table(mark: str, reverse: bool = False) -> str:
     """All constants with a mark, file by file."""
     rows = sorted((one for one in marked_constants() if one.mark == mark), key=lambda one: one.file, reverse=reverse)
-    return "\n".join(["| what | threshold | constant and file |", "|---|---|---|",
-                      *(f"| {one.cells}" for one in rows)])
+    return "\n".join([*_HEAD, *(f"| {one.cells}" for one in rows)])

@@ -20,18 +20,19 @@ from tools import gallery, links, scales
 from tools.generated import with_part
 from tools.lists import (
     commands_with_pictures,
+    list_of_methods,
     table_of_knobs,
     table_of_libraries,
-    table_of_methods,
+    table_of_orders,
     table_of_scenes,
 )
 from tools.thresholds import (
     table_of_branches,
     table_of_deciding,
-    table_of_regimes,
     table_of_responses,
     table_of_rotation_numbers,
     table_of_safety_factors,
+    tables_of_regimes,
 )
 
 _ROOT = Path(__file__).resolve().parents[1]
@@ -39,12 +40,13 @@ _COMMAND = "python -m tools.update"
 #: Every table that follows from the code: its page, its name in the page's marks, and what writes it.
 _TABLES = (
     ("docs/regimes.md", "deciding thresholds", table_of_deciding),
-    ("docs/regimes.md", "thresholds", table_of_regimes),
+    ("docs/regimes.md", "thresholds", tables_of_regimes),
     ("docs/regimes.md", "rotation thresholds", table_of_rotation_numbers),
     ("docs/orbits.md", "thresholds", table_of_responses),
     ("docs/branches.md", "branch constants", table_of_branches),
     ("docs/accuracy.md", "safety factors", table_of_safety_factors),
-    ("docs/method.md", "methods", table_of_methods),
+    ("docs/method.md", "methods", list_of_methods),
+    ("docs/method.md", "orders", table_of_orders),
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "scenes", table_of_scenes),
     ("README.md", "commands with pictures", commands_with_pictures),

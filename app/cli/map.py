@@ -1,4 +1,4 @@
-"""`granchain map`: regime and largest forces over two knobs. A map that was interrupted can be continued."""
+"""`granchain map`: the parameter map, regime and largest forces over two knobs. An interrupted one can be continued."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def axis_from(option: str, text: str) -> Axis:
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """Compute, write and describe a two-parameter diagram."""
+    """Compute, write and describe a parameter map."""
     from granchain_core.store import check_writable
 
     chosen = chosen_scene(arguments)
@@ -83,12 +83,12 @@ def do(arguments: argparse.Namespace) -> None:
         refuse_cut(grid.scene)
     found, computed = _found(arguments, grid)
     curves = in_background(lambda stop: bifurcation_curves(found, stop=stop)) if arguments.bifurcations else []
-    write_picture(arguments.picture, f"A map of {grid.scene.name}", found, curves=curves)
+    write_picture(arguments.picture, f"A parameter map of {grid.scene.name}", found, curves=curves)
     _tell(found, curves, computed, arguments)
 
 
 def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
-    """The diagram and its file, of which only missing cells are computed, and how many those were."""
+    """The parameter map and its file, of which only missing cells are computed, and how many those were."""
     from granchain_core.store.diagrams import load_diagram, save_diagram
 
     there = finished(arguments, "map", load_diagram,
@@ -117,7 +117,7 @@ def _refuse_too_many(grid: Grid) -> None:
 
 
 def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[Diagram, int]:
-    """The whole diagram, of which only missing cells are computed, and how many those were; counts in `done`."""
+    """The whole parameter map, of which only missing cells are computed, and how many those were; counts in `done`."""
     began, grid = time.perf_counter(), blocks.grid
     cells = blocks.cells()
     missing = [int(number) for number in grid.coarse_first() if cells["regime"][number] < 0]

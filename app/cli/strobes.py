@@ -1,4 +1,4 @@
-"""`granchain strobes`: a bead's states once a drive period over a knob, the bifurcation diagram."""
+"""`granchain strobes`: the bifurcation diagram, a bead's states once a drive period over a knob."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def do(arguments: argparse.Namespace) -> None:
-    """Compute the strobe diagram of a scene."""
+    """Compute the bifurcation diagram of a scene."""
     from granchain_core import strobe_diagram
     from granchain_core.analysis.strobe_diagram import MOST_VALUES
 

@@ -81,7 +81,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     PageSpec("branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable.", needs_curve=True),
     PageSpec("analysis", AnalysisPage, Analysis,
-        "Spectrum, strobes over a knob, basins and Lyapunov exponents of the present scene."),
+        "Spectrum, bifurcation diagram, basins and Lyapunov exponents of the present scene."),
     PageSpec("observer", ObserverPage, Observer,
         "A copy of the chain that is driven only by its input force.", works_hidden=False),
     PageSpec("hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),

@@ -1,4 +1,4 @@
-"""The map over two knobs: a cell for each pair of values, by its largest force or by its regime."""
+"""The parameter map: a cell for each pair of values, by its largest force or by its regime."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip
 
 def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
             curves: Sequence[BifurcationCurve] = ()) -> figure:
-    """All computed cells of a diagram over its two knobs; `shown` is "force" or "regime".
+    """All computed cells of a parameter map over its two knobs; `shown` is "force" or "regime".
 
     `now` is a pair of values [SI] with a mark, `curves` are its bifurcation curves. The source "cells" has a row for
     each cell, those of coarse nets first: they stand for the cells around them until these are there. `cell_rows`,
@@ -192,7 +192,7 @@ def now_row(grid: Grid, x: float | None = None, y: float | None = None) -> dict[
 
 
 def nothing(grid: Grid) -> Diagram:
-    """A diagram of which nothing is computed."""
+    """A parameter map of which nothing is computed."""
     return Diagram(grid, empty_cells(grid))
 
 

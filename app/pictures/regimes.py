@@ -1,8 +1,8 @@
 """Marks of the regimes.
 
-They are the same on the resonance curve and its key, in the map, the list of attractors, the strobes over a knob, the
-tab “regimes” and the paper's figures. After a change, run `python -m tools.paper` and `python -m tools.screenshots`,
-because the pictures in docs/paper and docs/dashboard.png show them.
+They are the same on the resonance curve and its key, in the parameter map, the list of attractors, the bifurcation
+diagram, the tab “regimes” and the paper's figures. After a change, run `python -m tools.paper` and
+`python -m tools.screenshots`, because the pictures in docs/paper and docs/dashboard.png show them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The strobe diagram: a bead's displacement once a drive period, over a knob."""
+"""The bifurcation diagram: a bead's displacement once a drive period, over a knob."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ class StrobePoint:
 
 @dataclass(eq=False, repr=False)
 class StrobeDiagram(Labelled):
-    """Strobes over a knob.
+    """A bifurcation diagram: strobes over one knob.
 
     Attributes
     ----------
@@ -151,7 +151,7 @@ class StrobeDiagram(Labelled):
 
 def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray, start: str = "up", keep: int = 60,
                    stop: Stop | None = None, progress: Callable[[float], None] | None = None) -> StrobeDiagram:
-    """The strobe diagram over one knob.
+    """The bifurcation diagram: strobes over one knob.
 
     Parameters
     ----------
@@ -166,7 +166,7 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
     keep : int
         Strobes at each value, 1 to 10,000.
     stop : Stop, optional
-        When set, the diagram ends with the values that are finished.
+        When set, the computation ends with the values that are finished.
     progress : callable, optional
         Called with the fraction that is done, 0 to 1.
 
@@ -189,13 +189,13 @@ def strobe_diagram(scene: Scene, knob: str, values: Sequence[float] | np.ndarray
     """
     knobs = [name for name, quantity in QUANTITIES.items() if quantity.is_continuous]
     if knob not in knobs:
-        raise unknown_name("knob of a strobe diagram", knob, knobs)
+        raise unknown_name("knob of a bifurcation diagram", knob, knobs)
     if start not in CURVE_STARTS:
         raise unknown_name("start", start, CURVE_STARTS)
     require_scene(scene)
     numbers = sorted(numbers_in(f"The values of {knob}", values))
     if not 1 <= len(numbers) <= MOST_VALUES:
-        raise BadInput(f"A strobe diagram has 1 to {MOST_VALUES} values of its knob, not {len(numbers)}.")
+        raise BadInput(f"A bifurcation diagram has 1 to {MOST_VALUES} values of its knob, not {len(numbers)}.")
     keep = whole_number("keep =", keep, 1, MOST_STROBES)
     chains = [(value, scene.evolve(**{knob: value})) for value in numbers]
     found = StrobeDiagram(scene, knob, start)

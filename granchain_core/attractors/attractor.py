@@ -92,7 +92,10 @@ class Attractor:
 
     @property
     def error_estimate(self) -> float | None:
-        """`force_errors.output` by the name that it has in the command line's JSON."""
+        """`force_errors.output` by the name that it has in the command line's JSON.
+
+        Of a motion this name is the error of the displacements (docs/result-files.md, "Which name is which error").
+        """
         return self.force_errors.output
 
     @property

@@ -1,4 +1,4 @@
-"""Folds, period doublings and Neimark–Sacker points over two knobs, continued from one point or found in a map."""
+"""Folds, period doublings and Neimark–Sacker points over two knobs, from one point or from a parameter map."""
 
 from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
 from .in_map import BifurcationCurve, bifurcation_curves

@@ -31,7 +31,7 @@ _CELLS_APART = 0.5
 
 @dataclass(frozen=True, eq=False)
 class BifurcationCurve:
-    """A bifurcation curve in the plane of a map's two knobs.
+    """A bifurcation curve in the plane of the two knobs of a parameter map.
 
     Attributes
     ----------
@@ -77,7 +77,7 @@ class _Pair:
 def bifurcation_curves(found: Diagram, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
                        stop: Stop | None = None,
                        on_curve: Callable[[BifurcationCurve], None] | None = None) -> list[BifurcationCurve]:
-    """The bifurcation curves in a map: folds, period doublings and Neimark–Sacker points over its two knobs.
+    """The bifurcation curves in a parameter map: folds, period doublings and Neimark–Sacker points over its two knobs.
 
     Between neighbouring cells of a row that are not alike the bifurcation is found, and then continued in y. Curves
     that cannot be followed are left out: two neighbours from rest may be on two attractors with no bifurcation between
@@ -86,7 +86,7 @@ def bifurcation_curves(found: Diagram, rows: Iterable[int] | None = None, values
     Parameters
     ----------
     found : Diagram
-        The map.
+        The parameter map.
     rows : iterable of int, optional
         The rows in which neighbours are compared, from 0; the middle one if not given.
     values : iterable of float, optional

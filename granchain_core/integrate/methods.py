@@ -182,43 +182,44 @@ METHODS: dict[str, Method] = {
             name="rk4", title="RK4 in w",
             order=4.0, order_at_events=2.0, observed_smooth=4.0, observed_order=2.0,
             adaptive=False, symplectic=False,
-            restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, its jump "
-                         "read off the step's ends",
+            restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, and the "
+                         "jump of its force is taken from the ends of the step",
             reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9)),
         Method(
             name=FIXED_STEP, title="RK4 in w, steps split at contact events, quadrature corrected there",
             order=4.0, order_at_events=3.5, observed_smooth=4.0, observed_order=3.9,
             adaptive=False, symplectic=False,
-            restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; with more than "
-                         f"{SHORT_CHAIN} beads two changes of one inner contact inside a step are not seen",
+            restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; in chains of "
+                         f"more than {SHORT_CHAIN} beads two changes of one inner contact within a step are not seen",
             reference="Kutta 1901; w-variables and events: docs/method.md", stepper=_fixed(Rk4Split, simd=True),
             cost=StepCost(450e-9, 45e-9), usual_error=_FIXED_STEP_ERROR, converges_regularly=True),
         Method(
             name="rk4-naive", title="RK4 in (u, v), the obvious first attempt",
             order=4.0, order_at_events=1.0, observed_smooth=4.0, observed_order=1.0,
             adaptive=False, symplectic=False,
-            restrictions="no energy account; erratic where a dashpot contact opens or closes; touches as with rk4",
+            restrictions="no energy account; its error is irregular where a contact with a dashpot opens or closes; "
+                         "touches as with rk4",
             reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv",
             has_account=False),
         Method(
             name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt",
             order=1.0, order_at_events=1.0, observed_smooth=1.0, observed_order=1.0,
             adaptive=False, symplectic=True,
-            restrictions="no energy account; symplectic, and of order 2, without damping only; touches as with rk4",
+            restrictions="no energy account; symplectic and of order 2 only without damping; touches as with rk4",
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
             variables="uv", has_account=False),
         Method(
             name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located",
             order=8.0, order_at_events=7.0, observed_smooth=8.5, observed_order=7.5,
-            adaptive=True, symplectic=False, restrictions="accuracy to about 1e-12",
+            adaptive=True, symplectic=False, restrictions="errors down to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Dop853Stepper),
             cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, observed_with_cut=7.5),
         Method(
             name="dop853-root", title="Dormand–Prince 8 in w, in the root of an overlap next to contact events",
             order=8.0, order_at_events=7.0, observed_smooth=8.0, observed_order=7.0,
             adaptive=True, symplectic=False,
-            restrictions="accuracy to about 1e-12; no energy account; chains of up to "
-                         f"{SHORT_CHAIN} beads with a driver that is harmonic or at rest, without tension cut",
+            restrictions=f"errors down to about 1e-12; no energy account; only chains of up to {SHORT_CHAIN} beads, "
+                         "with a driver that is harmonic or at rest, and without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/method.md",
             stepper=_adaptive(Dop853RootStepper), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
             usual_error=1.0, observed_with_cut=math.nan, has_account=False),

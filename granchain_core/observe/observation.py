@@ -64,7 +64,7 @@ class Observation(RecordedMotion):
         input force, which is a sample.
     integration_error, interpolation_error : float
         Relative errors of the displacements by the steps and by the interpolation between samples; their sum
-        is `displacement_error`, also called `error_estimate`.
+        is `displacement_error`, also called `error_estimate` (docs/result-files.md, "Which name is which error").
     status : str
         "done" if `displacement_error` is at most the accuracy asked for, else "accuracy-not-reached".
     cost : Cost

@@ -57,16 +57,16 @@ _TABLE = (
                 "last periods and not of an orbit.",
                 computations.transmission, ("curve",)),
     PaperFigure("3", "Kinetic energy of the beads at the 1:1 and the 1:3 resonance",
-                "Left of each map the drive's displacement (red) and the force on bead 1 (blue). At 340 Hz one strong "
-                "push in every period, at 1130 Hz one in three.",
+                "Left of each energy map the drive's displacement (red) and the force on bead 1 (blue). At 340 Hz one "
+                "strong push in every period, at 1130 Hz one in three.",
                 lambda _, stop, __: computations.energy(("fig3a", "fig3b"), stop)),
     PaperFigure("3a", "Kinetic energy of the beads at the 1:1 resonance, 340 Hz",
-                "Left of the map the drive's displacement (red) and the force on bead 1 (blue): one strong push in "
-                "every period, given when the reflected pulse is back.",
+                "Left of the energy map the drive's displacement (red) and the force on bead 1 (blue): one strong push "
+                "in every period, given when the reflected pulse is back.",
                 lambda _, stop, __: computations.energy(("fig3a",), stop)),
     PaperFigure("3b", "Kinetic energy of the beads at the 1:3 resonance, 1130 Hz",
-                "Left of the map the drive's displacement (red) and the force on bead 1 (blue): one strong push in "
-                "three periods; the weaker ones between start no pulse.",
+                "Left of the energy map the drive's displacement (red) and the force on bead 1 (blue): one strong push "
+                "in three periods; the weaker ones between start no pulse.",
                 lambda _, stop, __: computations.energy(("fig3b",), stop)),
     PaperFigure("4", "The laboratory rig",
                 "Beads of the scene rig to scale. Shaker, vibrometer, force transducers, holders and flexures are "

@@ -1,4 +1,8 @@
-"""Regime and largest forces over two knobs, every cell from rest."""
+"""The parameter map: regime and largest forces over two knobs, every cell from rest.
+
+In code a parameter map is a `Diagram`, which `diagram` computes, and `granchain map` on the command line. The diagram
+over one knob, the bifurcation diagram, is in `analysis/strobe_diagram.py`.
+"""
 
 from .cells import Diagram
 from .compute import diagram, iter_diagram

@@ -1,4 +1,4 @@
-"""Checkpoints of a map (checkpoints.py): finished cells on disk, as tables of 128."""
+"""Checkpoints of a parameter map (checkpoints.py): finished cells on disk, as tables of 128."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from .grid import Axis, Grid
 
 
 class Blocks:
-    """The folder of blocks of one map, which grows while the map is computed."""
+    """The folder of blocks of one parameter map, which grows while the map is computed."""
 
     def __init__(self, grid: Grid, out: str | Path) -> None:
         self.grid = grid

@@ -1,4 +1,4 @@
-"""The cells of a diagram as one table: regime, period, largest forces, error, and the evidence for the regime."""
+"""The cells of a parameter map as one table: regime, period, largest forces, error, and the evidence for the regime."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ from .grid import Grid
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.
 CELL_REGIMES = (*NAMES, "failed")
 #: One cell. Forces in N, NaN where the computation failed; stated errors are relative, `error_estimate` that of the
-#: output force, NaN where none is stated; `period` in drive periods, 0 where not periodic; `decay` per orbit,
-#: `multiplier` (the largest |μ|), `lyapunov` (per drive period) and `lyapunov_periods`, over which it was measured, NaN
-#: where not seen or not computed.
+#: output force (docs/result-files.md, "Which name is which error"), NaN where none is stated; `period` in drive
+#: periods, 0 where not periodic; `decay` per orbit, `multiplier` (the largest |μ|), `lyapunov` (per drive period) and
+#: `lyapunov_periods`, over which it was measured, NaN where not seen or not computed.
 CELL = np.dtype([
     ("number", "<i4"), ("regime", "i1"), ("period", "<i2"), ("periods_run", "<i4"), ("max_input_force", "<f8"),
     ("max_output_force", "<f8"), ("max_output_force_elastic", "<f8"), ("error_estimate_input", "<f8"),
@@ -70,7 +70,7 @@ def _or_nan(value: float | None) -> float:
 
 @dataclass(eq=False, repr=False)
 class Diagram(Labelled):
-    """A two-parameter diagram.
+    """A parameter map: regime and largest forces over two knobs.
 
     Attributes
     ----------

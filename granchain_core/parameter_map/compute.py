@@ -1,4 +1,4 @@
-"""Computing the cells of a diagram in batches, on all cores, coarse first."""
+"""Computing the cells of a parameter map in batches, on all cores, coarse first."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) ->
 def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
                  stop: Stop | None = None, workers: int | None = None,
                  pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
-    """Cells of the diagram as they are decided, coarse first; `missing` are those wanted, else all.
+    """Cells of the parameter map as they are decided, coarse first; `missing` are those wanted, else all.
 
     The result's `number` is the cell's. `stop` is read between cells and ends the computation; running cells
     are then abandoned. `pause` is called before a cell is begun and may wait.
@@ -58,7 +58,7 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
 def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
             stop: Stop | None = None, progress: Callable[[Diagram, float], None] | None = None,
             workers: int | None = None, amplitude: Amplitude | None = None) -> Diagram:
-    """Regime and largest forces over two knobs, every cell from rest, on all cores.
+    """The parameter map: regime and largest forces over two knobs, every cell from rest, on all cores.
 
     Cells are computed in batches with fixed steps, whatever the scene's `accuracy`, and state the error they have.
 
@@ -69,9 +69,9 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
     x, y : tuple of (str, iterable of float)
         A knob ("f", "A0", "D", "k", "kappa", "F0", "wall", "dimer", …) and its ascending values in SI.
     stop : Stop, optional
-        Read between cells. When set, the diagram ends, and cells that are not computed have regime −1.
+        Read between cells. When set, the computation ends, and cells that are not computed have regime −1.
     progress : callable, optional
-        Called with the diagram so far and the fraction that is done, after every cell.
+        Called with the map so far and the fraction that is done, after every cell.
     workers : int, optional
         Threads; one for each core if not given.
     amplitude : Amplitude, optional

@@ -1,4 +1,4 @@
-"""The grid of a two-parameter diagram: two knobs with their values, and the order in which its cells are computed."""
+"""The grid of a parameter map: two knobs with their values, and the order in which its cells are computed."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..scene.refusals import refuse_undriven
 
 #: Knobs that may be an axis: the continuous ones that change the motion.
 KNOBS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_axis)
-#: Most cells of one diagram.
+#: Most cells of one parameter map.
 MOST_CELLS = 4_000_000
 
 

@@ -1,7 +1,8 @@
 """Curves in HDF5.
 
 /curve  frequency (Hz); max_output_force, max_output_force_elastic, max_input_force, their relative errors
-        error_estimate (of the output force), error_estimate_elastic, error_estimate_input (frequency);
+        error_estimate (of the output force; docs/result-files.md, "Which name is which error"),
+        error_estimate_elastic, error_estimate_input (frequency);
         regime, status, period (frequency); the evidence for the regime, which older files lack in part or whole:
         periods_run, decay, multiplier, lyapunov, lyapunov_error, lyapunov_periods, and followed, approaches, distance,
         return_distance, return_limit, smallest_window_ratio, largest_window_ratio (frequency);

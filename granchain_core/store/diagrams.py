@@ -1,7 +1,8 @@
-"""Two-parameter diagrams as HDF5: /map with the two knobs as labelled axes.
+"""Parameter maps as HDF5: /map with the two knobs as labelled axes.
 
 /map    one dimension scale per knob, named as the knob; max_input_force, max_output_force, max_output_force_elastic,
-        their relative errors error_estimate_input, error_estimate (of the output force), error_estimate_elastic,
+        their relative errors error_estimate_input, error_estimate (of the output force; docs/result-files.md, "Which
+        name is which error"), error_estimate_elastic,
         decay, multiplier, lyapunov, lyapunov_error, lyapunov_periods, regime, period, periods_run (y, x)
 The root's attribute `amplitude` describes A0 over f where it is not the scene's.
 """
@@ -24,12 +25,12 @@ from .writing import write_file, write_result
 
 
 def save_diagram(diagram: Diagram, path: str | Path) -> Path:
-    """Write a diagram to `path`; returns the path. Raises `BadInput` where it cannot be written."""
+    """Write a parameter map to `path`; returns the path. Raises `BadInput` where it cannot be written."""
     return write_file(path, lambda file: write_result(file, diagram))
 
 
 def load_diagram(path: str | Path) -> Diagram:
-    """The diagram that `save_diagram` wrote. Raises `BadInput` for a file that is not one."""
+    """The parameter map that `save_diagram` wrote. Raises `BadInput` for a file that is not one."""
     with opened(path, "is not a map written by granchain") as file:
         file.schema()
         return _read(file)

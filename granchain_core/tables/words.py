@@ -14,7 +14,8 @@ from .table import Column, axis
 MAXIMA = ("max_input_force", "max_output_force", "max_output_force_elastic")
 _MEANT = ("largest force of the driver on bead 1", "largest force on the wall, elastic and damping",
           "largest elastic force on the wall, the paper's F_out")
-#: Columns with their relative errors in the same order; `error_estimate` is that of the output force.
+#: Columns with their relative errors in the same order; `error_estimate` is that of the output force
+#: (docs/result-files.md, "Which name is which error").
 ERRORS = ("error_estimate_input", "error_estimate", "error_estimate_elastic")
 _FORCES = ("input", "output", "elastic output")
 

@@ -34,7 +34,7 @@ def test_the_cloud_has_every_strobe_in_si() -> None:
 
 def test_what_is_no_diagram_is_refused() -> None:
     chain = scene("sec2").evolve(N=2)
-    for words, message in ((("N", [1.0]), "knob of a strobe diagram 'N'"), (("f", []), "1 to 20000 values"),
+    for words, message in ((("N", [1.0]), "knob of a bifurcation diagram 'N'"), (("f", []), "1 to 20000 values"),
                            (("f", [-1.0]), "outside"), (("f", [340.0], "sideways"), "start 'sideways'"),
                            (("f", [340.0], "up", 0), "outside 1 to")):
         with pytest.raises(BadInput, match=message):

@@ -62,7 +62,7 @@ def test_the_result_in_words(command: str, words: str, capsys: pytest.CaptureFix
     (["spectrum", *SHORT, "--force", "wall"], "force 'wall'"), (["lyapunov", *SHORT, "--periods", "3"], "outside 20 to"),
     (["rotation", *SHORT, "--periods", "3"], "periods = 3 is outside 1000 to"), (["rotation", "impact"], "drive = rest"),
     (["strobes", *SHORT, "--over", "f=1:2"], "must have the form KNOB=a:b:n"),
-    (["strobes", *SHORT, "--over", "wall=1:2:3"], "knob of a strobe diagram 'wall'"),
+    (["strobes", *SHORT, "--over", "wall=1:2:3"], "knob of a bifurcation diagram 'wall'"),
     (["strobes", *SHORT, "--over", "f=1000:1100:2", "--bead", "3"], "--bead 3 is outside 1 to 2"),
     (["attractors", *SHORT, "--random-states", "-1"], "--random-states -1 is outside 0 to 10000"),
     (["attractors", *SHORT, "--seed", "-1"], "--seed -1 is outside 0 to"), (["attractors", "impact"], "drive = rest"),

@@ -1,4 +1,4 @@
-"""The two-parameter diagram: its cells are those of curves, and no finished cell is lost or computed twice."""
+"""The parameter map: its cells are those of curves, and no finished cell is lost or computed twice."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The map over two knobs."""
+"""The parameter map, over two knobs."""

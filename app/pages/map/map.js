@@ -1,4 +1,4 @@
-// The Map tab: regime or largest force over two knobs, coarse first, and all attractors of the present setting.
+// The Map tab: the parameter map, regime or largest force over two knobs, coarse first, and all attractors of the present setting.
 
 import { button, element, meter, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";

@@ -1,4 +1,4 @@
-"""The Map tab of one visitor: the map over f and A0 while it is looked at, and the search for attractors."""
+"""The Map tab of one visitor: the parameter map over f and A0 while it is looked at, and the search for attractors."""
 
 from __future__ import annotations
 

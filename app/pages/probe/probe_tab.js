@@ -3,7 +3,7 @@
 import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
 
-const INVITES = "Click a bead in the chain or in the map: its motion, its contacts, its spectrum.";
+const INVITES = "Click a bead in the chain or in the energy map: its motion, its contacts, its spectrum.";
 
 export function probeTab() {
   const known = () => window.granchain.pages.get("probe") ?? {};

@@ -8,7 +8,7 @@ const HELP = [
   ["time", "Runs downwards in all pictures; drag in a picture to stop and move through time, press Space to play."],
   [
     "values",
-    "Point at a picture: a line through all of them, with the values there. Shift and drag in the map: a measuring tape for time, distance and speed.",
+    "Point at a picture: a line through all of them, with the values there. Shift and drag in the energy map: a measuring tape for time, distance and speed.",
   ],
   ["settled", "The steady state for these knobs, whole periods, replayed in slow motion."],
   ["status", "The line at the bottom: a click on an entry says what it means."],
@@ -26,7 +26,7 @@ const KEYS = [
   ["Space", "play or pause"],
   ["Ctrl-Z", "undo; Ctrl-Shift-Z: redo; so do the browser's back and forward"],
   ["Tab", "to the next control; Shift-Tab: back"],
-  ["← →", "on a knob: fine steps, with Shift coarse; on tabs: the next tab; on the map: the next cell"],
+  ["← →", "on a knob: fine steps, with Shift coarse; on tabs: the next tab; on the parameter map: the next cell"],
   ["↑ ↓", "on the time cursor: one sample; Page ↑ and ↓: one drive period; Home and End: the ends"],
   ["Enter", "on the name of a peak: go there; on a knob's number: take it"],
   ["Esc", "closes what is open"],

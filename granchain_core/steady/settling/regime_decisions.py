@@ -38,7 +38,7 @@ _CONFIRMED_BEADS = 30
 #: [period n] A chain alone: a claim is unconfirmed if the decay per drive period is above this, or if the motion began
 #: from another state. A slowly unstable orbit may look like it.
 CLEAR_DECAY = 0.9
-#: [unsettled] Factor on this number for a motion that leaves an unstable orbit. Departures are slow too.
+#: [unsettled] Factor on the most drive periods for a motion that leaves an unstable orbit. Departures are slow too.
 _DEPARTURE_FACTOR = 4
 #: [period n] A chain alone: with a larger |μ| at the motion's own state, by differences, Newton's method finds the
 #: orbit.

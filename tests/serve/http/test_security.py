@@ -57,7 +57,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                             "(1008)",
         "a link": f"{LONGEST} characters",
         "pages at once": f"{Access().most_visitors}",
-        "long computations of a visitor at once": f"{LONG.share} (maps, searches, branches, analyses, figures of the paper, virtual "
+        "long computations of a visitor at once": f"{LONG.share} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
                                                   "experiments); more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
