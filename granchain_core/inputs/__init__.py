@@ -1,0 +1,1 @@
+"""Input from outside: checks of values, numbers in text, gaps in a series of samples."""

@@ -1,0 +1,1 @@
+"""Results of one motion: what a run gives back, a recorded motion, the regime."""
