@@ -1,4 +1,4 @@
-"""Folds, period doublings and Neimark–Sacker points over two knobs, continued from one point or found in a map."""
+"""Bifurcation curves over two knobs: folds, period doublings and Neimark–Sacker points, continued or found in a map."""
 
 from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
 from .in_map import BifurcationCurve, bifurcation_curves

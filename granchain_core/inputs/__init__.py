@@ -1,1 +1,1 @@
-"""Input from outside: checks of values, numbers in text, gaps in a series of samples."""
+"""Values from outside: their checks, numbers in text, gaps in a series of samples."""

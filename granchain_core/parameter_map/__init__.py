@@ -1,4 +1,4 @@
-"""Regime and largest forces over two knobs, every cell from rest."""
+"""Maps over two knobs: the regime and the largest forces of every cell, from rest."""
 
 from .cells import Diagram
 from .compute import diagram, iter_diagram

@@ -1,1 +1,1 @@
-"""Results of one motion: what a run gives back, a recorded motion, the regime."""
+"""Results of one motion in SI: what a run gives back, the motion over time, the regime with its evidence."""
