@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from granchain_core import Run, Scene
-from granchain_core.scaling import scales_of
+from granchain_core.integrate.scaling import scales_of
 
 #: Rows per drive period: at least.
 _FEWEST_ROWS = 96

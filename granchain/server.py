@@ -19,7 +19,7 @@ from granchain_core import BadInput, Scene, scene
 from .pictures import part_of_app
 
 #: What the process runs: the command `granchain`, and nothing that depends on the PATH. It ends with this process.
-_PROGRAM = ("import sys; from granchain_core.child_processes import end_with_parent; "
+_PROGRAM = ("import sys; from granchain_core.execution.child_processes import end_with_parent; "
             "end_with_parent(int(sys.argv.pop(1))); import granchain_start; sys.exit(granchain_start.entry())")
 #: Longest wait for the server's first answer [s]: the first start on a machine compiles.
 _START_TIMEOUT = 120.0

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .analysis.strobe_diagram import StrobeDiagram, strobe_diagram
     from .attractors import Attractor, Attractors, attractors
     from .bifurcation_curves import BifurcationCurve, bifurcation_curves
+    from .execution.stop import Stop
     from .fit import Fit, fit
     from .observe import Observation, observe
     from .orbits import Branch, Orbit
@@ -41,26 +42,25 @@ if TYPE_CHECKING:
     from .orbits import periodic_orbit as periodic_orbit
     from .parameter_map import Diagram, diagram
     from .prescribed_drive import Driven, Signal, drive
-    from .regime import Regime
-    from .result import Cost, Run
+    from .results.regime import Regime
+    from .results.run import Cost, Run
     from .run.live import LiveChain
     from .run.many import Runs, run_many
     from .run.to_accuracy import run
-    from .state import State
+    from .scene.state import State
     from .steady.curve.curve import Curve, CurvePoint
     from .steady.curve.resonance_curve import iter_curve, resonance_curve
     from .steady.settling.outcome import Settled
     from .steady.settling.settle import settle, settling
     from .steady.settling.settle import settled as settled
-    from .stop import Stop
     from .store import load, save
 
 #: Public names by module. They are imported at first use, so that `import granchain_core` is quick.
 _MODULES = {
     "run.to_accuracy": ("run",), "run.many": ("Runs", "run_many"), "run.live": ("LiveChain",),
-    "result": ("Cost", "Run"), "state": ("State",), "stop": ("Stop",),
+    "results.run": ("Cost", "Run"), "scene.state": ("State",), "execution.stop": ("Stop",),
     "steady.settling.settle": ("settle", "settled", "settling"), "steady.settling.outcome": ("Settled",),
-    "regime": ("Regime",),
+    "results.regime": ("Regime",),
     "steady.curve.curve": ("Curve", "CurvePoint"),
     "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from .errors import BadInput, Cancelled, NumbersFailed
-from .stop import Stop
+from .execution.stop import Stop
 
 #: Time in which a scheduler must answer [s].
 _ANSWERS = 4.0

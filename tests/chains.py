@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from granchain_core import Scene, scene
-from granchain_core.laws import LAWS as DAMPING_LAWS
+from granchain_core.scene.laws import LAWS as DAMPING_LAWS
 
 #: What the knob `dissipation` may be.
 LAWS = (*DAMPING_LAWS, "none")

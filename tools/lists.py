@@ -13,7 +13,7 @@ from app import needed
 from app.cli.commands import COMMANDS
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
-from granchain_core.quantities import QUANTITIES, Quantity
+from granchain_core.scene.quantities import QUANTITIES, Quantity
 from tools.thresholds import printed
 
 

@@ -32,7 +32,7 @@ def do(arguments: argparse.Namespace) -> None:
     from granchain_core import attractors
     from granchain_core.attractors.attractor import failed_sentence
     from granchain_core.attractors.attractors import MOST_STATES
-    from granchain_core.input_checks import check_range
+    from granchain_core.inputs.checks import check_range
 
     chosen = chosen_scene(arguments)
     check_files(arguments)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from granchain_core import BadInput, Cancelled, NumbersFailed
-from granchain_core.checkpoints import folder_of
+from granchain_core.execution.checkpoints import folder_of
 from granchain_core.orbits import CONTINUOUS, Arm, Branch, Continuation, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
 from granchain_core.orbits.branch.orbit_checkpoints import OrbitCheckpoints

@@ -14,7 +14,7 @@ from typing import NoReturn
 
 from granchain_core import BadInput, Cancelled, NumbersFailed
 from granchain_core.errors import OverBudget, outcome_of
-from granchain_core.input_checks import unknown_name
+from granchain_core.inputs.checks import unknown_name
 
 from . import ending
 from .common import say, show_json

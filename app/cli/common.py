@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from granchain_core import BadInput, Cancelled, Scene, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.scene.validity import missing_impurity
-from granchain_core.stop import Stop
 
 from . import ending
 from .compiling import announce_compiling

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from granchain_core import Scene
-from granchain_core.child_processes import end_with_parent, starting
-from granchain_core.cores import usable_cores
-from granchain_core.pieces import BRANCH_KERNELS, COMPILE_SECONDS, FIXED_STEP_KERNELS, MOTION_KERNELS
+from granchain_core.execution.child_processes import end_with_parent, starting
+from granchain_core.execution.cores import usable_cores
+from granchain_core.precompile.pieces import BRANCH_KERNELS, COMPILE_SECONDS, FIXED_STEP_KERNELS, MOTION_KERNELS
 
 #: From the kernels of one method to those of a branch with the motions that it needs.
 WORDS = (f"Compiling the kernels for this set of effects: {COMPILE_SECONDS[FIXED_STEP_KERNELS]} to "
@@ -43,7 +43,7 @@ def announce_compiling() -> None:
 
 @contextmanager
 def compiling_beside(chosen: Scene, *pieces: str) -> Iterator[None]:
-    """When Numba begins to compile in this block, compile these pieces (granchain_core/warm.py) in another process.
+    """When Numba begins to compile in this block, compile these pieces (precompile/warm.py) in another process.
 
     The block needs the pieces later; it then waits for them or loads them. With one core, nothing is done.
     """
@@ -77,7 +77,7 @@ def compiling_beside(chosen: Scene, *pieces: str) -> Iterator[None]:
 
 def _compile(parent: int, chosen: Scene, pieces: tuple[str, ...]) -> None:
     end_with_parent(parent)
-    from granchain_core.warm import compile_piece
+    from granchain_core.precompile.warm import compile_piece
 
     try:
         for piece in pieces:

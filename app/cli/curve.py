@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from granchain_core import BadInput
-from granchain_core.pieces import CHECK_KERNELS, FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import CHECK_KERNELS, FIXED_STEP_KERNELS
 
 from .common import (
     accuracy_unused,

@@ -3,7 +3,7 @@
 Python would raise `KeyboardInterrupt` wherever the main thread happens to be: in an import, in a callback that swallows
 it, or only after a compiler has come back. Here a thread waits for the signals instead. While nothing is to be kept it
 ends the process at once. Inside `asking` it asks the computation to end and gives it some time to keep what it has.
-Processes that were started end with this one by themselves (granchain_core/child_processes.py).
+Processes that were started end with this one by themselves (granchain_core/execution/child_processes.py).
 
 The module is loaded before anything else and imports only what takes no time.
 """

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from granchain_core.integrate.methods import METHODS, method_for, setting_of
+from granchain_core.integrate.scaling import scale_chain, slots_of
 from granchain_core.kernels.batch_size import machine
-from granchain_core.scaling import scale_chain, slots_of
+from granchain_core.precompile.warm import structure
 from granchain_core.scene import Scene
-from granchain_core.warm import structure
 
 
 def explanation(scene: Scene, method: str | None, samples: int) -> str:

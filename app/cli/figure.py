@@ -58,7 +58,7 @@ def _quiet(_: float) -> None:
 
 def _checked(name: str, theme: str) -> str:
     """The kind of file; `BadInput`, before anything is computed, for one that cannot be written."""
-    from granchain_core.input_checks import unknown_name
+    from granchain_core.inputs.checks import unknown_name
 
     kind = Path(name).suffix.lower()
     if kind not in _KINDS:

@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from granchain_core import BadInput
-from granchain_core.text import number_in
+from granchain_core.inputs.text import number_in
 
 from .common import check_points, chosen_scene, in_background, say, show_json
 from .data_options import add_answers, with_answers

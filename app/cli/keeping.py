@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from granchain_core import BadInput, Cancelled
-from granchain_core.checkpoints import Kept, folder_of
+from granchain_core.execution.checkpoints import Kept, folder_of
 
 from . import ending
 from .common import say

@@ -13,14 +13,14 @@ import numpy as np
 
 from granchain_core import BadInput, Cancelled
 from granchain_core.bifurcation_curves import BifurcationCurve, bifurcation_curves
+from granchain_core.execution.stop import Stop
 from granchain_core.orbits.stroboscopic_map import refuse_cut
 from granchain_core.parameter_map import Axis, Diagram, Grid, iter_diagram
 from granchain_core.parameter_map.blocks import Blocks
 from granchain_core.parameter_map.cells import CELL_REGIMES, ERRORS, cell_of
 from granchain_core.parameter_map.grid import MOST_CELLS
-from granchain_core.pieces import FIXED_STEP_KERNELS
-from granchain_core.quantities import QUANTITIES
-from granchain_core.stop import Stop
+from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
+from granchain_core.scene.quantities import QUANTITIES
 
 from .common import (
     accuracy_unused,

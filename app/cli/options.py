@@ -8,7 +8,7 @@ from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
 from granchain_core import BadInput
-from granchain_core.text import number_in, whole_in
+from granchain_core.inputs.text import number_in, whole_in
 
 
 def number(text: str) -> float:

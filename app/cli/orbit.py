@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from granchain_core import BadInput, Scene
-from granchain_core.pieces import ORBIT_KERNELS
-from granchain_core.state import State
+from granchain_core.precompile.pieces import ORBIT_KERNELS
+from granchain_core.scene.state import State
 
 from .common import chosen_scene, in_background, show_json
 from .compiling import compiling_beside
@@ -86,7 +86,7 @@ def _show_multipliers(title: str, multipliers: Any, errors: Any) -> None:
 def _start(chosen: Scene, name: str, seed: int) -> State | None:
     """The state in which Newton's method starts: the last sample if `name` is a file, None for the settled motion."""
     from granchain_core.orbits import random_state
-    from granchain_core.state import rest
+    from granchain_core.scene.state import rest
     from granchain_core.store import load
 
     if name == "settled":

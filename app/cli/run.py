@@ -9,9 +9,9 @@ from typing import Any
 
 from granchain_core import BadInput, Run, Scene
 from granchain_core.integrate import method_for
-from granchain_core.pieces import REGIME_KERNELS
-from granchain_core.regime import Regime
-from granchain_core.result import start_words
+from granchain_core.precompile.pieces import REGIME_KERNELS
+from granchain_core.results.regime import Regime
+from granchain_core.results.run import start_words
 from granchain_core.run.budget import BUDGET
 
 from .common import chosen_scene, in_background, show_json, show_percent, unbroken

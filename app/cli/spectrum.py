@@ -33,7 +33,7 @@ def do(arguments: argparse.Namespace) -> None:
     """Compute the spectrum of a force."""
     from granchain_core import spectrum, transfer
     from granchain_core.analysis.spectrum import FORCES
-    from granchain_core.input_checks import unknown_name
+    from granchain_core.inputs.checks import unknown_name
 
     chosen = chosen_scene(arguments)
     check_files(arguments)

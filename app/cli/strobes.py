@@ -6,7 +6,7 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from granchain_core.input_checks import check_range
+from granchain_core.inputs.checks import check_range
 
 from .common import chosen_scene, in_background, say, show_json, show_percent
 from .options import add_json, add_out, add_scene, values_from, whole

@@ -14,7 +14,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def do(arguments: argparse.Namespace) -> None:
     """Compile the kernels of the paper's scenes, or of those named, ahead of time."""
-    from granchain_core.warm import USUAL, warm_scenes
+    from granchain_core.precompile.warm import USUAL, warm_scenes
 
     for done in warm_scenes(arguments.scene or USUAL):
         say("compiled", done)

@@ -8,7 +8,7 @@ from typing import Any
 
 from granchain_core import CurvePoint, Scene
 from granchain_core.experiment import Difference, Measured, stated_features
-from granchain_core.pieces import CURVE_KERNELS
+from granchain_core.precompile.pieces import CURVE_KERNELS
 from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.steady.curve.resonance_curve import draft_curve
 

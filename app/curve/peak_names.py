@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from granchain_core import CurvePoint, Scene, settle
+from granchain_core.execution.stop import Stop
 from granchain_core.experiment import Feature
 from granchain_core.steady.curve.resonance import (
     STOP_BAND_PART,
@@ -25,7 +26,6 @@ from granchain_core.steady.curve.resonance import (
     push_words,
     pushes,
 )
-from granchain_core.stop import Stop
 
 from ..frames import samples_for
 from ..serve.computing.cpu_time import CpuTime

@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 
 from granchain_core import CurvePoint, Scene, iter_curve
-from granchain_core.stop import Stop
+from granchain_core.execution.stop import Stop
 
 from ..serve.computing.cpu_time import CpuTime
 from ..serve.computing.queues import SWEEPS

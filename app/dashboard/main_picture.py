@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from granchain_core import Cancelled, OverBudget, Run, Scene, Settled, State, settling
-from granchain_core.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
+from granchain_core.precompile.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
 
 from ..frames import Frames, prepared_frames, samples_for
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words

@@ -11,6 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from granchain_core import BadInput, Run, Scene, Settled, settling
+from granchain_core.execution.stop import Stop
 from granchain_core.experiment import (
     Answers,
     Difference,
@@ -27,7 +28,6 @@ from granchain_core.experiment.reader import TABLE_KINDS
 from granchain_core.experiment.units import QUANTITIES, UNITS
 from granchain_core.scene import ASSETS
 from granchain_core.scene.refusals import refuse_undriven
-from granchain_core.stop import Stop
 
 from ..curve.controller import CurveController
 from ..format import given_in_words, in_words, signed_in_words

@@ -32,7 +32,7 @@ from granchain_core import (
     WorkPrecision,
 )
 from granchain_core.experiment import Measured
-from granchain_core.input_checks import unknown_name
+from granchain_core.inputs.checks import unknown_name
 from granchain_core.paper import (
     EnergyMaps,
     Observers,

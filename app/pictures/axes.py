@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from granchain_core.quantities import QUANTITIES
+from granchain_core.scene.quantities import QUANTITIES
 
 from ..format import prefixed
 

@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 from granchain_core import CurvePoint
 from granchain_core.orbits import Branch, BranchPoint, SpecialPoint
 from granchain_core.orbits.branch.normal_forms import SUPERCRITICAL
-from granchain_core.regime import modulus_words
+from granchain_core.results.regime import modulus_words
 
 from ..format import in_words, short_error
 from .axes import Scale, force_scale, knob_scale

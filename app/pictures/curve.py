@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 
 from granchain_core import Curve, CurvePoint
 from granchain_core.experiment import Measured
-from granchain_core.regime import Regime
+from granchain_core.results.regime import Regime
 
 from ..format import figures_of, in_words, short_error
 from .axes import force_scale, knob_scale

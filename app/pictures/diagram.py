@@ -28,7 +28,7 @@ from bokeh.transform import factor_cmap, transform
 from granchain_core.bifurcation_curves import BifurcationCurve
 from granchain_core.parameter_map import Axis, Diagram, Grid
 from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
-from granchain_core.regime import exponent_words
+from granchain_core.results.regime import exponent_words
 
 from ..format import figures_of, in_words, short_error
 from .axes import Scale, knob_scale

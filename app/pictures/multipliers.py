@@ -13,7 +13,7 @@ from bokeh.models import ColumnDataSource, DataRange1d, FixedTicker, HoverTool, 
 from bokeh.plotting import figure
 
 from granchain_core.orbits import Orbit
-from granchain_core.regime import modulus_words
+from granchain_core.results.regime import modulus_words
 
 from ..format import duration
 from .theme import Theme

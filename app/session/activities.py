@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from granchain_core import Settled
-from granchain_core.regime import exponent_words
+from granchain_core.results.regime import exponent_words
 
 from .progress import COMPUTING, OFF, READY
 from .session import Session

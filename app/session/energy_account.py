@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from granchain_core import Settled
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, adaptive_setting
-from granchain_core.result import residual
-from granchain_core.stop import Stop
+from granchain_core.results.run import residual
 
 #: Tolerance per step over the accuracy asked for: small, so that the residual is not the account's own error.
 _TOLERANCE_PART = 0.01

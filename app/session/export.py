@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from granchain_core import CurvePoint, Run, Scene, State, __version__
-from granchain_core.tables.words import evidence_columns
+from granchain_core.results.regime_columns import evidence_columns
 
 from ..frames import jumps_of
 from .scene_facts import without_frequency

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from granchain_core import BadInput, Run, Scene, State
-from granchain_core.quantities import QUANTITIES
+from granchain_core.scene.quantities import QUANTITIES
 
 from ..format import figures_of, in_words, signed_in_words
 from .share import PINS, START, decode, encode

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from granchain_core.pieces import FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
 
 from ..serve.compiling.compiler import compiling_words
 

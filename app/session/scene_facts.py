@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from granchain_core import Scene, scene, scene_names
-from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
+from granchain_core.scene.quantities import QUANTITIES
 
 from .message_checks import is_number
 

@@ -13,8 +13,8 @@ from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
 from granchain_core import BadInput, Scene, scene, scene_names
-from granchain_core.input_checks import unknown_name
-from granchain_core.quantities import QUANTITIES
+from granchain_core.inputs.checks import unknown_name
+from granchain_core.scene.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
 
 from ..pictures.theme import THEMES

@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any
 
 from granchain_core import BadInput, Run, Scene, State, pulse, run, scene, settle
-from granchain_core.input_checks import unknown_name
-from granchain_core.regime import NEVER_REPEATING
+from granchain_core.execution.stop import Stop
+from granchain_core.inputs.checks import unknown_name
+from granchain_core.results.regime import NEVER_REPEATING
 from granchain_core.scene import ASSETS
-from granchain_core.stop import Stop
 
 from .share import VIEW_VALUES
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
-from granchain_core.stop import Stop
+from granchain_core.execution.stop import Stop
 
 from ..serve.compiling.compiler import COMPILER
 from ..serve.computing.queues import Queue

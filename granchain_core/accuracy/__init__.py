@@ -1,4 +1,4 @@
-"""Work-precision measurements on this machine: error against time for every method, and the cost of each effect."""
+"""The cost of accuracy on this machine: error against time for every method, and the time that each effect takes."""
 
 from .compared_methods import MeasuredMethod, compared_methods
 from .measurements import Row, WorkPrecision, cheapest

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import Cancelled
+from ..execution.stop import Stop
 from ..integrate import Engine, Setting
 from ..integrate.methods import FIXED_STEP
 from ..scene import Scene
-from ..stop import Stop
 
 #: Pairs of freshly allocated chains: where an array lies in memory can make a step a fifth slower, and stays so.
 _CHAINS = 7

@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
-from ..stop import Stop
+from ..execution.stop import Stop
 
 #: Time between two checks of the outer flag and the clock [s].
 _LOOK = 0.01

@@ -10,10 +10,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import NumbersFailed
+from ..execution.stop import Stop
 from ..integrate import METHODS, Engine, Setting, adaptive_setting
-from ..scaling import ScaledChain
+from ..integrate.scaling import ScaledChain
 from ..scene import Scene
-from ..stop import Stop
 
 #: Usual choices of steps in a drive period; the second is shown first.
 NATURAL_STEPS = (100, 200, 500, 1000, 2000)

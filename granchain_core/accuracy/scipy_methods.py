@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 
 from ..errors import Cancelled, NumbersFailed
+from ..execution.stop import Stop
 from ..integrate import Counts
 from ..integrate.adaptive import LEAST_STEPS_PER_PERIOD
+from ..integrate.scaling import ScaledChain, scale_chain
 from ..kernels.dop853.step import evaluate
 from ..kernels.status import EVALUATIONS
-from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
-from ..state import rest
-from ..stop import Stop
+from ..scene.state import rest
 
 
 @dataclass(frozen=True)

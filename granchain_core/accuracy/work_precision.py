@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
+from ..execution.stop import Stop
 from ..integrate import METHODS, Engine, Setting, adaptive_setting
 from ..integrate.stated import relative_difference
 from ..scene import Scene
-from ..stop import Stop
 from .compared_methods import SCIPY, MeasuredSetting, measured_settings
 from .limit import Limited
 from .measurements import Row, WorkPrecision

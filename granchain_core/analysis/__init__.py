@@ -1,1 +1,1 @@
-"""Analysis of a motion: spectrum, Lyapunov spectrum and dimension, strobes over a knob, basins, pulses, pass bands."""
+"""Analyses, a module each: spectrum, Lyapunov spectrum, rotation number, strobes over a knob, basins, pulses, bands."""

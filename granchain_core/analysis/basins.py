@@ -15,11 +15,11 @@ import numpy as np
 from ..attractors.attractor import Attractor, Origin, attractor_methods, attractors_table
 from ..attractors.attractors import attractors_from
 from ..errors import BadInput
-from ..input_checks import axis_in, numbers_in
+from ..execution.stop import Stop
+from ..inputs.checks import axis_in, numbers_in
 from ..scene import Scene
 from ..scene.refusals import require_scene
-from ..state import State
-from ..stop import Stop
+from ..scene.state import State
 from ..tables import Column, Labelled, Table, axis, provenance
 from ..tables.provenance import Attribute
 

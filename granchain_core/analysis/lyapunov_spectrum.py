@@ -17,14 +17,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..input_checks import check_range, whole_number
+from ..execution.stop import Stop
+from ..inputs.checks import check_range, whole_number
 from ..orbits.stroboscopic_map import FLOW_METHOD, StroboscopicMap
 from ..scene import Scene
 from ..scene.refusals import require_scene
-from ..state import State
+from ..scene.state import State
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
-from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..result import Run, require_run
+from ..results.run import Run, require_run
 from ..scene import Scene
 from ..scene.description import hertz_stiffness
 from ..scene.hertz import SOLITARY_BY_FORCE

@@ -16,16 +16,16 @@ from fractions import Fraction
 
 import numpy as np
 
-from ..input_checks import whole_number
+from ..execution.stop import Stop
+from ..inputs.checks import whole_number
 from ..integrate import Engine, fixed_step_setting
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR
-from ..regime import Regime
+from ..results.regime import Regime
 from ..scene import Scene
 from ..scene.refusals import require_scene
-from ..state import State
+from ..scene.state import State
 from ..steady.settling.advance import run_until_settled
-from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, or_nan, provenance
 from ..tables.provenance import Attribute
 from .winding import LARGEST_DENOMINATOR, LENGTHS, Winding, folded, winding_of

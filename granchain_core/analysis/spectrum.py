@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
-from ..result import Run, require_run
+from ..inputs.checks import unknown_name
+from ..results.run import Run, require_run
 from ..scene import Scene
 from ..tables import Column, Labelled, Table, axis
 from ..tables.provenance import Attribute

@@ -14,24 +14,25 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import BadInput, NumbersFailed
-from ..input_checks import numbers_in, unknown_name, whole_number
+from ..execution.stop import Stop
+from ..inputs.checks import numbers_in, unknown_name, whole_number
 from ..integrate import Engine
 from ..integrate.methods import typical_error
 from ..integrate.safety_factors import IRREGULAR
-from ..quantities import QUANTITIES
-from ..regime import Regime
+from ..results.regime import Regime
+from ..results.regime_columns import evidence_columns, regime_columns
 from ..scene import Scene
+from ..scene.quantities import QUANTITIES
 from ..scene.refusals import require_scene
-from ..state import State
+from ..scene.state import State
 from ..steady.batch.starts import methods_alone
 from ..steady.batch.threads import on_all_cores
 from ..steady.curve.order import CURVE_STARTS, coarse_first
 from ..steady.settling.advance import SettlingRun, run_until_settled
 from ..steady.settling.refine_orbit import refined_orbit
-from ..stop import Stop
-from ..tables import Column, Labelled, Table, axis, bead_axis, provenance, regime_columns
+from ..tables import Column, Labelled, Table, axis, bead_axis, provenance
 from ..tables.provenance import Attribute, or_nan
-from ..tables.words import evidence_columns, state_columns
+from ..tables.words import state_columns
 
 #: Strobes closer than this fraction of the largest are one.
 _APART = 1e-3

@@ -9,26 +9,16 @@ import numpy as np
 
 from ..orbits import Orbit
 from ..orbits.stroboscopic_map import FLOW_METHOD
-from ..regime import Regime
-from ..result import ForceErrors
+from ..results.regime import Regime
+from ..results.regime_columns import evidence_columns, regime_columns
+from ..results.run import ForceErrors
 from ..scene import Scene
-from ..state import State
+from ..scene.state import State
 from ..steady.batch.starts import settling_methods
-from ..tables import (
-    MAXIMA,
-    Column,
-    Labelled,
-    Table,
-    axis,
-    bead_axis,
-    error_columns,
-    force_columns,
-    provenance,
-    regime_columns,
-)
+from ..tables import MAXIMA, Column, Labelled, Table, axis, bead_axis, error_columns, force_columns, provenance
 from ..tables.provenance import Attribute, or_nan
 from ..tables.shown import as_text
-from ..tables.words import evidence_columns, state_columns
+from ..tables.words import state_columns
 
 #: Failed starts that a sentence names.
 _NAMED = 4

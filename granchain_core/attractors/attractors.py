@@ -13,20 +13,20 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..input_checks import whole_number
+from ..execution.stop import Stop
+from ..inputs.checks import whole_number
 from ..integrate import Engine, following_setting
-from ..regime import Regime
-from ..result import ForceErrors
+from ..results.regime import Regime
+from ..results.run import ForceErrors
 from ..scene import Scene
 from ..scene.refusals import require_scene
-from ..state import State, rest
+from ..scene.state import State, rest
 from ..steady.batch.job import Start
 from ..steady.batch.starts import settle_on_all_cores
 from ..steady.exponent_measurements import MEASURED_PERIODS, TURNING_PERIODS
 from ..steady.regime_criteria import find_period, grows, is_neutral, rounding_of
 from ..steady.settling.regime_decisions import REMEMBERED
 from ..steady.steady_state import SteadyState
-from ..stop import Stop
 from .attractor import Attractor, Attractors, Origin
 from .sameness import Found, found, merged
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from ..errors import BadInput, NumbersFailed
 from ..integrate import Engine, Setting, adaptive_setting, following_setting
+from ..integrate.scaling import scale_chain
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.search import least_period_of
-from ..scaling import scale_chain
 from ..scene import Scene
-from ..state import State
+from ..scene.state import State
 from ..steady.steady_state import SteadyState
 
 #: Largest difference of states that is explained by one stated error. It is the error of the output force, which stands

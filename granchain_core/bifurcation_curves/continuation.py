@@ -25,14 +25,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
-from ..input_checks import unknown_name
+from ..execution.stop import Stop
+from ..inputs.checks import unknown_name
 from ..orbits.branch.special import BIFURCATIONS
 from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, StroboscopicMap
 from ..parameter_map.grid import KNOBS
-from ..quantities import QUANTITIES
 from ..scene import Scene
-from ..state import State
-from ..stop import Stop
+from ..scene.quantities import QUANTITIES
+from ..scene.state import State
 
 #: How exactly the critical multiplier meets its condition: it is not known better.
 _CONDITION_ERROR = MULTIPLIER_ERROR

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, NumbersFailed
+from ..execution.stop import Stop
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.stroboscopic_map import refuse_cut
 from ..parameter_map.cells import CELL_REGIMES, Diagram
-from ..quantities import QUANTITIES
-from ..stop import Stop
+from ..scene.quantities import QUANTITIES
 from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
 
 #: Steps in which an orbit is carried from its cell to the neighbour.

@@ -1,4 +1,4 @@
-"""Measurements: the features that the paper's text states, and the user's own data."""
+"""Measured data: a user's tables and series, and the peaks and valleys that the paper's text states."""
 
 from .columns import Convention
 from .compare import Difference, compared, model_minus_measured

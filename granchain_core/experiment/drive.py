@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
+from ..inputs.checks import unknown_name
+from ..inputs.text import number_in
 from ..scene import Amplitude
 from ..scene.amplitude import FORMULAS
-from ..text import number_in
 from .question import Answers
 from .reader import read_experiment
 from .series import Shaker

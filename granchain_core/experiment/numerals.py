@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable
 
 from ..errors import BadInput
-from ..text import number_in
+from ..inputs.text import number_in
 from .grid import LIKE_A_NUMBER
 
 _EXPONENT = r"(?:[eEdD][+-]?\d+)?"

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
-from ..text import whole_in
+from ..inputs.checks import unknown_name
+from ..inputs.text import whole_in
 from .units import QUANTITIES, SHORT, UNITS, VOLTS, factor_of
 
 #: Words for the marks between columns and before decimals.

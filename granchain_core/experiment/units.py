@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from ..text import number_in
+from ..inputs.text import number_in
 
 #: Standard gravity [m/s²], and so a kilogram-force [N] (BIPM, The International System of Units, 2019).
 _GRAVITY = 9.80665

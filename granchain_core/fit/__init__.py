@@ -1,4 +1,4 @@
-"""Fitting a model's parameters to measurements: misfit, search, confidence intervals, verdict."""
+"""Fits of a model's parameters to measured data: misfit, search, confidence intervals, verdict."""
 
 from .fit import Fit, fit
 from .parameters import Free, per_frequency

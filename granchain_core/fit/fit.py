@@ -12,9 +12,9 @@ import numpy as np
 from scipy.stats import chi2, f
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..scene import Amplitude, Scene
 from ..scene.refusals import refuse_undriven
-from ..stop import Stop
 from ..tables import Labelled, Table, or_nan, provenance
 from ..tables.provenance import Attribute
 from .intervals import LEVEL, BetterMinimum, Profile, limit, profile

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..experiment import Series
-from ..result import Run
+from ..results.run import Run
 from .trains import Train, moved
 
 #: The forces that a series may have.

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
-from ..quantities import QUANTITIES
+from ..inputs.checks import unknown_name
+from ..inputs.text import number_in
 from ..scene import Amplitude, Bead, Scene
-from ..text import number_in
+from ..scene.quantities import QUANTITIES
 
 #: What can be fitted, with its unit. K is the contact stiffness; it is changed by Young's modulus of all beads.
 UNITS = {name: "N/m^{3/2}" if name == "K" else QUANTITIES[name].unit

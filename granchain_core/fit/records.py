@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..scene import Amplitude, Scene
-from ..stop import Stop
 from .targets import Compared, Evaluation, SeriesTarget
 
 

@@ -17,9 +17,9 @@ import numpy as np
 from scipy.optimize import least_squares, minimize
 from scipy.stats import qmc
 
+from ..execution.stop import Stop
 from ..scene import Amplitude, Scene
 from ..scheduler import results
-from ..stop import Stop
 from .parameters import Free, with_values
 from .records import RecordsTarget
 from .targets import CurveTarget, Evaluation, FeatureTarget, SeriesTarget

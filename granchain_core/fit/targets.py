@@ -14,15 +14,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
+from ..execution.stop import Stop
 from ..experiment import Feature, Measured, Series, model_minus_measured
-from ..quantities import QUANTITIES
-from ..regime import Regime
+from ..results.regime import Regime
 from ..scene import Amplitude, Scene
+from ..scene.quantities import QUANTITIES
 from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.resonance import peaks_and_valleys
 from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.settle import settle
-from ..stop import Stop
 from .trains import Train, moved
 
 #: Relative standard deviation assigned to the largest force of a motion that is not periodic.

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.optimize import minimize_scalar
 
-from ..result import Run
+from ..results.run import Run
 
 #: How far around the best shift of the coarse search the best one is sought, in steps of that search: its neighbours
 #: are one step away.

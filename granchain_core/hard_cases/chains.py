@@ -18,7 +18,7 @@ from ..kernels.effects.tension import new_tension_cut
 from ..kernels.samples import Samples
 from ..scene import Scene, scene
 from ..scene.hertz import HERTZ_DURATION
-from ..state import State
+from ..scene.state import State
 
 
 def contact_time(speed: float, reduced_mass: float = 0.5, stiffness: float = 1.0) -> float:

@@ -6,9 +6,9 @@ import numpy as np
 
 from ..errors import NumbersFailed
 from ..integrate import Engine, Setting, adaptive_setting
-from ..laws import LAWS
 from ..run.to_accuracy import run
 from ..scene import Scene, scene
+from ..scene.laws import LAWS
 from .case import Measurement, Picture, Trace
 from .chains import Bench, contact_time
 from .oracle import PlainChain, restitution, solved

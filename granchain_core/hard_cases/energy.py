@@ -11,7 +11,7 @@ from ..integrate.methods import ADAPTIVE
 from ..kernels.effects.driver import Harmonic
 from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene, scene
-from ..state import State
+from ..scene.state import State
 from ..steady.curve.resonance_curve import iter_curve
 from ..steady.lyapunov import growth_along
 from .case import Measurement, Picture, Trace

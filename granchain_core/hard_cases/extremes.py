@@ -11,7 +11,7 @@ from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..run.to_accuracy import run
 from ..scene import Scene, scene
-from ..state import State
+from ..scene.state import State
 from .case import Measurement, Picture, Trace
 from .naive_solvers import plain_slope, rk4
 from .oracle import PlainChain, solved

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..laws import LAWS
 from ..scene import Scene
+from ..scene.laws import LAWS
 
 #: Fewest steps in a drive period, so that the driver is never stepped over.
 _LEAST_STEPS = 16.0

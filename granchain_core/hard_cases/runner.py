@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
 
-from ..child_processes import pool, starting
-from ..cores import usable_cores
 from ..errors import NumbersFailed
+from ..execution.child_processes import pool, starting
+from ..execution.cores import usable_cores
 from .case import Check, run_case
 from .table import CASES
 

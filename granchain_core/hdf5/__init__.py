@@ -1,4 +1,4 @@
-"""Reading and writing HDF5 files safely: files are sealed, and nothing in a file is trusted."""
+"""HDF5 files as such: sealed when they are written, and checked in everything when they are read."""
 
 from .border import File, opened
 from .seal import SIGNATURE, VERSIONS, seal

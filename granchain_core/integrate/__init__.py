@@ -1,4 +1,4 @@
-"""Time integration: the table of methods, and the engine that advances a state with one of them."""
+"""Time integration: from a scene to scaled numbers, the table of methods, the engine that advances a state."""
 
 from .counts import Counts
 from .engine import Engine

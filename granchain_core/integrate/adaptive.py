@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.dop853.run import SampleRange, run_dop853
 from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace, DriveCycle
@@ -14,8 +15,7 @@ from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.status import DONE
-from ..scaling import ScaledChain
-from ..stop import Stop
+from .scaling import ScaledChain
 from .stepper import CallStart, empty_samples
 
 #: At least this many steps are made in a period, so that the driver is never stepped over.

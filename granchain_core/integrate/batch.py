@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import Cancelled
+from ..execution.stop import Stop
 from ..kernels.batch import run as kernels
 from ..kernels.batch.checks import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, check_member
 from ..kernels.batch.record import STROBES_KEPT
@@ -22,9 +23,8 @@ from ..kernels.simd.vector import aligned
 from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, window_of
-from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
-from ..stop import Stop
+from .scaling import ScaledChain, scale_chain
 
 #: [no threshold] A period that no member reaches.
 NEVER = int(np.iinfo(np.int64).max)

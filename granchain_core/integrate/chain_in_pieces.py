@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed
+from ..execution.stop import Stop
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
 from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
@@ -20,11 +21,10 @@ from ..kernels.rk4.step import DriveTable, Rk4Split, Rk4Workspace
 from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.status import CANCELLED, NOT_FINITE
 from ..kernels.step_ends import END_ROWS
-from ..scaling import ScaledChain
-from ..state import State
-from ..stop import Stop
+from ..scene.state import State
 from .counts import Counts
 from .methods import fixed_step_setting
+from .scaling import ScaledChain
 from .stated import Computations, force_differences, least_errors, relative_difference
 from .stepper import empty_samples
 

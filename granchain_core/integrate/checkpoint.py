@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..scene import Scene
-from ..stop import Stop
 from .engine import Engine
 from .methods import METHODS, Setting
 from .stepper import ErrorControl

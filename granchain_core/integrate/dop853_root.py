@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.dop853.run import SampleRange
@@ -16,10 +17,9 @@ from ..kernels.dop853_root.run import run_dop853_root
 from ..kernels.forces.largest import new_log
 from ..kernels.samples import KernelIO, Samples
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
-from ..scaling import ScaledChain
-from ..stop import Stop
 from .adaptive import Dop853Stepper
 from .fixed import SHORT_CHAIN, chain_width, short_chain_workspace
+from .scaling import ScaledChain
 from .stepper import CallStart, empty_samples
 
 _RUN_DOP853_ROOT = Entries(run_dop853_root)

@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput, Cancelled
+from ..execution.stop import Stop
 from ..kernels.forces.largest import CLOSED, UNRESOLVED, new_log
 from ..kernels.forces.peaks import largest_forces, largest_jumps, reset_peaks
 from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.status import DONE, NOT_FINITE
-from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
-from ..state import State, rest
-from ..stop import Stop
+from ..scene.state import State, rest
 from .counts import Counts
 from .failure import Failure
 from .flushed import flushed
 from .methods import METHODS, Setting
+from .scaling import ScaledChain, scale_chain
 from .stepper import CallStart, empty_samples
 
 #: A start's phase may be this part of a sample away from one: rounding.

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.effects.driver import driver_displacement, driver_velocity
@@ -29,9 +30,8 @@ from ..kernels.rk4.step import DriveTable, Rk4Workspace
 from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.simd.vector import VECTOR_WIDTH, aligned
 from ..kernels.step_ends import END_ROWS
-from ..scaling import ScaledChain
-from ..stop import Stop
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
+from .scaling import ScaledChain
 from .stepper import CallStart, empty_samples
 
 #: Most beads of a chain whose bodies, with driver and wall, fit into one vector.

@@ -9,13 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from ..input_checks import unknown_name
+from ..inputs.checks import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
-from ..scaling import ScaledChain
 from .adaptive import Dop853Stepper
 from .dop853_root import Dop853RootStepper
 from .fixed import SHORT_CHAIN, FixedStep, FixedStepInVelocity
+from .scaling import ScaledChain
 from .stepper import Stepper
 
 #: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.

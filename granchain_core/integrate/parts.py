@@ -16,7 +16,7 @@ from ..kernels.forces.largest import CLOSED
 from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import KernelIO, Samples, write_strobe
 from ..kernels.status import CANCELLED, DONE
-from ..scaling import ScaledChain
+from .scaling import ScaledChain
 from .stepper import empty_samples
 
 #: Steps times bodies in one call of a kernel: 5 to 40 ms.

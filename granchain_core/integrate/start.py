@@ -6,9 +6,9 @@ from dataclasses import replace
 from fractions import Fraction
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..scene import Scene
-from ..state import State, checked_start
-from ..stop import Stop
+from ..scene.state import State, checked_start
 from .engine import Engine
 from .methods import following_setting
 

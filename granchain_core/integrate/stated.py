@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..scaling import ScaledChain
 from .methods import METHODS, Setting, jump_errors, typical_error
 from .safety_factors import IRREGULAR, REGULAR, RUN_FORCES, RUN_FORCES_THAT_JUMP
+from .scaling import ScaledChain
 
 #: Factor on the rounding of all steps, added up as a random walk and multiplied by the growth of errors: eight times
 #: the rounding usually seen, which few random scenes exceed.

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..kernels.equations.motion import Trajectory
 from ..kernels.samples import KernelIO, Samples
-from ..scaling import ScaledChain
+from .scaling import ScaledChain
 
 #: Where a call began: state and slope (M,), and the grid index.
 CallStart = tuple[np.ndarray, np.ndarray, int]

@@ -17,17 +17,17 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
+from ..execution.stop import Stop
+from ..execution.stopwatch import Stopwatch
 from ..experiment import model_minus_measured
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import IRREGULAR
 from ..integrate.stated import relative_changes, relative_difference
-from ..recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns, time_axis
-from ..result import RUN_ERRORS, Cost, ForceErrors, said_forces
+from ..results.recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns, time_axis
+from ..results.run import RUN_ERRORS, Cost, ForceErrors, said_forces
 from ..scene import Scene
-from ..state import State, checked_start, rest
-from ..stop import Stop
-from ..stopwatch import Stopwatch
+from ..scene.state import State, checked_start, rest
 from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .pushed_chain import PushedChain

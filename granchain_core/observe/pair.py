@@ -11,17 +11,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..execution.stop import Stop
 from ..integrate import Engine, adaptive_setting
+from ..integrate.scaling import ScaledChain, scale_chain
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import BODY_FAR_AWAY
 from ..kernels.effects.given_force import ObserverCoupling
 from ..kernels.effects.preload import Preload
 from ..kernels.samples import Samples
 from ..orbits.stroboscopic_map import TOLERANCE
-from ..scaling import ScaledChain, scale_chain
 from ..scene import Scene
-from ..state import State
-from ..stop import Stop
+from ..scene.state import State
 
 
 def scale_pair(scene: Scene) -> ScaledChain:

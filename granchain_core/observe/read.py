@@ -15,9 +15,9 @@ from ..experiment.measured import MOST_BYTES, MOST_ROWS
 from ..experiment.units import UNITS, unit_named
 from ..hdf5 import SIGNATURE, File, opened
 from ..hdf5.plain import Refused
-from ..input_checks import unknown_name
-from ..recorded_motion import motion_units
-from ..state import State
+from ..inputs.checks import unknown_name
+from ..results.recorded_motion import motion_units
+from ..scene.state import State
 from .record import ForceRecord, checked
 
 #: Endings of the names of HDF5 files, whose beginning may be damaged.

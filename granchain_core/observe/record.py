@@ -15,10 +15,10 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..errors import BadInput
-from ..gaps import Gaps, sample_number, with_zeros
+from ..inputs.gaps import Gaps, sample_number, with_zeros
+from ..inputs.text import number_in
 from ..scene import Scene
 from ..scene.hertz import HERTZ_DURATION, HERTZ_FORCE
-from ..text import number_in
 
 #: Fewest samples over the shortest pulse of this strength.
 PULSE_SAMPLES = 4

@@ -15,9 +15,9 @@ from itertools import pairwise
 import numpy as np
 
 from ..errors import BadInput, NumbersFailed
+from ..execution.stop import Stop
 from ..orbits import CONTINUOUS, Orbit, periodic_orbit
 from ..scene import Scene
-from ..stop import Stop
 
 #: A crossing is located to this fraction of the distance between the two neighbouring values.
 LOCATED = 1e-3

@@ -13,16 +13,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..input_checks import whole_number
+from ..execution.stop import Stop
+from ..execution.stopwatch import Stopwatch
+from ..inputs.checks import whole_number
 from ..integrate.methods import ADAPTIVE
 from ..orbits import Orbit, periodic_orbit
-from ..result import Cost
+from ..results.run import Cost
 from ..scene import Scene
 from ..scene.refusals import require_scene
-from ..state import State, checked_start
+from ..scene.state import State, checked_start
 from ..steady.settling.advance import run_until_settled
-from ..stop import Stop
-from ..stopwatch import Stopwatch
 from .drift import departure_words, is_drift, share_of_translation
 from .pair import Pair
 

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..input_checks import whole_number
+from ..execution.stop import Stop
+from ..inputs.checks import whole_number
 from ..integrate import Engine, adaptive_setting
 from ..steady.poincare import Section
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
-from ..stop import Stop
 from .krylov import arnoldi
 from .orbit import Orbit
 from .stroboscopic_map import TOLERANCE, StroboscopicMap

@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..execution.stop import Stop
 from ..scene import Scene
-from ..state import State
-from ..stop import Stop
+from ..scene.state import State
 from .stroboscopic_map import TOLERANCE, StroboscopicMap
 
 #: Tolerance of the coarser map over that of the map.

@@ -14,18 +14,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..input_checks import whole_number
+from ..execution.stop import Stop
+from ..inputs.checks import whole_number
+from ..integrate.scaling import scales_of
 from ..integrate.start import at_phase_0
-from ..regime import modulus_words
-from ..scaling import scales_of
+from ..results.regime import modulus_words
 from ..scene import Scene
 from ..scene.refusals import require_scene
-from ..state import State
+from ..scene.state import State
 from ..steady.regime_criteria import LONGEST_LOCKED_PERIOD
 from ..steady.returns import relative_change
 from ..steady.settling.advance import run_until_settled
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
-from ..stop import Stop
 from ..tables import Column, Labelled, Table, axis, bead_axis, or_nan, provenance
 from ..tables.provenance import Attribute
 from ..tables.words import multiplier_columns, state_columns

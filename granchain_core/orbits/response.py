@@ -15,8 +15,8 @@ import numpy as np
 
 from ..integrate import Engine, adaptive_setting
 from ..integrate.methods import ADAPTIVE
-from ..regime import Regime
-from ..result import GIVEN_STATE, Cost, Run, run_from
+from ..results.regime import Regime
+from ..results.run import GIVEN_STATE, Cost, Run, run_from
 from ..steady.curve.resonance import END_PART, STOP_BAND_PART, pushes
 from .orbit import Orbit
 

@@ -13,11 +13,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..errors import NumbersFailed
-from ..scaling import scale_chain
+from ..execution.stop import Stop
+from ..integrate.scaling import scale_chain
 from ..scene import Scene
-from ..state import State
+from ..scene.state import State
 from ..steady.returns import least_period
-from ..stop import Stop
 from .orbit import Orbit, periodic_orbit
 from .stroboscopic_map import SAME_ORBIT_DISTANCE, StroboscopicMap
 

@@ -7,8 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..integrate import Engine, adaptive_setting
 from ..integrate.adaptive import Dop853Stepper
+from ..integrate.scaling import ScaledChain, scale_like
 from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.contact import FrozenContacts
 from ..kernels.effects.dissipation import LinearDashpot
@@ -17,10 +19,8 @@ from ..kernels.flow.run import run_flow
 from ..kernels.flow.tangent import Tangent, columns_of, new_tangent
 from ..kernels.flow.velocity_tangent import VelocityTangent, new_velocity_tangent
 from ..kernels.status import EVENTS_PER_CONTACT
-from ..scaling import ScaledChain, scale_like
 from ..scene import Scene
 from ..scene.refusals import refuse_undriven
-from ..stop import Stop
 
 #: Tolerance of one step, relative to the largest displacement and w. The map is then accurate enough for Newton's
 #: method to converge to `CONVERGED` (orbit.py), and a chain with its observer is followed to about 1e-11.

@@ -11,15 +11,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..experiment import Series, stated_features
 from ..observe import force_record, observe, twin
 from ..scene import Scene, scene
-from ..state import rest
+from ..scene.state import rest
 from ..steady.curve.curve import Curve
 from ..steady.curve.resonance_curve import resonance_curve
 from ..steady.settling.outcome import Settled
 from ..steady.settling.settle import settle
-from ..stop import Stop
 from .given import Given, delay_of, moved_back
 from .results import (
     SHOWN,

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..scene import scene
-from ..stop import Stop
 from . import computations
 from .given import Given
 from .results import Result

@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 
 from ..attractors import attractors
-from ..input_checks import unknown_name
+from ..inputs.checks import unknown_name
 from ..orbits import periodic_orbit
-from ..regime import Regime
+from ..results.regime import Regime
 from ..scene import scene
-from ..state import rest
+from ..scene.state import rest
 from ..steady.curve.curve import Curve
 from ..steady.curve.resonance import pushes
 from ..steady.curve.resonance_curve import resonance_curve

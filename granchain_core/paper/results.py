@@ -11,7 +11,7 @@ import numpy as np
 
 from ..experiment import Feature, Measured, Series, Shaker
 from ..observe import Twin
-from ..result import Run
+from ..results.run import Run
 from ..scene import Scene
 from ..steady.curve.curve import Curve
 from ..steady.settling.outcome import Settled

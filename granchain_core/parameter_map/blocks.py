@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..checkpoints import Kept
+from ..execution.checkpoints import Kept
 from .cells import CELL, empty_cells
 from .grid import Axis, Grid
 

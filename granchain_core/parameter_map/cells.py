@@ -7,10 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..quantities import QUANTITIES
-from ..regime import NAMES, Regime
-from ..result import ForceErrors
+from ..results.regime import NAMES, Regime
+from ..results.regime_columns import EVIDENCE
+from ..results.run import ForceErrors
 from ..scene import Scene
+from ..scene.quantities import QUANTITIES
 from ..steady.batch.starts import settling_methods
 from ..steady.steady_state import SteadyState
 from ..tables import (
@@ -25,7 +26,7 @@ from ..tables import (
     provenance,
 )
 from ..tables.provenance import Attribute
-from ..tables.words import ERRORS, EVIDENCE
+from ..tables.words import ERRORS
 from .grid import Grid
 
 #: A cell's regime by number, in this order; "failed" has no forces. A cell that was not computed yet has −1.

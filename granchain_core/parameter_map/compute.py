@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 
 import numpy as np
 
-from ..input_checks import axis_in
+from ..execution.stop import Stop
+from ..inputs.checks import axis_in
 from ..scene import Amplitude, Scene
 from ..steady.batch.job import Start
 from ..steady.batch.starts import settle_on_all_cores, settle_starts
 from ..steady.steady_state import SteadyState
-from ..stop import Stop
 from .cells import Diagram, cell_of, empty_cells
 from .grid import Axis, Grid
 

@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput
-from ..input_checks import series_in, unknown_name
-from ..quantities import QUANTITIES
-from ..scaling import scale_chain
+from ..inputs.checks import series_in, unknown_name
+from ..integrate.scaling import scale_chain
 from ..scene import Amplitude, Scene
+from ..scene.quantities import QUANTITIES
 from ..scene.refusals import refuse_undriven
 
 #: Knobs that may be an axis: the continuous ones that change the motion.

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from ..execution.stop import Stop
 from ..scene import Amplitude, Scene
 from ..scheduler import dealt, results
-from ..stop import Stop
 from .compute import block_cells
 from .grid import Axis, Grid
 

@@ -1,4 +1,4 @@
-"""A chain whose driver has a given motion: chirp, burst, tones, noise, or a measured series."""
+"""Chains whose driver has a given motion: chirp, burst, tones, noise, or a measured series."""
 
 from .driven import Driven, drive
 from .signal import Signal

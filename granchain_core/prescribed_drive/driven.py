@@ -15,18 +15,18 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from ..errors import BadInput
+from ..execution.stop import Stop
+from ..execution.stopwatch import Stopwatch
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
 from ..integrate.methods import FIXED_STEP
 from ..integrate.safety_factors import SAMPLED_DRIVE
 from ..integrate.stated import or_whole_motion, relative_changes, relative_difference
-from ..laws import LAWS
-from ..recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
-from ..result import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
+from ..results.recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
+from ..results.run import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
+from ..scene.laws import LAWS
 from ..scene.refusals import require_scene
-from ..state import State, checked_start, rest
-from ..stop import Stop
-from ..stopwatch import Stopwatch
+from ..scene.state import State, checked_start, rest
 from ..tables import MAXIMA, Column, Table, bead_axis, contact_axis, provenance
 from ..tables.provenance import Attribute
 from .moved_chain import MovedChain

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..execution.stop import Stop
 from ..integrate import Counts
 from ..integrate.chain_in_pieces import ChainInPieces
+from ..integrate.scaling import scale_chain
 from ..kernels.effects.driver import PrescribedMotion
-from ..scaling import scale_chain
 from ..scene import Scene
-from ..stop import Stop
 from .signal import Signal
 
 

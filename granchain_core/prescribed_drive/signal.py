@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..gaps import Gaps, sample_number, with_zeros
-from ..input_checks import unknown_name
-from ..text import number_in
+from ..inputs.checks import unknown_name
+from ..inputs.gaps import Gaps, sample_number, with_zeros
+from ..inputs.text import number_in
 
 #: Knots in a period of the highest frequency of a formula.
 KNOTS = 400

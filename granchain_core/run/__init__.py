@@ -1,1 +1,1 @@
-"""One motion at a stated accuracy: `run`, its budget, its stated error, and the live chain."""
+"""Runs: one motion computed to a stated accuracy, its budget, many at once; the live chain."""

@@ -16,9 +16,9 @@ import numpy as np
 
 from ..errors import OverBudget
 from ..integrate import METHODS, Setting, fixed_step_setting, method_for
-from ..quantities import QUANTITIES
-from ..scaling import ScaledChain, scale_chain
+from ..integrate.scaling import ScaledChain, scale_chain
 from ..scene import Scene
+from ..scene.quantities import QUANTITIES
 
 #: The accuracy that is offered if the run would fit with it.
 _COARSE_ACCURACY = "1e-4"

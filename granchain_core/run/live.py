@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 
 from ..errors import BadInput
-from ..input_checks import whole_number
+from ..execution.stop import Stop
+from ..inputs.checks import whole_number
 from ..integrate import Engine, fixed_step_setting
 from ..kernels.forces.peaks import next_period
-from ..recorded_motion import MOST_RECORDED, MOST_SAMPLES
-from ..regime import Regime
-from ..result import Cost, Jumps, Run, run_from, start_words
+from ..results.recorded_motion import MOST_RECORDED, MOST_SAMPLES
+from ..results.regime import Regime
+from ..results.run import Cost, Jumps, Run, run_from, start_words
 from ..scene import Scene
 from ..scene.refusals import require_scene
-from ..state import State, checked_start, rest
-from ..stop import Stop
+from ..scene.state import State, checked_start, rest
 
 LIVE_SETTING = fixed_step_setting(2)
 """The steps of a live chain."""

@@ -8,17 +8,18 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput, Cancelled, NumbersFailed, OverBudget
-from ..input_checks import series_in
-from ..quantities import QUANTITIES
-from ..regime import Regime
-from ..result import Run
+from ..execution.stop import Stop
+from ..inputs.checks import series_in
+from ..results.regime import Regime
+from ..results.regime_columns import regime_columns
+from ..results.run import Run
 from ..scene import Scene
+from ..scene.quantities import QUANTITIES
 from ..scene.refusals import require_scene
 from ..scheduler import results
 from ..steady.batch.threads import on_all_cores
 from ..steady.settling.outcome import Settled
-from ..stop import Stop
-from ..tables import MAXIMA, Column, Labelled, Table, axis, error_columns, force_columns, regime_columns
+from ..tables import MAXIMA, Column, Labelled, Table, axis, error_columns, force_columns
 from ..tables.provenance import Attribute, made
 from .to_accuracy import run
 

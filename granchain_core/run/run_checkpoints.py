@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from ..checkpoints import Kept, digest_of
+from ..execution.checkpoints import Kept, digest_of
+from ..execution.stop import Stop
 from ..integrate import Engine
 from ..integrate.checkpoint import Checkpoint, checkpoint, resumed
 from ..scene import Scene
-from ..stop import Stop
 
 
 @dataclass(eq=False)

@@ -12,22 +12,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..input_checks import seconds_allowed, whole_number
+from ..execution.stop import Stop
+from ..execution.stopwatch import Stopwatch
+from ..inputs.checks import seconds_allowed, whole_number
 from ..integrate import Counts, Engine, Setting, following_setting, method_for
 from ..integrate.methods import setting_of
 from ..integrate.stated import Computations, force_differences, least_errors, relative_difference
 from ..kernels.samples import Samples
-from ..recorded_motion import MOST_RECORDED, MOST_SAMPLES
-from ..regime import Regime
-from ..result import Cost, Run, residual, run_from, start_words
+from ..results.recorded_motion import MOST_RECORDED, MOST_SAMPLES
+from ..results.regime import Regime
+from ..results.run import Cost, Run, residual, run_from, start_words
 from ..scene import Scene
 from ..scene.refusals import require_scene
+from ..scene.state import State, checked_start, rest
 from ..scene.validity import overlap_warnings
-from ..state import State, checked_start, rest
 from ..steady.regime_criteria import find_period
 from ..steady.settling.regime_decisions import REMEMBERED, regime_without_continuing
-from ..stop import Stop
-from ..stopwatch import Stopwatch
 from .budget import BUDGET, check_budget
 from .run_checkpoints import Reached, RunCheckpoints
 

@@ -1,4 +1,4 @@
-"""Scenes: frozen descriptions in SI and the presets."""
+"""Scenes: frozen descriptions in SI, presets, the tables of knobs and damping laws; a chain's state at one instant."""
 
 from .amplitude import Amplitude
 from .description import Bead, hertz_stiffness

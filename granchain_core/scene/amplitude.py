@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
+from ..inputs.checks import unknown_name
 
 #: Formulas: what stays constant, its unit, and its ratio to A0 as a power of 2πf.
 FORMULAS = {"constant-displacement": ("m", 0), "constant-velocity": ("m/s", 1), "constant-acceleration": ("m/s²", 2)}

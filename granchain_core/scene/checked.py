@@ -9,9 +9,9 @@ from dataclasses import MISSING, fields
 from typing import Any
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
-from ..quantities import QUANTITIES, WALL_FACTORS, Quantity
+from ..inputs.checks import unknown_name
 from .description import BEAD_LIMITS, Bead, Description, is_number
+from .quantities import QUANTITIES, WALL_FACTORS, Quantity
 
 #: Longest text of a scene [characters].
 _LONGEST = 10_000

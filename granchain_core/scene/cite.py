@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from ..laws import LAWS
 from ..version import __version__
 from .description import Description
 from .effects import effects_of
+from .laws import LAWS
 
 _SOFTWARE = f"The granchain authors. granchain: driven granular chains, simulated to a stated accuracy, {__version__}."
 _PAPER = ("Y. Zhang, D. Pozharskiy, D. M. McFarland, P. G. Kevrekidis, I. G. Kevrekidis, A. F. Vakakis. Experimental "

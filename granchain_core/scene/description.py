@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput
-from ..laws import LAWS
-from ..quantities import QUANTITIES, WALL_FACTORS
+from .laws import LAWS
+from .quantities import QUANTITIES, WALL_FACTORS
 
 
 def is_number(value: object) -> bool:

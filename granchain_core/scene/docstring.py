@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
-from ..quantities import QUANTITIES, Quantity
+from .quantities import QUANTITIES, Quantity
 
 
 def with_knobs(docstring: str | None) -> str | None:

@@ -11,9 +11,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ..laws import LAWS
-from ..quantities import QUANTITIES
 from .description import Description
+from .laws import LAWS
+from .quantities import QUANTITIES
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
-from ..quantities import QUANTITIES
+from ..inputs.checks import unknown_name
 from .checked import checked_fields
 from .description import Bead
 from .model import Scene
+from .quantities import QUANTITIES
 
 #: Longest scene file [bytes].
 MOST_BYTES = 100_000

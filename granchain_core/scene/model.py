@@ -9,12 +9,12 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
-from ..quantities import QUANTITIES
+from ..inputs.checks import unknown_name
 from .checked import checked_fields, checked_values
 from .description import Description
 from .docstring import with_knobs
 from .effects import effects_of, latex
+from .quantities import QUANTITIES
 from .validity import warnings
 
 

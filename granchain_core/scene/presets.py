@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
+from ..inputs.checks import unknown_name
 from .files import TABLES, built, toml_of
 from .model import Scene
 

@@ -1,1 +1,1 @@
-"""Steady states of a driven chain: settling, regime, resonance curve."""
+"""Steady states of a driven chain: settling, batches, the resonance curve; criteria of the regime, errors of forces."""

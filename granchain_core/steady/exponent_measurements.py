@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..regime import Regime
+from ..results.regime import Regime
 from .lyapunov import block_means
 from .regime_criteria import agree, clearly_chaotic, needs_more_periods, regime_from_exponents
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from ..integrate import Engine
 from ..integrate.batch import Batch
+from ..integrate.scaling import ScaledChain
 from ..kernels.batch.record import STROBES_KEPT
 from ..kernels.strobes.periodicity import LONGEST_PERIOD
-from ..scaling import ScaledChain
 
 #: [chaotic, quasi-periodic] Distance of the neighbouring trajectory, in drive amplitudes. It is far
 #: above rounding, and so small that hardly a contact event lies between the two trajectories.

@@ -7,8 +7,8 @@ import numpy as np
 from ..integrate import Engine
 from ..integrate.methods import jump_errors, typical_error
 from ..integrate.safety_factors import ORBIT_FORCES
+from ..integrate.scaling import ScaledChain
 from ..integrate.stated import relative_changes
-from ..scaling import ScaledChain
 
 #: F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
 _FORCE_PER_OVERLAP = 1.5

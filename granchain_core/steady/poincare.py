@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..execution.stop import Stop
 from ..integrate import Engine, following_setting
 from ..integrate.start import at_phase_0
 from ..scene import Scene
-from ..state import State, rest
-from ..stop import Stop
+from ..scene.state import State, rest
 
 #: Most values of displacement that a section keeps: it holds fewer periods of a longer chain.
 MOST_VALUES = 1_500_000

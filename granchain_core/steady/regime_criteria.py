@@ -15,7 +15,7 @@ from ..integrate import Setting
 from ..integrate.batch import change_workspace
 from ..kernels.strobes import periodicity
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, ROUNDING, SETTLED_DISTANCE
-from ..regime import Regime
+from ..results.regime import Regime
 
 #: [chaotic, quasi-periodic] Standard errors within which a mean exponent counts as not known.
 STANDARD_ERRORS = 3.0

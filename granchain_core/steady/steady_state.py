@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..regime import Regime
-from ..result import ForceErrors
+from ..results.regime import Regime
+from ..results.run import ForceErrors
 from ..scene import Scene
-from ..state import State
+from ..scene.state import State
 
 #: [chaotic, quasi-periodic, unsettled] Drive periods over which the largest forces of a point of a curve are taken.
 IRREGULAR_PERIODS = 100

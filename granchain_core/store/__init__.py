@@ -1,4 +1,4 @@
-"""Results as HDF5 that other programs open with labelled axes.
+"""Result files: every kind of result saved as HDF5 with labelled axes, which other programs open, and loaded again.
 
 Each kind of result has its own module, imported at first use: saving a run does not load orbits and observers.
 """

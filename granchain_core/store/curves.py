@@ -21,14 +21,15 @@ from ..errors import FAILURES
 from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
-from ..regime import NAMES, Regime
-from ..result import ForceErrors
+from ..results.regime import NAMES, Regime
+from ..results.regime_columns import EVIDENCE, MORE_EVIDENCE
+from ..results.run import ForceErrors
 from ..scene import Amplitude, Scene
-from ..state import rest
+from ..scene.state import rest
 from ..steady.curve.curve import Curve, CurvePoint
 from ..steady.curve.order import CURVE_STARTS
 from ..tables import MAXIMA
-from ..tables.words import ERRORS, EVIDENCE, MORE_EVIDENCE
+from ..tables.words import ERRORS
 from .writing import or_none, write_file, write_result
 
 _NUMBERS = ("frequency", *MAXIMA, *ERRORS)

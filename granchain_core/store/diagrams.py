@@ -19,8 +19,8 @@ from ..hdf5.plain import Refused
 from ..parameter_map import Axis, Diagram, Grid
 from ..parameter_map.cells import CELL, CELL_REGIMES, empty_cells
 from ..parameter_map.grid import KNOBS, MOST_CELLS
-from ..quantities import QUANTITIES
 from ..scene import Amplitude
+from ..scene.quantities import QUANTITIES
 from .writing import write_file, write_result
 
 

@@ -7,9 +7,9 @@ files of granchain_core/store are written from that, and `to_xarray` and `to_pan
 from .labelled import Labelled
 from .provenance import amplitude_attribute, or_nan, provenance
 from .table import Column, Table, axis
-from .words import MAXIMA, bead_axis, contact_axis, error_columns, force_columns, regime_columns
+from .words import MAXIMA, bead_axis, contact_axis, error_columns, force_columns
 
 __all__ = [
     "MAXIMA", "Column", "Labelled", "Table", "amplitude_attribute", "axis", "bead_axis", "contact_axis",
-    "error_columns", "force_columns", "or_nan", "provenance", "regime_columns",
+    "error_columns", "force_columns", "or_nan", "provenance",
 ]

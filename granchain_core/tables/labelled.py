@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..errors import BadInput
-from ..input_checks import unknown_name
+from ..inputs.checks import unknown_name
 from .provenance import Attribute
 from .shown import as_html, as_text, scene_in_words
 from .table import Table

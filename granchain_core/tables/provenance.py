@@ -10,8 +10,8 @@ from importlib.metadata import version
 import numpy as np
 
 from ..kernels.batch_size import machine
-from ..quantities import QUANTITIES
 from ..scene import Amplitude, Scene
+from ..scene.quantities import QUANTITIES
 from ..version import __version__
 
 #: An attribute of a file or of a dataset.

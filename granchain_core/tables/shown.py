@@ -5,8 +5,8 @@ from __future__ import annotations
 import html
 from collections.abc import Sequence
 
-from ..quantities import QUANTITIES
 from ..scene import Scene
+from ..scene.quantities import QUANTITIES
 from .table import Table
 
 _ROW = "text-align:left;background:none"

@@ -13,17 +13,17 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ..errors import BadInput
+from ..execution.stop import Stop
 from ..experiment.measured import VIRTUAL
 from ..fit.trains import Train
-from ..input_checks import check_range, whole_number
+from ..inputs.checks import check_range, whole_number
 from ..integrate import Engine, fixed_step_setting, following_setting
 from ..integrate.methods import typical_error
-from ..result import GIVEN_STATE, Cost, Run, run_from
+from ..results.run import GIVEN_STATE, Cost, Run, run_from
 from ..scene import Scene
 from ..scene.refusals import refuse_undriven
-from ..state import State
+from ..scene.state import State
 from ..steady.settling.settle import settle
-from ..stop import Stop
 from ..version import __version__
 from .sensors import Sensors
 

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.signal import butter, sosfilt
 
 from ..errors import BadInput
-from ..input_checks import check_range
+from ..inputs.checks import check_range
 
 #: Order of the low-pass.
 _ORDER = 2

@@ -7,9 +7,9 @@ import pytest
 from granchain_core import Cancelled, scene
 from granchain_core.accuracy import effect_cost as module
 from granchain_core.accuracy.effect_cost import CODE, Variant, effect_cost
-from granchain_core.pieces import ACCURACY_KERNELS, COST_KERNELS
-from granchain_core.stop import Stop
-from granchain_core.warm import compile_piece, is_warm
+from granchain_core.execution.stop import Stop
+from granchain_core.precompile.pieces import ACCURACY_KERNELS, COST_KERNELS
+from granchain_core.precompile.warm import compile_piece, is_warm
 
 pytestmark = pytest.mark.quick
 

@@ -21,10 +21,10 @@ from granchain_core.accuracy.compared_methods import measured_settings
 from granchain_core.accuracy.limit import Limited
 from granchain_core.accuracy.naive import NATURAL_STEPS, lesson
 from granchain_core.accuracy.scipy_methods import solve
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import METHODS
-from granchain_core.pieces import ACCURACY_KERNELS
-from granchain_core.stop import Stop
-from granchain_core.warm import compile_piece
+from granchain_core.precompile.pieces import ACCURACY_KERNELS
+from granchain_core.precompile.warm import compile_piece
 
 SHORT = scene("sec2").evolve(N=2, f=2000.0)
 

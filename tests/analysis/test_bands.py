@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, LiveChain, bands, resonance_curve, scene, settle, spectrum
-from granchain_core.scaling import scale_chain
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.steady.settling.finite_difference_map import FiniteDifferenceMap, fixed_point
 
 CHAIN = scene("precompressed")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, State, attractors, basins, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.steady.settling.single_chain import settle_to_forces
-from granchain_core.stop import Stop
 
 #: A motion of period 4 and a quasi-periodic one, both with many starts in the plane of docs/analysis.md.
 SHARED = scene("sec2").evolve(f=1641.0, A0=0.53e-6)

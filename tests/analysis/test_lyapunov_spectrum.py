@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Cancelled, LyapunovSpectrum, lyapunov_spectrum, orbit, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, fixed_step_setting
 from granchain_core.steady.lyapunov import growth_along
 from granchain_core.steady.settling.advance import run_until_settled
-from granchain_core.stop import Stop
 
 PERIODS = 200
 UNDAMPED = scene("sec2").evolve(N=3, f=1000.0, dissipation="none")

@@ -22,8 +22,8 @@ from granchain_core import (
 from granchain_core.analysis.birkhoff import average, refined_frequency, weights
 from granchain_core.analysis.rotation_number import _strobes, with_error
 from granchain_core.analysis.winding import Winding, winding_of
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, fixed_step_setting
-from granchain_core.stop import Stop
 
 GOLDEN = (3.0 - np.sqrt(5.0)) / 2.0  # 0.38…, in [0, ½]
 COUNT = 4001

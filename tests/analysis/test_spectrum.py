@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Run, Scene, run, scene, spectrum, transfer
-from granchain_core.regime import Regime
+from granchain_core.results.regime import Regime
 
 #: Small waves on a chain that is precompressed by 50 N: every contact stays closed and is nearly a linear spring.
 PRESSED = scene("sec2").evolve(N=5, F0=50.0, A0=1e-9, f=4000.0, accuracy=1e-8)

@@ -14,8 +14,8 @@ from granchain_core.attractors.attractors import _locks, share
 from granchain_core.attractors.attractors import _regime as irregular_regime
 from granchain_core.attractors.sameness import Found
 from granchain_core.orbits import periodic_orbit
-from granchain_core.regime import Regime
-from granchain_core.state import State, rest
+from granchain_core.results.regime import Regime
+from granchain_core.scene.state import State, rest
 from granchain_core.steady.steady_state import SteadyState
 
 #: Where rest, a sweep up and a sweep down lead to three different motions of sec2.

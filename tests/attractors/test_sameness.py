@@ -9,13 +9,13 @@ import pytest
 
 from granchain_core import Scene, scene
 from granchain_core.attractors.sameness import Found, found, merged
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, adaptive_setting
 from granchain_core.orbits import periodic_orbit
-from granchain_core.regime import Regime
-from granchain_core.state import rest
+from granchain_core.results.regime import Regime
+from granchain_core.scene.state import rest
 from granchain_core.steady.settling.single_chain import settle_to_forces
 from granchain_core.steady.steady_state import SteadyState
-from granchain_core.stop import Stop
 
 #: Newton's method knows no orbits of it, so that results are compared as they are.
 CUT = scene("sec2").evolve(tension="cut")

@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 
 from granchain_core import scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch.run import batch_steps
 from granchain_core.kernels.batch_size import BATCH_SIZE
-from granchain_core.stop import Stop
 
 from . import problem
 from .machine import timed

@@ -18,7 +18,7 @@ import pytest
 from app.cli.common import in_background
 from app.cli.compiling import WORDS, compiling_beside
 from granchain_core import scene
-from granchain_core.pieces import FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import FIXED_STEP_KERNELS
 
 #: Compiles two functions, as a first run does.
 PROGRAM = """
@@ -107,7 +107,7 @@ def test_what_cannot_be_compiled_beside_leaves_no_word() -> None:
 import os
 from app.cli.compiling import _compile
 from granchain_core import scene
-from granchain_core.pieces import ORBIT_KERNELS
+from granchain_core.precompile.pieces import ORBIT_KERNELS
 _compile({os.getpid()}, scene("sec2").evolve(tension="cut"), (ORBIT_KERNELS,))
 """], cwd=ROOT, capture_output=True, text=True, timeout=120)
     assert (done.returncode, done.stdout, done.stderr) == (1, "", "")

@@ -17,8 +17,8 @@ from app.server import server_at
 from app.session.share import decode
 from granchain_core import BadInput, Scene, run, scene
 from granchain_core.experiment import read_data
+from granchain_core.inputs.text import number_in, whole_in
 from granchain_core.store import load, save
-from granchain_core.text import number_in, whole_in
 
 #: What Python's float or int takes or stumbles over, and a person does not mean: digits joined by underscores,
 #: full-width, Arabic and superscript digits, words, and more digits than any number has.

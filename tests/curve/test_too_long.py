@@ -8,9 +8,9 @@ from app.curve.view import CurveFigure
 from app.session.budget import curve_affordable
 from app.session.session import Session
 from granchain_core import CurvePoint, Scene, scene
-from granchain_core.regime import Regime
-from granchain_core.result import ForceErrors
-from granchain_core.state import rest
+from granchain_core.results.regime import Regime
+from granchain_core.results.run import ForceErrors
+from granchain_core.scene.state import rest
 from tests.host import FakeHost
 
 

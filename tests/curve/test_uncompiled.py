@@ -11,7 +11,7 @@ from app.curve.view import CurveFigure
 from app.serve.compiling import compiler
 from app.serve.compiling.compiler import Compiler
 from app.session.session import Session
-from granchain_core.pieces import CURVE_KERNELS
+from granchain_core.precompile.pieces import CURVE_KERNELS
 from tests.host import FakeHost
 
 

@@ -28,7 +28,7 @@ from app.session.budget import RefusedPicture
 from app.session.page import all_actions
 from app.session.starts import MOST_BEADS
 from granchain_core import BadInput, run, scene, settle
-from granchain_core.result import GIVEN_STATE
+from granchain_core.results.run import GIVEN_STATE
 
 
 @pytest.mark.parametrize(("message", "sentence"), [

@@ -18,7 +18,7 @@ from app.session import live as live_module
 from app.session.live import LiveRun
 from app.session.session import Session
 from granchain_core import scene
-from granchain_core.state import rest
+from granchain_core.scene.state import rest
 
 
 @pytest.mark.parametrize(("name", "title", "earliest"), [("sec2", "time before now (drive periods)", -4.0),

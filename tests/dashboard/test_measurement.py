@@ -26,9 +26,9 @@ from granchain_core import CurvePoint, Scene, scene, settle, settling
 from granchain_core.experiment import Measured, compared, read_data
 from granchain_core.experiment.formats import FORMATS
 from granchain_core.hdf5 import VERSIONS, seal
-from granchain_core.regime import Regime
-from granchain_core.result import ForceErrors
-from granchain_core.state import rest
+from granchain_core.results.regime import Regime
+from granchain_core.results.run import ForceErrors
+from granchain_core.scene.state import rest
 from granchain_core.virtual_experiment import Sensors, virtual_series_csv
 
 FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"

@@ -8,8 +8,8 @@ import pytest
 from granchain_core import LiveChain, resonance_curve, run, scene, settle
 from granchain_core.integrate import Engine, Setting
 from granchain_core.kernels.dop853.force_kinks import scaled_force
-from granchain_core.laws import LAWS
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
+from granchain_core.scene.laws import LAWS
 
 CHAIN = scene("sec2").evolve(N=3, f=600.0, D=400.0, accuracy=1e-4, dissipation="three-quarters")
 REFINED = (1, 2, 4, 8, 16)

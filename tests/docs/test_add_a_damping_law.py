@@ -49,7 +49,7 @@ def test_the_new_law_is_seen(tree: Path) -> None:
 from app.cli.explain import explanation
 from app.parts.knobs.knobs import knob_state
 from granchain_core import scene
-from granchain_core.warm import structure
+from granchain_core.precompile.warm import structure
 one = scene("sec2").evolve(dissipation="three-quarters")
 print(one.effects[-1], one.equation_latex(), structure(one), sep="|")
 print([spec["choices"] for spec in knob_state(one)["specs"] if spec["name"] == "dissipation"])
@@ -68,8 +68,8 @@ print(explanation(one, None, 96))
     ("kernels/effects/dissipation.py", "@exponent.of(ThreeQuarters)\n", "",
      "ThreeQuarters (granchain_core.kernels.effects.dissipation) has no `exponent`"),
     ("kernels/effects/dissipation.py", "return r * root(r)", "return root(r)", "damping law ThreeQuarters: `power` is not δ^0.75"),
-    ("laws.py", '    Law("three-quarters"', '    # Law("three-quarters"', "damping law ThreeQuarters has no line in laws.py"),
-    ("laws.py", 'δ^(3/4)", source=""', 'δ^(3/4)"', "Law.__init__() missing 1 required positional argument: 'source'"),
+    ("scene/laws.py", '    Law("three-quarters"', '    # Law("three-quarters"', "damping law ThreeQuarters has no line in laws.py"),
+    ("scene/laws.py", 'δ^(3/4)", source=""', 'δ^(3/4)"', "Law.__init__() missing 1 required positional argument: 'source'"),
 ])
 def test_what_the_law_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
     file = tree / "granchain_core" / path

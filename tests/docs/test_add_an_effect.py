@@ -72,7 +72,7 @@ def test_slopes_of_forces_know_the_new_effect(tree: Path) -> None:
 import numpy as np
 from granchain_core import scene
 from granchain_core.integrate import Engine, fixed_step_setting
-from granchain_core.state import State
+from granchain_core.scene.state import State
 from granchain_core.kernels.forces.largest import acceleration
 one = scene("drag").evolve(N=3, c=100.0)
 engine = Engine(one, fixed_step_setting(), 1)
@@ -124,7 +124,7 @@ def test_the_new_effect_is_seen_and_its_absence_leaves_nothing(tree: Path) -> No
     printed = follow(tree, "-c", """
 from app.cli.explain import explanation
 from granchain_core import scene
-from granchain_core.scaling import scale_chain
+from granchain_core.integrate.scaling import scale_chain
 one = scene("drag")
 print(one.effects, one.equation_latex(), one.evolve(c=0.0).effects)
 print(scale_chain(one.evolve(c=0.0)).slots.drag)
@@ -147,7 +147,7 @@ from app.parts.knobs.knobs import knob_state
 from granchain_core import scene
 from granchain_core.parameter_map.grid import KNOBS
 from granchain_core.orbits import CONTINUOUS
-from granchain_core.warm import structure
+from granchain_core.precompile.warm import structure
 session = Session(scene=scene("drag"))
 print(SWITCHES["drag"].title, "|", present("drag", session.scene, False))
 for on in (False, True):
@@ -162,11 +162,11 @@ print([spec["more"] for spec in knob_state(session.scene)["specs"] if spec["name
 
 @pytest.mark.parametrize(("path", "right", "wrong", "sentence"), [
     ("kernels/effects/drag.py", "@drag_loss.of(Drag)\n", "", "Drag (granchain_core.kernels.effects.drag) has no `drag_loss`"),
-    ("scaling.py", '    "drag": lambda', '    "dragged": lambda',
+    ("integrate/scaling.py", '    "drag": lambda', '    "dragged": lambda',
      "effect 'drag': scaling.py does not say how its slot 'drag' is filled"),
     ("kernels/equations/motion.py", "    drag: Any = None\n", "",
      "effect 'drag': Slots (kernels/equations/motion.py) has no field 'drag'"),
-    ("quantities.py", 'Quantity("c", "c"', 'Quantity("C", "c"', "effect 'drag': its knob 'c' is not among QUANTITIES"),
+    ("scene/quantities.py", 'Quantity("c", "c"', 'Quantity("C", "c"', "effect 'drag': its knob 'c' is not among QUANTITIES"),
 ])
 def test_what_the_effect_forgets_is_named(tree: Path, path: str, right: str, wrong: str, sentence: str) -> None:
     """Nothing is computed: the first import says what is missing, and of which effect."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from granchain_core import Scene
-from granchain_core.quantities import QUANTITIES, Quantity
+from granchain_core.scene.quantities import QUANTITIES, Quantity
 from tools import gallery, scales
 from tools.lists import allowed
 from tools.update import pages

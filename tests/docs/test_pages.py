@@ -16,7 +16,7 @@ from documents import PAGES, ROOT, blocks, commands
 from app import cli
 from app.cli.commands import parser_for
 from granchain_core import BadInput, scene, scene_names
-from granchain_core.quantities import QUANTITIES
+from granchain_core.scene.quantities import QUANTITIES
 
 MODEL, LECTURE = ROOT / "docs" / "model.md", ROOT / "docs" / "lecture.md"
 _ROWS = re.findall(r"^\| `granchain (run [^`]+)` \| ([\d.]+) \| ([^|]+) \|$", LECTURE.read_text("utf-8"), re.MULTILINE)

@@ -17,7 +17,7 @@ from granchain_core import orbit, scene
 from granchain_core.kernels.batch import record
 from granchain_core.observe.drift import TRANSLATION
 from granchain_core.orbits.branch import ends, newton, normal_forms, special, steps
-from granchain_core.regime import Regime
+from granchain_core.results.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.settling import regime_decisions
 from tools.thresholds import _REGIMES, marked_constants, printed

@@ -23,10 +23,10 @@ from granchain_core.hard_cases import (
 )
 from granchain_core.integrate import checkpoint
 from granchain_core.integrate import engine as engine_module
+from granchain_core.integrate.scaling import ScaledChain
 from granchain_core.kernels.effects.dissipation import LinearDashpot
-from granchain_core.regime import Regime
-from granchain_core.scaling import ScaledChain
-from granchain_core.state import State
+from granchain_core.results.regime import Regime
+from granchain_core.scene.state import State
 
 
 def worst(measurements: list[Measurement]) -> Measurement:

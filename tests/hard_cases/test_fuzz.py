@@ -16,8 +16,8 @@ import pytest
 
 from granchain_core import Cancelled, NumbersFailed, Run, run
 from granchain_core.errors import OverBudget
-from granchain_core.scaling import scale_chain
-from granchain_core.stop import Stop
+from granchain_core.execution.stop import Stop
+from granchain_core.integrate.scaling import scale_chain
 from tools.fuzzing import check as checker
 from tools.fuzzing import oracle, properties
 from tools.fuzzing.check import Verdict, check

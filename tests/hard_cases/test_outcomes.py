@@ -15,6 +15,7 @@ import granchain_core
 from app.cli import main
 from granchain_core import BadInput, Cancelled, NumbersFailed, State, run, scene
 from granchain_core.errors import FAILURES, OverBudget
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
 from granchain_core.orbits import periodic_orbit
@@ -22,7 +23,6 @@ from granchain_core.run import to_accuracy
 from granchain_core.run.budget import estimate
 from granchain_core.run.to_accuracy import warnings
 from granchain_core.scene.validity import ONSET_OF_YIELD, YIELD_STRESS, peak_pressures
-from granchain_core.stop import Stop
 from granchain_core.store import load, save
 
 

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 
 from granchain_core import Cancelled, State, run, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting, fixed_step_setting
 from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.status import STEPS_BETWEEN_STOP_CHECKS
-from granchain_core.scaling import scale_chain
-from granchain_core.state import rest
+from granchain_core.scene.state import rest
 from granchain_core.steady.lyapunov import growth_along
-from granchain_core.stop import Stop
 
 #: Methods of three kinds, and the error of each with the setting of `engine`.
 TOLERATED = [("rk4", 2e-6), ("rk4-split", 2e-6), ("dop853", 1e-9)]

@@ -25,8 +25,10 @@ import numba
 import numpy as np
 
 from granchain_core import scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch.run import batch_steps
 from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.flow.attempt import FlowProblem
@@ -35,9 +37,7 @@ from granchain_core.kernels.flow.tangent import new_tangent
 from granchain_core.kernels.rk4.short_chain_steps import run_short_chain
 from granchain_core.kernels.samples import KernelIO
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
-from granchain_core.scaling import scale_chain
 from granchain_core.scene.effects import EFFECTS
-from granchain_core.stop import Stop
 
 #: The types of the arguments by case and kernel, and those of the flow by case.
 Types = tuple[dict[str, dict[str, tuple]], dict[str, tuple]]

@@ -7,8 +7,8 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.equations.motion import Slots
-from granchain_core.scaling import scale_chain
 from granchain_core.scene.effects import ALWAYS, EFFECTS
 
 pytestmark = pytest.mark.quick

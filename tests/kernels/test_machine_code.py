@@ -27,12 +27,12 @@ import pytest
 from machine_code import Types, types_by_case, vector_effects
 
 from granchain_core import scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch_size import VARIABLE
 from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
 from granchain_core.kernels.compiling.sources import hash_of_code
-from granchain_core.stop import Stop
 
 PROGRAM = Path(__file__).parent / "machine_code.py"
 KERNELS = ("chain", "batch")

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import Scene, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.steady.batch.engine import batch_results
-from granchain_core.stop import Stop
 
 #: The orbit repeats itself to this, or the point is not judged after this many periods.
 REPEATS, PATIENCE = 1e-9, 3000

@@ -20,7 +20,7 @@ import numpy as np
 
 from granchain_core import CurvePoint, Scene, State, iter_curve, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.state import rest
+from granchain_core.scene.state import rest
 from granchain_core.steady.lyapunov import growth_along
 
 #: Frequencies [Hz] at which the period-1 branch of section 2 changes its stability (`granchain branch sec2`).

@@ -18,7 +18,7 @@ import numpy as np
 
 from granchain_core import NumbersFailed, Scene, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.state import rest
+from granchain_core.scene.state import rest
 
 PERIODS, SAMPLES = 3, 16
 #: law, tension, foundation, preload: each is a kernel of its own.

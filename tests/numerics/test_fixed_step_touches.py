@@ -10,7 +10,7 @@ from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.scaling import scale_chain
+from granchain_core.integrate.scaling import scale_chain
 
 
 @pytest.mark.parametrize("vectors", [True, False])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
-from granchain_core.laws import LAWS
+from granchain_core.scene.laws import LAWS
 from tests.numerics.forces.draw import FEW
 from tests.numerics.forces.judge import Verdict, verdicts
 from tests.numerics.forces.located import located

@@ -10,7 +10,7 @@ import pytest
 from app.cli.forces import warn
 from granchain_core import run, scene
 from granchain_core.integrate import Engine, Setting, method_for
-from granchain_core.state import rest
+from granchain_core.scene.state import rest
 
 SAMPLES = 500
 

@@ -11,17 +11,17 @@ import pytest
 from chains import LAWS
 
 from granchain_core import BadInput, Scene, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import METHODS, Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch, can_share_batch
 from granchain_core.integrate.dop853_root import Dop853RootStepper
 from granchain_core.integrate.methods import FIXED_STEP
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.effects.driver import PrescribedMotion
 from granchain_core.kernels.rk4.long_chain import LongChain
-from granchain_core.scaling import scale_chain
 from granchain_core.scene.effects import EFFECTS
-from granchain_core.state import rest
-from granchain_core.stop import Stop
+from granchain_core.scene.state import rest
 
 #: Every damping law, effect, kind of beads, of walls and of drives; most of these kernels are compiled for other tests
 #: too (tests/numerics/test_orders.py). Every method knows them.

@@ -14,7 +14,7 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.integrate import METHODS, Engine, Setting
-from granchain_core.laws import LAWS
+from granchain_core.scene.laws import LAWS
 
 PERIODS = 3
 REFINED = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32)

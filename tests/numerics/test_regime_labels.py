@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from granchain_core import resonance_curve, run, scene, settle
+from granchain_core.execution.stop import Stop
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.orbits import periodic_orbit
-from granchain_core.scaling import scale_chain
 from granchain_core.steady.returns import sizes
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.settling.finite_difference_map import FiniteDifferenceMap, fixed_point
 from granchain_core.steady.settling.nearby_orbit import NearbyOrbit, orbit_of
-from granchain_core.stop import Stop
 from tests.numerics.regime_labels import judged
 
 

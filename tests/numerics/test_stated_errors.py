@@ -13,7 +13,7 @@ import stated_errors
 
 from granchain_core import Run, run, scene
 from granchain_core.integrate.methods import method_for
-from granchain_core.scaling import scale_chain
+from granchain_core.integrate.scaling import scale_chain
 
 UNCUT = [s for s in stated_errors.FEW if s[1] == "allowed"]
 CUT = [s for s in stated_errors.FEW if s[1] == "cut"]

@@ -7,10 +7,10 @@ import pytest
 from recorded import Recorded, error, recorded
 
 from granchain_core import observe, run, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.observe import ForceRecord, force_record
 from granchain_core.observe.pushed_chain import PushedChain
-from granchain_core.state import rest
-from granchain_core.stop import Stop
+from granchain_core.scene.state import rest
 
 FOUNDED = scene("fig11-founded")
 #: Kuwabara and Kono's damping vanishes with the overlap: its force does not jump where a contact closes.

@@ -14,7 +14,7 @@ from granchain_core.observe.drift import TRANSLATION, is_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import rates
 from granchain_core.orbits import periodic_orbit
-from granchain_core.state import rest
+from granchain_core.scene.state import rest
 
 FREE, FOUNDED = scene("fig11-free"), scene("fig11-founded")
 CHAOTIC = scene("rig").evolve(f=140.0, N=2)

@@ -11,9 +11,9 @@ import xarray
 
 from app.cli import main
 from granchain_core import BadInput, Cancelled, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Branch, Continuation, begin_branch, continue_branch, switch_to_doubled
 from granchain_core.orbits.branch.steps import SHORTEST_STEP
-from granchain_core.stop import Stop
 from granchain_core.store import load_branch, save_branch
 
 

@@ -10,8 +10,8 @@ import pytest
 from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, scene
-from granchain_core.laws import LAWS
 from granchain_core.orbits.stroboscopic_map import Flow, StroboscopicMap
+from granchain_core.scene.laws import LAWS
 
 
 @pytest.mark.parametrize("depth", [1e-3, 1e-4])

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from granchain_core import BadInput, Cancelled, LiveChain, NumbersFailed, Scene, State, scene, settle
+from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import mode, orbit_section
 from granchain_core.orbits.search import least_period_of, search_orbit
 from granchain_core.steady.poincare import Section, iter_section, most_periods
-from granchain_core.stop import Stop
 
 
 @cache

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from granchain_core import NumbersFailed, scene
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.orbits import Branch, KnobAxis, continue_branch
 from granchain_core.orbits.branch import point as points
 from granchain_core.orbits.branch import quick
 from granchain_core.orbits.branch.equations import BranchEquations
 from granchain_core.orbits.branch.steps import LONGEST_STEP, next_step, predicted
 from granchain_core.orbits.stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
-from granchain_core.scaling import scale_chain
 from granchain_core.steady.returns import relative_change
 
 

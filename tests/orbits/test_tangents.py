@@ -9,6 +9,7 @@ import pytest
 from linear_chain import linear_multipliers
 
 from granchain_core import BadInput, Cancelled, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, adaptive_setting
 from granchain_core.kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from granchain_core.kernels.forces.peaks import PEAKS
@@ -17,8 +18,7 @@ from granchain_core.orbits import krylov, periodic_orbit
 from granchain_core.orbits import orbit as orbits
 from granchain_core.orbits.orbit import sorted_multipliers
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
-from granchain_core.state import rest
-from granchain_core.stop import Stop
+from granchain_core.scene.state import rest
 
 
 @pytest.mark.parametrize("changes", [{}, {"f": 1130.0}, {"kappa": 0.001}, {"F0": 0.5}, {"wall": "rigid", "N": 3},

@@ -18,9 +18,9 @@ from app.session.active_setting import locate, page_setting
 from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, compared_methods
 from granchain_core.accuracy.naive import lesson
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import METHODS, Setting
 from granchain_core.steady.settling import advance, recording, refine_orbit
-from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize("accuracy", [1e-4, 1e-6, 1e-9])

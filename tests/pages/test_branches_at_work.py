@@ -14,7 +14,7 @@ from app.pages.branches import page as module
 from app.pages.branches.page import NOT_PERIODIC
 from granchain_core import BadInput, branch
 from granchain_core.orbits import Branch
-from granchain_core.regime import Regime
+from granchain_core.results.regime import Regime
 
 
 @cache

@@ -10,8 +10,8 @@ import pytest
 from app.pages.observer.view import step_message
 from app.pages.observer.work import NUDGE, ObserverRun
 from granchain_core import scene, settled
-from granchain_core.state import rest
-from granchain_core.stop import Stop
+from granchain_core.execution.stop import Stop
+from granchain_core.scene.state import rest
 
 FOUNDED = scene("fig11-founded")
 

@@ -27,8 +27,8 @@ from app.pages.stability.view import (
 from app.pages.stability.work import OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 from app.session.session import Session
 from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
-from granchain_core.regime import Regime, exponent_words, modulus_words
-from granchain_core.stop import Stop
+from granchain_core.execution.stop import Stop
+from granchain_core.results.regime import Regime, exponent_words, modulus_words
 
 
 @cache

@@ -17,13 +17,13 @@ import xarray
 
 from app.cli import main
 from granchain_core import BadInput, resonance_curve, scene, settle
-from granchain_core.checkpoints import folder_of
+from granchain_core.execution.checkpoints import folder_of
+from granchain_core.execution.stop import Stop
 from granchain_core.parameter_map import Axis, Diagram, Grid, diagram
 from granchain_core.parameter_map.blocks import Blocks
 from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
 from granchain_core.parameter_map.scheduled import describe, work_on
 from granchain_core.scheduler import dealt
-from granchain_core.stop import Stop
 from granchain_core.store.diagrams import load_diagram, save_diagram
 
 ROOT = Path(__file__).resolve().parents[2]

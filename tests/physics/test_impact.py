@@ -7,8 +7,8 @@ import pytest
 
 from granchain_core import scene
 from granchain_core.hard_cases.chains import Bench
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.effects.dissipation import LinearDashpot, Tsuji
-from granchain_core.scaling import scale_chain
 
 pytestmark = pytest.mark.quick
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from granchain_core import cores
+from granchain_core.execution import cores
 
 pytestmark = pytest.mark.quick
 

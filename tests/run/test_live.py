@@ -9,7 +9,7 @@ import pytest
 
 from granchain_core import LiveChain, State, scene
 from granchain_core.errors import Cancelled
-from granchain_core.stop import Stop
+from granchain_core.execution.stop import Stop
 
 
 @pytest.mark.parametrize("beads", [3, 40])

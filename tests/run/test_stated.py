@@ -11,11 +11,11 @@ import pytest
 from numba.core import event
 
 from granchain_core import run, scene
+from granchain_core.execution.stopwatch import COMPILER_CLOCK, CompilerClock, Stopwatch
 from granchain_core.integrate import Setting
 from granchain_core.integrate.methods import typical_error
 from granchain_core.integrate.stated import Computations
 from granchain_core.run import to_accuracy
-from granchain_core.stopwatch import COMPILER_CLOCK, CompilerClock, Stopwatch
 from tests.numerics.forces.located import located
 
 REFINES = (4.0, 8.0, 16.0, 32.0)

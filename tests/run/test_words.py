@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from granchain_core import State, scene
-from granchain_core.regime import Regime
-from granchain_core.result import start_words
-from granchain_core.state import rest
+from granchain_core.results.regime import Regime
+from granchain_core.results.run import start_words
+from granchain_core.scene.state import rest
 
 
 def test_a_run_says_where_it_began() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from granchain_core import scene, scene_names
-from granchain_core.scaling import ScaledChain, scale_chain, scale_like
+from granchain_core.integrate.scaling import ScaledChain, scale_chain, scale_like
 
 
 def same(one: ScaledChain, other: ScaledChain) -> bool:

@@ -13,9 +13,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from granchain_core import BadInput, Scene, run, scene, scene_names
-from granchain_core.laws import LAWS
-from granchain_core.quantities import QUANTITIES
 from granchain_core.scene import Bead
+from granchain_core.scene.laws import LAWS
+from granchain_core.scene.quantities import QUANTITIES
 
 KNOBS = st.fixed_dictionaries({}, optional={
     "f": st.floats(0.1, 1e6), "A0": st.floats(1e-12, 1e-4), "D": st.floats(0.0, 1e6), "k": st.floats(0.0, 1e10),

@@ -8,9 +8,9 @@ from app.session.energy_account import with_account
 from app.session.session import Session
 from app.session.switches import ACCOUNT_SWITCH, SWITCHES, changes, present, variants
 from granchain_core import BadInput, scene, scene_names, settle
-from granchain_core.scaling import slots_of
-from granchain_core.stop import Stop
-from granchain_core.warm import structure
+from granchain_core.execution.stop import Stop
+from granchain_core.integrate.scaling import slots_of
+from granchain_core.precompile.warm import structure
 
 
 @pytest.mark.parametrize(("shown", "name"), [  # where there is no damping there is no tension to cut, see below

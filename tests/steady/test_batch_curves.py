@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
+from granchain_core.execution.stop import Stop
 from granchain_core.kernels.batch import checks
 from granchain_core.steady.batch import engine as batch_module
 from granchain_core.steady.curve.resonance_curve import draft_curve, resonance_curve
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.steady_state import SteadyState
-from granchain_core.stop import Stop
 
 #: Between 1580 and 1640 Hz two attractors stand side by side; below 1000 Hz and on the peaks approaches are slow.
 FREQUENCIES = [400.0, 590.0, 620.0, 1240.0, 1576.0, 1590.0, 1600.0, 1610.0, 1620.0, 1640.0, 1900.0]

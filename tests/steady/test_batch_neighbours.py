@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from granchain_core import Scene, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch.record import STROBES_KEPT
 from granchain_core.kernels.batch_size import BATCH_SIZE
-from granchain_core.scaling import scale_chain
 from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.steady_state import SteadyState
-from granchain_core.stop import Stop
 
 #: Rows of a map: with one frequency all members end their periods at once, and several are due for a check together.
 #: Among them are periodic, quasi-periodic and chaotic motions.

@@ -12,7 +12,7 @@ import pytest
 from granchain_core import resonance_curve, scene, settled
 from granchain_core.integrate import Engine, Setting, adaptive_setting
 from granchain_core.kernels.strobes import periodicity
-from granchain_core.regime import Regime
+from granchain_core.results.regime import Regime
 from granchain_core.steady import regime_criteria
 from granchain_core.steady.batch import engine
 from granchain_core.steady.orbit_errors import errors_of_map, errors_of_two_orbits

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from granchain_core import NumbersFailed, resonance_curve, scene
-from granchain_core.regime import Regime
-from granchain_core.state import State, rest
+from granchain_core.execution.stop import Stop
+from granchain_core.results.regime import Regime
+from granchain_core.scene.state import State, rest
 from granchain_core.steady.batch.job import Start
 from granchain_core.steady.batch.starts import settle_starts
 from granchain_core.steady.curve.curve import CurvePoint
 from granchain_core.steady.steady_state import SteadyState
-from granchain_core.stop import Stop
 
 
 def _numbers(words: str) -> list[float]:

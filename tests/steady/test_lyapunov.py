@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 
 from granchain_core import Scene, State, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch
+from granchain_core.integrate.scaling import ScaledChain, scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
-from granchain_core.scaling import ScaledChain, scale_chain
 from granchain_core.steady.lyapunov import MeasuredGrowth, block_means, growth_along, growth_of, put_with_shadow
 from granchain_core.steady.regime_criteria import mean_and_error
 from granchain_core.steady.settling.advance import run_until_settled
-from granchain_core.stop import Stop
 
 CHAOTIC = scene("rig").evolve(kappa=0.0, f=100.0, N=3)  # chaotic, as all of `rig` without flexures (docs/lecture.md)
 QUASI = scene("sec2").evolve(f=1640.0)

@@ -10,11 +10,11 @@ from waiting import until
 
 from granchain_core import CurvePoint, iter_curve, scene
 from granchain_core.errors import Cancelled
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine
 from granchain_core.steady.batch import job as batch_job
 from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.settling import advance
-from granchain_core.stop import Stop
 
 
 @pytest.mark.parametrize("start", ["up", "down"])

@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 import pytest
 
+from granchain_core.execution.stop import Stop
 from granchain_core.steady.batch.threads import on_all_cores
-from granchain_core.stop import Stop
 
 
 def squares(items: Iterator[int]) -> Iterator[int]:

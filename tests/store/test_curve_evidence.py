@@ -10,9 +10,9 @@ import pytest
 
 from granchain_core import resonance_curve, save, scene
 from granchain_core.hdf5 import seal
-from granchain_core.regime import Regime
+from granchain_core.results.regime import Regime
+from granchain_core.results.regime_columns import EVIDENCE, MORE_EVIDENCE
 from granchain_core.store import load_curve
-from granchain_core.tables.words import EVIDENCE, MORE_EVIDENCE
 
 CURVE = resonance_curve(scene("sec2").evolve(N=3), [900.0, 1000.0, 2000.0])
 

@@ -17,8 +17,8 @@ import time
 
 from app.frames import samples_for
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene, Stop, scene, settling
-from granchain_core.pieces import ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
-from granchain_core.warm import compile_piece
+from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
+from granchain_core.precompile.warm import compile_piece
 
 #: Classes of chain length in the table.
 _CLASSES = ((1, 10), (11, 100), (101, 1000), (1001, 10_000))

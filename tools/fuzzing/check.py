@@ -13,9 +13,9 @@ import numpy as np
 
 from granchain_core import BadInput, Cancelled, NumbersFailed, Run, Scene, run
 from granchain_core.errors import OverBudget
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting, method_for
-from granchain_core.state import rest
-from granchain_core.stop import Stop
+from granchain_core.scene.state import rest
 
 from . import oracle, properties
 from .properties import SAMPLES, distance

@@ -17,7 +17,7 @@ from scipy.integrate import DOP853, solve_ivp
 from scipy.optimize import brentq
 
 from granchain_core import NumbersFailed, Scene
-from granchain_core.state import rest
+from granchain_core.scene.state import rest
 
 #: Power of the overlap in the damping force; not taken from granchain_core, which is judged by this.
 _POWER = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5, "none": 0.0}

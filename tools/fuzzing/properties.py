@@ -7,14 +7,14 @@ from dataclasses import replace
 import numpy as np
 
 from granchain_core import Scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.scaling import ScaledChain, scale_chain
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.preload import Preload
 from granchain_core.kernels.samples import Samples
-from granchain_core.scaling import ScaledChain, scale_chain
-from granchain_core.state import State, rest
-from granchain_core.stop import Stop
+from granchain_core.scene.state import State, rest
 
 SAMPLES = 16
 _FIXED = Setting("rk4-split", 1.0)

@@ -76,7 +76,7 @@ STATED = (
            "time and driver of a run from a given phase are those of phase 0", k.CONTINUATION),
     Mutant("peaks-of-the-transient", _RUN, "    engine.begin_record()\n", "", "largest forces are those of the discarded periods too",
            k.CLAIMS_RUN),
-    Mutant("energy-residual-of-work", "result.py", "abs(work - lost - stored) / largest", "abs(work - lost) / largest",
+    Mutant("energy-residual-of-work", "results/run.py", "abs(work - lost - stored) / largest", "abs(work - lost) / largest",
            "the energy account does not count what is stored", k.ENERGY_PLAIN),
 )
 

@@ -116,7 +116,7 @@ CLOCK = (
            "self.grid_index = 0", "a start inside a period begins at phase 0", k.CONTINUATION),
     Mutant("sample-clock-restarts", _ENGINE, "self.grid_index = (self.grid_index + count * (self.grid // self.samples)) % self.grid",
            "self.grid_index = count * (self.grid // self.samples) % self.grid", "a second record begins at another phase", k.CONTINUATION),
-    Mutant("time-column-summed", "result.py", "time=(index // engine.samples + inside / engine.samples) * scene.period,",
+    Mutant("time-column-summed", "results/run.py", "time=(index // engine.samples + inside / engine.samples) * scene.period,",
            "time=np.cumsum(np.full(index.size, scene.period / engine.samples)) + (first_sample - 1) * scene.period / engine.samples,",
            "the time of a sample is a sum of steps", k.CLAIMS_TIME),
     Mutant("w-reported-as-velocity", "kernels/samples.py", "samples.velocity[row, i] = dy[i + 1]",

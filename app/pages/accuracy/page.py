@@ -9,7 +9,7 @@ from typing import Any
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.kernels.batch_size import machine
-from granchain_core.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
 
 from ...format import duration, short_error
 from ...pictures.accuracy import Annotations

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from granchain_core import BadInput, Settled
-from granchain_core.pieces import ORBIT_KERNELS
+from granchain_core.precompile.pieces import ORBIT_KERNELS
 
 from ...serve.computing.queues import LONG
 from ...session.host import Host

@@ -13,11 +13,11 @@ from bokeh.models import LayoutDOM
 
 from granchain_core import BadInput, Scene, Stop, basins, lyapunov_spectrum, run, settle, spectrum, strobe_diagram
 from granchain_core.analysis.spectrum import FORCES
-from granchain_core.input_checks import check_range, unknown_name
-from granchain_core.pieces import CURVE_KERNELS, MOTION_KERNELS, ORBIT_KERNELS
-from granchain_core.quantities import QUANTITIES
+from granchain_core.inputs.checks import check_range, unknown_name
+from granchain_core.inputs.text import number_in, whole_in
+from granchain_core.precompile.pieces import CURVE_KERNELS, MOTION_KERNELS, ORBIT_KERNELS
+from granchain_core.scene.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
-from granchain_core.text import number_in, whole_in
 
 from ...pictures.basins import basins as draw_basins
 from ...pictures.lyapunov import lyapunov as draw_lyapunov

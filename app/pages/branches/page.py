@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from granchain_core import Scene, Settled
+from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
-from granchain_core.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
-from granchain_core.stop import Stop
+from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
 
 from ...pictures.branches import BranchRows
 from ...serve.computing.queues import LONG

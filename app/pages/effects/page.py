@@ -7,10 +7,10 @@ from typing import Any
 
 from granchain_core import BadInput, Scene
 from granchain_core.accuracy.effect_cost import CODE, MOTION, EffectCost, Variant, effect_cost
-from granchain_core.pieces import COST_ACCOUNT_KERNELS, COST_KERNELS
-from granchain_core.scaling import slots_of
+from granchain_core.integrate.scaling import slots_of
+from granchain_core.precompile.pieces import COST_ACCOUNT_KERNELS, COST_KERNELS
+from granchain_core.precompile.warm import structure
 from granchain_core.scene.effects import ALWAYS
-from granchain_core.warm import structure
 
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests

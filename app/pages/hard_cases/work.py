@@ -9,9 +9,9 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 
 from granchain_core import Cancelled
-from granchain_core.child_processes import end_with_parent, starting
+from granchain_core.execution.child_processes import end_with_parent, starting
+from granchain_core.execution.stop import Stop
 from granchain_core.hard_cases import CASES, Case, Check, Picture, run_case
-from granchain_core.stop import Stop
 
 #: Time between two checks of the stop flag while the process of a case works [s].
 _STOP_CHECK_INTERVAL = 0.05

@@ -11,10 +11,10 @@ import numpy as np
 
 from granchain_core import Scene
 from granchain_core.attractors import Attractor, attractors
+from granchain_core.execution.stop import Stop
 from granchain_core.parameter_map import Axis, Grid, iter_diagram
 from granchain_core.parameter_map.cells import cell_of, empty_cells
-from granchain_core.pieces import ORBIT_KERNELS
-from granchain_core.stop import Stop
+from granchain_core.precompile.pieces import ORBIT_KERNELS
 
 from ...parts.toolkit.component import Component
 from ...pictures.diagram import now_row

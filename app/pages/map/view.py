@@ -9,7 +9,7 @@ import numpy as np
 from granchain_core.attractors import Attractor
 from granchain_core.orbits import response
 from granchain_core.parameter_map import Grid
-from granchain_core.regime import exponent_words, modulus_words
+from granchain_core.results.regime import exponent_words, modulus_words
 
 from ...format import figures_of, in_words, short_error
 from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from granchain_core import Scene, Settled
-from granchain_core.pieces import ADAPTIVE_KERNELS, OBSERVER_KERNELS
+from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, OBSERVER_KERNELS
 
 from ...serve.computing.queues import PICTURES
 from ...session.host import Host

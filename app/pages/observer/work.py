@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
+from granchain_core.execution.stop import Stop
 from granchain_core.kernels.forces.peaks import next_period
 from granchain_core.observe.drift import departure_words, observer_drift
 from granchain_core.observe.pair import Pair
@@ -18,8 +19,7 @@ from granchain_core.observe.twin import (
     rates,
 )
 from granchain_core.orbits import Orbit, periodic_orbit
-from granchain_core.state import rest
-from granchain_core.stop import Stop
+from granchain_core.scene.state import rest
 
 from ...frames import samples_for
 

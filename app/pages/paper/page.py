@@ -6,7 +6,7 @@ from typing import Any
 
 from granchain_core import scene
 from granchain_core.paper import PaperFigure, Result, compute, figure_of
-from granchain_core.pieces import CURVE_KERNELS, MOTION_KERNELS, OBSERVER_KERNELS, ORBIT_KERNELS
+from granchain_core.precompile.pieces import CURVE_KERNELS, MOTION_KERNELS, OBSERVER_KERNELS, ORBIT_KERNELS
 
 from ...serve.computing.queues import LONG
 from ...session.host import Host

@@ -7,7 +7,7 @@ from typing import Any
 
 from granchain_core import BadInput, Scene, Settled, State
 from granchain_core.orbits.stroboscopic_map import refuse_cut
-from granchain_core.pieces import ORBIT_KERNELS
+from granchain_core.precompile.pieces import ORBIT_KERNELS
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 

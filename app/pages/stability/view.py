@@ -13,7 +13,7 @@ from granchain_core import Settled
 from granchain_core.integrate.methods import FIXED_STEP
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
-from granchain_core.regime import exponent_words, modulus_words
+from granchain_core.results.regime import exponent_words, modulus_words
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 

@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import NumbersFailed, Scene, Settled, State
+from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import Mode, mode, orbit_section
 from granchain_core.orbits.search import search_orbit
 from granchain_core.steady.poincare import Section, iter_section
 from granchain_core.steady.settling.regime_decisions import EXAMINED_AFTER
-from granchain_core.stop import Stop
 
 #: Phases of the drive period at which the section is kept.
 PHASES = 48

@@ -6,7 +6,7 @@ from dataclasses import fields
 from typing import Any
 
 from granchain_core import Scene, scene
-from granchain_core.quantities import QUANTITIES
+from granchain_core.scene.quantities import QUANTITIES
 
 from ...scripts import module
 from ...session.scene_facts import slider_range

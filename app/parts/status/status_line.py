@@ -7,7 +7,7 @@ from typing import Any
 from granchain_core import Run, Settled
 from granchain_core.integrate import METHODS
 from granchain_core.kernels.strobes.periodicity import SETTLED_DISTANCE
-from granchain_core.regime import NEVER_REPEATING, Regime, modulus_words
+from granchain_core.results.regime import NEVER_REPEATING, Regime, modulus_words
 from granchain_core.steady.curve.resonance import STOP_BAND_PART, Place, place_words, push_words, pushes
 
 from ...format import duration, short_error

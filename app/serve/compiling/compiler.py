@@ -16,9 +16,9 @@ from concurrent.futures import Future, wait
 from pathlib import Path
 
 from granchain_core import Scene
-from granchain_core.pieces import COMPILE_SECONDS, CURVE_KERNELS, MOTION_KERNELS
-from granchain_core.stop import Stop
-from granchain_core.warm import compile_piece, is_warm, structure
+from granchain_core.execution.stop import Stop
+from granchain_core.precompile.pieces import COMPILE_SECONDS, CURVE_KERNELS, MOTION_KERNELS
+from granchain_core.precompile.warm import compile_piece, is_warm, structure
 
 from ..computing.queues import COMPILATIONS, LOADING
 

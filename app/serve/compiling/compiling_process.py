@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import sys
 
-from granchain_core.child_processes import end_with_parent
+from granchain_core.execution.child_processes import end_with_parent
 
 
 def main(parent: str, piece: str) -> None:
     """Watch the parent first, because loading what is needed takes seconds; then compile."""
     end_with_parent(int(parent))
     from granchain_core import Scene
-    from granchain_core.warm import compile_piece
+    from granchain_core.precompile.warm import compile_piece
 
     compile_piece(Scene.from_json(json.load(sys.stdin)), piece)
 

@@ -11,7 +11,7 @@ from collections import OrderedDict
 from collections.abc import Callable, Generator, Hashable, Iterator
 from typing import Generic, TypeVar
 
-from granchain_core.stop import Stop
+from granchain_core.execution.stop import Stop
 
 from .cpu_time import CpuTime, SharedCpuTime
 from .queues import Queue

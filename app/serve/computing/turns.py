@@ -15,8 +15,8 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple, TypeVar
 
-from granchain_core.cores import usable_cores
-from granchain_core.stop import Stop
+from granchain_core.execution.cores import usable_cores
+from granchain_core.execution.stop import Stop
 
 from .cpu_time import CpuTime
 from .priorities import lower_priority

@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass
 
 from ...errors import BadInput
-from ...input_checks import unknown_name
-from ...quantities import QUANTITIES
+from ...inputs.checks import unknown_name
 from ...scene import Amplitude, Scene
+from ...scene.quantities import QUANTITIES
 
 #: Knobs that change a chain continuously; N and the laws are discrete, `accuracy` does not change the chain.
 CONTINUOUS = tuple(name for name, quantity in QUANTITIES.items() if quantity.is_continuous)

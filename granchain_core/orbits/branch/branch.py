@@ -16,10 +16,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import BadInput
-from ...input_checks import whole_number
+from ...execution.stop import Stop
+from ...inputs.checks import whole_number
 from ...scene import Amplitude, Scene
-from ...state import State
-from ...stop import Stop
+from ...scene.state import State
 from ...tables import Labelled, Table, amplitude_attribute, provenance
 from ...tables.provenance import Attribute
 from ..orbit import periodic_orbit

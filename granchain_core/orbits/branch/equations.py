@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...scaling import scale_chain, scale_like
+from ...execution.stop import Stop
+from ...integrate.scaling import scale_chain, scale_like
 from ...steady.returns import least_period
-from ...stop import Stop
 from ..stroboscopic_map import SAME_ORBIT_DISTANCE, TOLERANCE, Flow, StroboscopicMap
 from .axis import KnobAxis
 from .newton import ROUGH_TOLERANCE, Near, Newton

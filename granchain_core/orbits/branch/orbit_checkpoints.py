@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...checkpoints import Kept, digest_of
+from ...execution.checkpoints import Kept, digest_of
 from .axis import STATIC_OVERLAP, KnobAxis
 from .branch import Branch
 from .normal_forms import EARLIER_REASONS, NormalForm

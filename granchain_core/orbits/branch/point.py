@@ -8,12 +8,12 @@ import numpy as np
 
 from ...errors import NumbersFailed
 from ...integrate import Engine, adaptive_setting
+from ...integrate.scaling import scale_chain
 from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from ...kernels.forces.peaks import PEAKS, largest_forces
 from ...kernels.status import FULL
-from ...scaling import scale_chain
 from ...scene import Scene
-from ...state import State
+from ...scene.state import State
 from ..orbit import liouville_error, sorted_multipliers
 from .equations import BranchEquations, Solved
 

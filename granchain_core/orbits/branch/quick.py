@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...execution.stop import Stop
 from ...integrate import Engine, fixed_step_setting
 from ...integrate.fixed import FixedStep
+from ...integrate.scaling import ScaledChain, scale_like
 from ...kernels.compiling.jit import unknown_slots
 from ...kernels.rk4.step import Rk4Split
-from ...scaling import ScaledChain, scale_like
 from ...scene import Scene
-from ...stop import Stop
 
 #: Steps in place of one default step.
 _REFINEMENT = 8.0

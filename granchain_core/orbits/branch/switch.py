@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...errors import BadInput, NumbersFailed
-from ...stop import Stop
+from ...execution.stop import Stop
 from .branch import Branch
 from .equations import BranchEquations, Solved
 from .point import branch_point

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...quantities import QUANTITIES
+from ...scene.quantities import QUANTITIES
 from ...tables import MAXIMA, Column, Table, axis, contact_axis, force_columns
 from ...tables.words import multiplier_columns
 from .axis import KnobAxis

@@ -16,8 +16,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...cores import usable_cores
 from ...errors import Cancelled, NumbersFailed
+from ...execution.cores import usable_cores
 from .between import Between
 from .criticality import with_normal_forms
 from .ends import Ending, Ends

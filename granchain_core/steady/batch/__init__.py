@@ -1,1 +1,1 @@
-"""Many steady states at once: batches of scenes on all cores."""
+"""Batches: many steady states at once, on all cores."""

@@ -21,15 +21,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...execution.stop import Stop
 from ...integrate.batch import Batch
+from ...integrate.scaling import scale_chain, scale_like
 from ...kernels.batch_size import BATCH_SIZE
 from ...kernels.strobes.periodicity import LONGEST_PERIOD, SETTLED_DISTANCE
-from ...regime import Regime
-from ...scaling import scale_chain, scale_like
+from ...results.regime import Regime
 from ...scene import Scene
 from ...scene.refusals import refuse_undriven
-from ...state import rest
-from ...stop import Stop
+from ...scene.state import rest
 from ..exponent_measurements import MEASURED_PERIODS
 from ..lyapunov import growth_of, put_with_shadow
 from ..regime_criteria import converging, find_period

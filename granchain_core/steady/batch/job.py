@@ -8,16 +8,16 @@ from enum import Enum
 
 import numpy as np
 
+from ...execution.stop import Stop
 from ...integrate import Engine, fixed_step_setting
 from ...integrate.batch import Batch
 from ...integrate.methods import AT_A_JUMP, typical_error
+from ...integrate.scaling import ScaledChain
 from ...integrate.stated import relative_changes
 from ...kernels.batch.checks import CHECK_DISTANCE, CHECK_PERIOD
-from ...regime import Regime
-from ...scaling import ScaledChain
+from ...results.regime import Regime
 from ...scene import Scene
-from ...state import State
-from ...stop import Stop
+from ...scene.state import State
 from ..exponent_measurements import ExponentMeasurements
 from ..orbit_errors import errors_between, errors_of_two_orbits, force_distances
 from ..regime_criteria import SLOW_RECORD, converging

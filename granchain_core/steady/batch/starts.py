@@ -6,11 +6,11 @@ import itertools
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
+from ...execution.stop import Stop
 from ...integrate import following_setting
 from ...integrate.batch import can_share_batch
 from ...integrate.methods import ADAPTIVE, FIXED_STEP
 from ...scene import Scene
-from ...stop import Stop
 from ..settling.single_chain import settle_or_failure, settled_alone
 from ..steady_state import SteadyState
 from .engine import batch_states

@@ -10,9 +10,9 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
 
-from ...cores import usable_cores
 from ...errors import Cancelled
-from ...stop import Stop
+from ...execution.cores import usable_cores
+from ...execution.stop import Stop
 
 #: Time between two looks at what the threads have found, and whether it is still wanted [s]. Waking up for each result
 #: would take the interpreter's lock from the threads hundreds of times a second.

@@ -1,1 +1,1 @@
-"""The resonance curve."""
+"""The resonance curve, its peaks and valleys."""

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...regime import Regime
-from ...result import ForceErrors, said_forces
+from ...results.regime import Regime
+from ...results.regime_columns import evidence_columns, regime_columns
+from ...results.run import ForceErrors, said_forces
 from ...scene import Amplitude, Scene
-from ...state import State
+from ...scene.state import State
 from ...tables import (
     MAXIMA,
     Column,
@@ -22,10 +23,8 @@ from ...tables import (
     error_columns,
     force_columns,
     provenance,
-    regime_columns,
 )
 from ...tables.provenance import Attribute
-from ...tables.words import evidence_columns
 from ..batch.starts import settling_methods
 from ..steady_state import SteadyState
 

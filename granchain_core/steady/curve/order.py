@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ...input_checks import unknown_name
+from ...inputs.checks import unknown_name
 
 #: Ways to start the points of a curve: each from rest, or each from the state of the one before, upwards or downwards.
 CURVE_STARTS = ("rest", "up", "down")

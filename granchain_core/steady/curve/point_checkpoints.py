@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from ...checkpoints import Kept
-from ...result import ForceErrors
-from ...state import State
+from ...execution.checkpoints import Kept
+from ...results.run import ForceErrors
+from ...scene.state import State
 from ..regime_criteria import Regime
 from .curve import CurvePoint
 from .request import CurveRequest

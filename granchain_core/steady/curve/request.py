@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Any
 
-from ...checkpoints import digest_of
+from ...execution.checkpoints import digest_of
 from ...scene import Amplitude, Scene
 from .curve import Curve
 from .resonance_curve import resonance_curve

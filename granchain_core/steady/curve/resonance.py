@@ -14,7 +14,7 @@ from math import gcd
 
 import numpy as np
 
-from ...result import Run
+from ...results.run import Run
 
 #: [response] A push is strong if its largest force is above this part of the largest push.
 STRONG_PART = 0.7

@@ -8,15 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from ...cores import usable_cores
 from ...errors import BadInput, Cancelled
-from ...input_checks import numbers_in
+from ...execution.cores import usable_cores
+from ...execution.stop import Stop
+from ...inputs.checks import numbers_in
 from ...integrate.batch import can_share_batch
-from ...quantities import QUANTITIES
 from ...scene import Amplitude, Scene
+from ...scene.quantities import QUANTITIES
 from ...scene.refusals import refuse_undriven
 from ...scheduler import dealt, results
-from ...stop import Stop
 from ..batch.engine import batch_results
 from ..batch.job import Start
 from ..batch.starts import settle_starts

@@ -1,1 +1,1 @@
-"""Settling one chain: running it to its steady state, and deciding its regime."""
+"""Settling: one chain is run to its steady state, and its regime is decided."""

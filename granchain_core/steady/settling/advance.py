@@ -12,13 +12,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...execution.stop import Stop
 from ...integrate import METHODS, Engine, following_setting
 from ...integrate.start import at_phase_0
-from ...regime import Regime
+from ...results.regime import Regime
 from ...scene import Scene
 from ...scene.refusals import refuse_undriven
-from ...state import State, rest
-from ...stop import Stop
+from ...scene.state import State, rest
 from ..regime_criteria import find_period, rounding_of
 from .regime_decisions import EXAMINED_AFTER, REMEMBERED, Decisions
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
+from ...execution.stop import Stop
 from ...integrate import Engine, fixed_step_setting, following_setting
 from ...scene import Scene
-from ...stop import Stop
 from ..returns import relative_change, sizes
 
 #: [no threshold] Steps in place of one default step: multipliers then differ from those of a tangent flow by about

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...errors import NumbersFailed
+from ...execution.stop import Stop
 from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
-from ...stop import Stop
 from ..regime_criteria import changes, window_changes
 from ..returns import relative_change, shorter_periods
 from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point

@@ -5,10 +5,10 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass
 
-from ...regime import Regime
-from ...result import GIVEN_STATE, Run
+from ...results.regime import Regime
+from ...results.run import GIVEN_STATE, Run
 from ...scene import Scene
-from ...state import State
+from ...scene.state import State
 from ...tables import Labelled, Table, bead_axis
 from ...tables.provenance import Attribute
 from ...tables.words import state_columns

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from ...integrate import Engine
 from ...integrate.stated import relative_difference
-from ...result import Cost, run_from
+from ...results.run import Cost, run_from
 from ..orbit_errors import errors_between
 from .advance import SettlingRun
 from .outcome import Settled

@@ -7,7 +7,7 @@ import numpy as np
 from ...integrate import Engine, Setting, method_for
 from ...kernels.strobes.extrapolation import ORBITS
 from ...scene import Scene
-from ...state import State
+from ...scene.state import State
 from ..regime_criteria import changes
 from .advance import SettlingRun
 from .reduced_rank import reduced_rank, within_reach

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...integrate import Engine
-from ...regime import Regime
+from ...results.regime import Regime
 from ...scene import Scene
 from ..exponent_measurements import MEASURED_PERIODS, ExponentMeasurements
 from ..lyapunov import growth_along

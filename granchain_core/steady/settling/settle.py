@@ -5,13 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
-from ...input_checks import whole_number
-from ...recorded_motion import MOST_SAMPLES
-from ...result import start_words
+from ...execution.stop import Stop
+from ...inputs.checks import whole_number
+from ...results.recorded_motion import MOST_SAMPLES
+from ...results.run import start_words
 from ...scene import Scene
 from ...scene.refusals import require_scene
-from ...state import State
-from ...stop import Stop
+from ...scene.state import State
 from .advance import SettlingRun, run_until_settled
 from .outcome import Settled
 from .recording import motion_so_far, recorded_orbit

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...errors import NumbersFailed
+from ...execution.stop import Stop
 from ...integrate import Engine
-from ...regime import Regime
+from ...results.regime import Regime
 from ...scene import Scene
-from ...state import State
-from ...stop import Stop
+from ...scene.state import State
 from ..orbit_errors import errors_between
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 from .advance import SettlingRun, run_until_settled

@@ -5,15 +5,15 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 
+from ...execution.stop import Stop
 from ...integrate import Counts, Engine, Setting, following_setting
 from ...integrate.methods import typical_error
 from ...integrate.stated import relative_difference
 from ...kernels.samples import Samples
-from ...regime import Regime
-from ...result import Cost, run_from, start_words
+from ...results.regime import Regime
+from ...results.run import Cost, run_from, start_words
 from ...scene import Scene
-from ...state import State, checked_start, rest
-from ...stop import Stop
+from ...scene.state import State, checked_start, rest
 from ..orbit_errors import errors_between
 from .outcome import Settled
 

@@ -10,11 +10,11 @@ import numpy as np
 
 from granchain_core import Scene, scene
 from granchain_core.errors import NumbersFailed
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
-from granchain_core.scaling import scale_chain
-from granchain_core.stop import Stop
 
 from .. import problem
 from ..case import CURVE_REFINES, Case, Peaks, rungs

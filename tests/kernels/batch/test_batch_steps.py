@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
-from granchain_core.scaling import scale_chain
-from granchain_core.state import rest
-from granchain_core.stop import Stop
+from granchain_core.scene.state import rest
 
 FREQUENCIES = (200.0, 340.0, 615.0, 1130.0, 1576.0, 2000.0, 2500.0, 3000.0)
 PERIODS = 3

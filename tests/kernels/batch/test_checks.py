@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch import checks, contact_correction, record
 from granchain_core.kernels.batch_size import BATCH_SIZE
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
-from granchain_core.stop import Stop
 
 pytestmark = pytest.mark.quick
 

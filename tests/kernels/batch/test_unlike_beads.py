@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from granchain_core import Scene, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
-from granchain_core.scaling import scale_chain
-from granchain_core.state import rest
-from granchain_core.stop import Stop
+from granchain_core.integrate.scaling import scale_chain
+from granchain_core.scene.state import rest
 
 PERIODS = 3
 

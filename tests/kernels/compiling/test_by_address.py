@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate.batch import Batch
 from granchain_core.kernels.batch.checks import check_member
 from granchain_core.kernels.batch.run import run_batch
 from granchain_core.kernels.compiling.by_address import address_of, call_at
 from granchain_core.kernels.strobes.periodicity import detect_period
 from granchain_core.steady.regime_criteria import find_period
-from granchain_core.stop import Stop
 
 
 class Numbers(NamedTuple):

@@ -45,7 +45,8 @@ def hits_and_misses(cache: Path | None, tree: Path, does: str) -> tuple[int, int
 #: Notes that a piece is compiled, or asks whether it is, without compiling anything.
 MARK = """
 import sys
-from granchain_core import scene, warm
+from granchain_core import scene
+from granchain_core.precompile import warm
 warm.PIECES[warm.FIXED_STEP_KERNELS] = lambda short: None
 if sys.argv[1] == "compile":
     warm.compile_piece(scene("sec2"), warm.FIXED_STEP_KERNELS)

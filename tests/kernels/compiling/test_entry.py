@@ -12,7 +12,7 @@ from granchain_core.integrate import Engine
 from granchain_core.integrate.methods import FIXED_STEP, METHODS, Setting
 from granchain_core.kernels.compiling import entry
 from granchain_core.kernels.samples import first_not_finite
-from granchain_core.state import State
+from granchain_core.scene.state import State
 
 #: Chains of one vector and of blocks, and effects in every slot.
 CHAINS = [{}, {"N": 2}, {"N": 40}, {"dissipation": "none"}, {"dissipation": "tsuji", "tension": "cut"},

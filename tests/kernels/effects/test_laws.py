@@ -10,8 +10,8 @@ import pytest
 
 from granchain_core.kernels.compiling.jit import by_slot, by_type, check_effects
 from granchain_core.kernels.effects import dissipation as loss
-from granchain_core.laws import LAWS, Law
 from granchain_core.scene.effects import Effect
+from granchain_core.scene.laws import LAWS, Law
 
 TABLE = [(name, law.slot, law.exponent) for name, law in LAWS.items()]
 

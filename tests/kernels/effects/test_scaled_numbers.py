@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from granchain_core import Scene, scene
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.effects.dissipation import damping
 from granchain_core.kernels.equations.motion import contact_force, motion, stored_energy
-from granchain_core.scaling import scale_chain
 from granchain_core.scene import Bead
 
 

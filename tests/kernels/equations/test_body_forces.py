@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from granchain_core import scene
+from granchain_core.integrate.scaling import ScaledChain, scale_chain
 from granchain_core.kernels.effects.energy_account import EnergyAccount
 from granchain_core.kernels.equations import body_forces
-from granchain_core.scaling import ScaledChain, scale_chain
 
 pytestmark = pytest.mark.quick
 
@@ -49,7 +49,7 @@ def test_every_term_is_asked_for_each_bead(monkeypatch: pytest.MonkeyPatch, chai
 
 def test_the_step_is_that_of_the_strongest_of_unequal_forces(monkeypatch: pytest.MonkeyPatch) -> None:
     """A force −c_i v_i on beads of one mass damps by the largest c_i."""
-    import granchain_core.scaling as module
+    import granchain_core.integrate.scaling as module
 
     coefficients = np.array([0.0, 1.0, 7.0, 2.0, 0.0])
 

@@ -11,9 +11,9 @@ import uv_equations as equations
 from chains import LAWS
 
 from granchain_core import scene
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.equations.motion import contact_force, evaluate_at_phase, motion
-from granchain_core.scaling import scale_chain
 
 #: law, tension, kappa, preload, wall: all structures, each wall often enough
 CASES = [(law, tension, kappa, preload, wall)

@@ -11,7 +11,7 @@ from granchain_core import Run, Scene, resonance_curve, run, scene, settled
 from granchain_core.integrate import METHODS, Engine, Setting, adaptive_setting, fixed_step_setting
 from granchain_core.integrate.methods import jump_errors
 from granchain_core.parameter_map import diagram
-from granchain_core.state import State
+from granchain_core.scene.state import State
 
 #: The methods that locate contact events.
 LOCATING = [name for name, method in METHODS.items() if method.adaptive or method.converges_regularly]

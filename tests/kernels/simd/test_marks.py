@@ -7,8 +7,8 @@ from typing import NamedTuple
 import pytest
 
 from granchain_core import scene
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.compiling import jit
-from granchain_core.scaling import scale_chain
 
 
 class Slot(NamedTuple):

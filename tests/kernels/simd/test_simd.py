@@ -9,17 +9,17 @@ import pytest
 from chains import LAWS
 
 from granchain_core import Scene, iter_curve, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import Batch, can_share_batch
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.rk4.short_chain import CHAIN_WIDTHS
-from granchain_core.scaling import scale_chain
 from granchain_core.scene.effects import EFFECTS
-from granchain_core.state import rest
+from granchain_core.scene.state import rest
 from granchain_core.steady.batch.engine import batch_results
 from granchain_core.steady.curve.curve import CurvePoint
 from granchain_core.steady.settling.single_chain import settle_to_forces
-from granchain_core.stop import Stop
 
 _BOTH = {"kappa": 0.001, "F0": 0.5}
 #: The chains in which a law other than the linear one stands, so that a law which is added is examined too.

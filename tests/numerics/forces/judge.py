@@ -13,7 +13,7 @@ from granchain_core.errors import OverBudget
 from granchain_core.parameter_map.cells import ERRORS, cell_of
 from granchain_core.parameter_map.compute import iter_diagram
 from granchain_core.parameter_map.grid import Axis, Grid
-from granchain_core.state import State
+from granchain_core.scene.state import State
 
 from .draw import LONGEST, Draw, draw, draw_steady, strength
 from .located import TooLong, located

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from granchain_core import Scene
-from granchain_core.state import State
+from granchain_core.scene.state import State
 
 from .events import OVERLAP, after, begin, first_event, missing
 from .step import (

@@ -33,7 +33,7 @@ from app.session import starts
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
 from app.session.share import LONGEST, PINS
 from granchain_core.orbits.branch.branch import MOST_POINTS
-from granchain_core.quantities import QUANTITIES
+from granchain_core.scene.quantities import QUANTITIES
 
 SECRET = b"a secret of this test alone, long enough"
 

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .scene import Scene
-from .tables import Column, Labelled, axis
+from ..scene import Scene
+from ..tables import Column, Labelled, axis
 
 #: Most recorded values of one motion: samples times beads.
 MOST_RECORDED = 50_000_000

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .errors import Cancelled
+from ..errors import Cancelled
 
 
 class Stop:

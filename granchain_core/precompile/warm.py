@@ -18,19 +18,26 @@ from pathlib import Path
 
 import numpy as np
 
-from .accuracy.effect_cost import CODE, MOTION
-from .accuracy.work_precision import compile_methods
-from .child_processes import pool, starting
-from .integrate import Engine, Setting, adaptive_setting, fixed_step_setting, following_setting
-from .integrate.batch import Batch, can_share_batch, is_uniform
-from .kernels.compiling.cache_folder import CACHE_FOLDER, MARK
-from .kernels.rk4.short_chain import CHAIN_WIDTHS
-from .observe.pair import Pair
-from .orbits.branch.axis import KnobAxis
-from .orbits.branch.equations import BranchEquations
-from .orbits.branch.point import record_along
-from .orbits.branch.quick import quick_steps
-from .orbits.stroboscopic_map import StroboscopicMap
+from ..accuracy.effect_cost import CODE, MOTION
+from ..accuracy.work_precision import compile_methods
+from ..execution.child_processes import pool, starting
+from ..execution.stop import Stop
+from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting, following_setting
+from ..integrate.batch import Batch, can_share_batch, is_uniform
+from ..integrate.scaling import scale_chain
+from ..kernels.compiling.cache_folder import CACHE_FOLDER, MARK
+from ..kernels.rk4.short_chain import CHAIN_WIDTHS
+from ..observe.pair import Pair
+from ..orbits.branch.axis import KnobAxis
+from ..orbits.branch.equations import BranchEquations
+from ..orbits.branch.point import record_along
+from ..orbits.branch.quick import quick_steps
+from ..orbits.stroboscopic_map import StroboscopicMap
+from ..scene import Scene, scene
+from ..scene.effects import effects_of
+from ..scene.state import rest
+from ..steady.lyapunov import growth_along
+from ..steady.regime_criteria import SLOW_RECORD, converging, find_period, return_distance
 from .pieces import (
     ACCURACY_KERNELS,
     ADAPTIVE_KERNELS,
@@ -45,13 +52,6 @@ from .pieces import (
     ORBIT_KERNELS,
     REGIME_KERNELS,
 )
-from .scaling import scale_chain
-from .scene import Scene, scene
-from .scene.effects import effects_of
-from .state import rest
-from .steady.lyapunov import growth_along
-from .steady.regime_criteria import SLOW_RECORD, converging, find_period, return_distance
-from .stop import Stop
 
 
 def structure(shown: Scene) -> str:

@@ -9,7 +9,7 @@ import operator
 from collections.abc import Iterable
 from typing import Any
 
-from .errors import BadInput
+from ..errors import BadInput
 
 
 def unknown_name(kind: str, name: object, known: Iterable[str]) -> BadInput:

@@ -14,21 +14,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .errors import BadInput
-from .kernels.compiling.entry import Entries, types_of
-from .kernels.effects.contact import Chain
-from .kernels.effects.dissipation import exponent
-from .kernels.effects.driver import Harmonic
-from .kernels.effects.energy_account import EnergyAccount
-from .kernels.effects.foundation import Foundation
-from .kernels.effects.preload import Preload
-from .kernels.effects.tension import new_tension_cut
-from .kernels.equations.body_forces import add_force_slope
-from .kernels.equations.motion import Forces, Slots, evaluate_at_phase
-from .laws import LAWS, require_complete
-from .scene import Scene
-from .scene.effects import ACCOUNT, ALWAYS, EFFECTS, effects_of
-from .state import State
+from ..errors import BadInput
+from ..kernels.compiling.entry import Entries, types_of
+from ..kernels.effects.contact import Chain
+from ..kernels.effects.dissipation import exponent
+from ..kernels.effects.driver import Harmonic
+from ..kernels.effects.energy_account import EnergyAccount
+from ..kernels.effects.foundation import Foundation
+from ..kernels.effects.preload import Preload
+from ..kernels.effects.tension import new_tension_cut
+from ..kernels.equations.body_forces import add_force_slope
+from ..kernels.equations.motion import Forces, Slots, evaluate_at_phase
+from ..scene import Scene
+from ..scene.effects import ACCOUNT, ALWAYS, EFFECTS, effects_of
+from ..scene.laws import LAWS, require_complete
+from ..scene.state import State
 
 #: Step of the fixed-step method in scaled time where overlaps are about one drive amplitude. Its usual error is
 #: `_FIXED_STEP_ERROR` in integrate/methods.py.

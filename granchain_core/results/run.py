@@ -9,17 +9,17 @@ from typing import Protocol
 
 import numpy as np
 
-from .errors import BadInput
-from .integrate import Counts
-from .integrate.engine import Engine
-from .kernels.samples import Samples
+from ..errors import BadInput
+from ..integrate import Counts
+from ..integrate.engine import Engine
+from ..kernels.samples import Samples
+from ..scene import Scene
+from ..scene.state import State
+from ..scene.validity import overlap_warnings
+from ..tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
+from ..tables.provenance import Attribute
 from .recorded_motion import RecordedMotion, motion_columns, time_axis
 from .regime import Regime
-from .scene import Scene
-from .scene.validity import overlap_warnings
-from .state import State
-from .tables import MAXIMA, Column, Table, axis, bead_axis, contact_axis, force_columns, or_nan, provenance
-from .tables.provenance import Attribute
 
 #: Where a run can have begun, its `start`: at rest, with the initial velocities of its scene, or in a given state.
 AT_REST, INITIAL_VELOCITY, GIVEN_STATE = "rest", "initial velocity", "given state"

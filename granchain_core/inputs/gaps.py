@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .errors import BadInput
+from ..errors import BadInput
 
 #: A spacing of more than this factor times the median one is a gap.
 GAP = 1.5

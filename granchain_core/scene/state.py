@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .errors import BadInput
-from .scene import Scene
+from ..errors import BadInput
+from .model import Scene
 
 
 @dataclass(frozen=True, eq=False)

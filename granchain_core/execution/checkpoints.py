@@ -17,7 +17,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from .errors import BadInput
+from ..errors import BadInput
 
 #: Pieces in one block at most.
 BLOCK = 128

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .errors import BadInput
+from ..errors import BadInput
+from ..inputs.text import number_in
 from .laws import LAWS
-from .text import number_in
 
 
 @dataclass(frozen=True)
