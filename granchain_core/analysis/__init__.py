@@ -1,1 +1,1 @@
-"""Analyses, a module each: spectrum, Lyapunov spectrum, rotation number, strobes over a knob, basins, pulses, bands."""
+"""Analyses, a module each: spectrum, Lyapunov spectrum, rotation number, bifurcation diagram, basins, pulses, bands."""

@@ -42,9 +42,9 @@ class Dop853Stepper:
             k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
             slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
             next_step=np.array([min(_FIRST_STEP, largest)]), forces=scaled.forces())
-        self.structure = self._types()
+        self.structure = self.kernel_types()
 
-    def _types(self) -> Any:
+    def kernel_types(self) -> Any:
         """A key for the types of what kernels are given, by which their compiled versions are found."""
         return types_of((self.method, self.scaled.slots, self.work))
 
@@ -57,7 +57,7 @@ class Dop853Stepper:
         """Go on with other values in the same slots, or with other effects."""
         self.scaled = scaled
         self.work = self.work._replace(forces=scaled.forces())
-        self.structure = self._types()
+        self.structure = self.kernel_types()
 
     def prepare(self, y: np.ndarray) -> None:
         """Begin from a new state: errors are measured on its scale."""

@@ -32,8 +32,9 @@ class Dop853RootStepper(Dop853Stepper):
         self._vectors = _workspace(scaled)
         super().__init__(tolerance, scaled, samples)
 
-    def _types(self) -> Any:
-        return super()._types(), types_of(self._vectors)
+    def kernel_types(self) -> Any:
+        """A key for the types of what kernels are given, the chain's vectors included."""
+        return super().kernel_types(), types_of(self._vectors)
 
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects. Raises `BadInput`."""
