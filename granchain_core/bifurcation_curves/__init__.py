@@ -1,4 +1,4 @@
-"""Bifurcation curves over two knobs: folds, period doublings, Neimark–Sacker points; from a point or a parameter map."""
+"""Bifurcation curves over two knobs: folds, period doublings, Neimark–Sacker points, from a point or parameter map."""
 
 from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
 from .in_map import BifurcationCurve, bifurcation_curves
