@@ -38,6 +38,8 @@ MOST_PERIODS = 20_000
 _TRANSIENT = 1.0 / 3.0
 #: Fewest strobes from which a rate is taken.
 _FEWEST = 4
+#: Standard errors within which a rate is not told from 1 where no multiplier is known.
+_UNCERTAIN = 3.0
 #: Part that a fit by one multiplier may leave unexplained before two are fitted.
 _ONE_IS_ENOUGH = 0.03
 
@@ -74,6 +76,8 @@ class Twin:
         Share of one shift of all beads in the last linear difference, 0 to 1.
     cost : Cost
         Computing time, steps and evaluations.
+    rate_error : float or None
+        Standard error of the logarithm of `rate`, from the scatter of the distances about the fit.
     """
 
     scene: Scene
@@ -92,6 +96,7 @@ class Twin:
     measured: tuple[complex, ...]
     translation: float
     cost: Cost
+    rate_error: float | None = None
 
     @property
     def leading(self) -> complex | None:
@@ -113,9 +118,19 @@ class Twin:
         return (self.observer - self.chain).mean(axis=1)
 
     @property
+    def in_step(self) -> bool:
+        """Whether the observer began apart from its chain and is in step with it, within rounding, for a whole period."""
+        samples = round(self.scene.period / (self.time[1] - self.time[0]))
+        rounding = SYNCHRONISED * np.sqrt(2.0 * self.scene.N)  # that of one number, in a distance of 2N of them
+        return bool(self.distance[0] > LEAST_DISTANCE and self.distance[-samples:].max() < rounding)
+
+    @property
     def verdict(self) -> str:
         """"synchronises", "drifts", "breaks down" (it grows apart otherwise) or "neither yet" (docs/observers.md)."""
-        if self.rate is None or self._contradicted:  # what the multiplier says will be seen later
+        if self.rate is None:
+            unstable = self.leading is not None and abs(self.leading) > 1.0
+            return "synchronises" if self.in_step and not unstable else "neither yet"
+        if self._contradicted or self._uncertain:  # what the multiplier says will be seen later
             return "neither yet"
         if self.rate <= 1.0:
             return "synchronises"
@@ -129,17 +144,30 @@ class Twin:
         return abs(self.leading) < 1.0 if self.rate > 1.0 else abs(self.leading) > 1.0
 
     @property
+    def _uncertain(self) -> bool:
+        """Whether neither a multiplier nor the rate itself says on which side of 1 it is."""
+        if self.rate is None or self.leading is not None or self.rate_error is None:
+            return False
+        return bool(abs(np.log(self.rate)) <= _UNCERTAIN * self.rate_error)
+
+    @property
     def sentence(self) -> str:
         """The outcome in words."""
+        every = "period" if self.period == 1 else f"{self.period} periods"
+        if self.rate is None and self.verdict == "synchronises":
+            passed = round(self.time[-1] / self.scene.period)
+            return (f"The observer synchronises: after {passed} periods it is in step within rounding, too soon for a "
+                    "rate.")
         if self.rate is None:
             return "The distance between observer and chain shows no clear rate; give more periods."
-        every = "period" if self.period == 1 else f"{self.period} periods"
         factor = f"the distance is multiplied by {self.rate:.4g} every {every}"
         if self._contradicted and self.leading is not None:
             size = abs(self.leading)
             side = "inside" if size < 1.0 else "outside"
             return (f"So far {factor}, but the leading multiplier, of modulus {size:.4g}, is {side} the unit circle; "
                     "give more periods.")
+        if self._uncertain:
+            return f"So far {factor}, which may be 1 within its error of {self.rate_error:.1g}; give more periods."
         if self.verdict == "synchronises":
             return f"The observer synchronises: {factor}."
         return f"The observer {departure_words(self.verdict == 'drifts', self.leading)}; {factor}."
@@ -170,7 +198,8 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
     chain, observer = slice(0, beads), slice(beads + 1, 2 * beads + 1)
     strobes = difference[:: n * samples]
     window = linear_window(distance[:: n * samples])
-    rate, measured = rates(strobes[window[0] : window[1]])
+    linear = strobes[window[0] : window[1]]
+    (rate, rate_error), measured = rate_of(linear), multipliers_of(linear)
     return Twin(
         scene=scene, orbit=orbit, period=n, time=np.arange(len(u)) / samples * scene.period,
         chain=u[:, chain] * scales.length, observer=u[:, observer] * scales.length,
@@ -178,7 +207,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
         observer_output_force=force[:, -1] * scales.force, distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
         translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
-        cost=Cost.of(spent.seconds, pair.engine.counts, ADAPTIVE),
+        cost=Cost.of(spent.seconds, pair.engine.counts, ADAPTIVE), rate_error=rate_error,
     )
 
 
@@ -220,22 +249,35 @@ def linear_window(distance: np.ndarray) -> tuple[int, int]:
     return first + int(_TRANSIENT * (end - first)), end
 
 
-def rates(strobes: np.ndarray) -> tuple[float | None, tuple[complex, ...]]:
-    """Factor of the distance per strobe (least squares of its logarithm) and one or two leading multipliers.
+def rate_of(strobes: np.ndarray) -> tuple[float | None, float | None]:
+    """Factor of the distance per strobe, and the standard error of its logarithm; None for both of too few strobes.
 
-    `strobes` are successive differences (P, 2N). Where one real multiplier explains them no second one is fitted.
+    `strobes` are successive differences (P, 2N). The logarithm of their length is fitted by a straight line.
     """
     if len(strobes) < _FEWEST:
-        return None, ()
-    size = np.sqrt((strobes**2).sum(axis=1))
-    rate = float(np.exp(np.polyfit(np.arange(len(size)), np.log(size), 1)[0]))
+        return None, None
+    line, covariance = np.polyfit(np.arange(len(strobes)), np.log(_lengths(strobes)), 1, cov=True)
+    return float(np.exp(line[0])), float(np.sqrt(covariance[0, 0]))
+
+
+def multipliers_of(strobes: np.ndarray) -> tuple[complex, ...]:
+    """One or two leading multipliers of successive differences (P, 2N), the larger first; none of too few.
+
+    Where one real multiplier explains them no second one is fitted.
+    """
+    if len(strobes) < _FEWEST:
+        return ()
+    size = _lengths(strobes)
     before, after = strobes[:-1] / size[:-1, None], strobes[1:] / size[:-1, None]
     alone = float((before * after).sum() / (before**2).sum())
     left = float(np.sqrt(((after - alone * before) ** 2).sum() / (after**2).sum()))
     if left < _ONE_IS_ENOUGH:
-        return rate, (complex(alone),)
+        return (complex(alone),)
     unit = 1.0 / size[:-2, None]
     terms = np.stack([(strobes[1:-1] * unit).ravel(), (strobes[:-2] * unit).ravel()], axis=1)
     a, b = np.linalg.lstsq(terms, (strobes[2:] * unit).ravel(), rcond=None)[0]
-    found = sorted((complex(z) for z in np.roots([1.0, -a, -b])), key=abs, reverse=True)
-    return rate, tuple(found)
+    return tuple(sorted((complex(z) for z in np.roots([1.0, -a, -b])), key=abs, reverse=True))
+
+
+def _lengths(strobes: np.ndarray) -> np.ndarray:
+    return np.asarray(np.sqrt((strobes**2).sum(axis=1)))

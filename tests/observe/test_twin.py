@@ -12,7 +12,7 @@ from granchain_core import BadInput, Scene, scene
 from granchain_core.observe import Twin, observer_stability, twin
 from granchain_core.observe.drift import TRANSLATION, is_drift
 from granchain_core.observe.pair import Pair
-from granchain_core.observe.twin import rates
+from granchain_core.observe.twin import multipliers_of, rate_of
 from granchain_core.orbits import periodic_orbit
 from granchain_core.scene.state import rest
 
@@ -149,12 +149,40 @@ def test_a_chain_that_is_not_periodic_has_a_rate_and_no_multiplier() -> None:
 
 def test_one_multiplier_is_not_fitted_by_two() -> None:
     one = 4.4 ** np.arange(8)[:, None] * np.arange(1.0, 7.0)
-    rate, found = rates(one)
-    assert rate == pytest.approx(4.4) and found == (pytest.approx(4.4),)
+    rate, error = rate_of(one)
+    assert rate == pytest.approx(4.4) and error == pytest.approx(0.0, abs=1e-12)
+    assert multipliers_of(one) == (pytest.approx(4.4),)
     turned = np.stack([0.9**k * np.array([np.cos(k), np.sin(k), np.cos(k + 1.0)]) for k in range(12)])
-    _, found = rates(turned)
+    found = multipliers_of(turned)
     assert len(found) == 2 and abs(found[0]) == pytest.approx(0.9) and abs(np.angle(found[0])) == pytest.approx(1.0)
-    assert rates(one[:3]) == (None, ())
+    assert rate_of(one[:3]) == (None, None) and multipliers_of(one[:3]) == ()
+
+
+def test_a_rate_near_one_decides_nothing_without_a_multiplier() -> None:
+    """Distances that scatter by a tenth about a constant: either sign of the slope is within its error."""
+    found = twin(CHAOTIC, 1e-9, 40, samples=8)
+    distances = np.exp(0.1 * np.random.default_rng(1).standard_normal(12))[:, None]
+    rate, error = rate_of(distances)
+    assert rate is not None and error is not None and abs(np.log(rate)) < 3.0 * error
+    near = replace(found, rate=rate, rate_error=error)
+    assert near.verdict == "neither yet" and "may be 1 within its error" in near.sentence
+    assert replace(found, rate=0.9, rate_error=0.01).verdict == "synchronises"
+    assert replace(found, rate=1.1, rate_error=0.01).verdict in ("drifts", "breaks down")
+
+
+def test_an_observer_that_is_in_step_before_a_rate_shows_synchronises() -> None:
+    """Two strobes are linear, and the next is rounding; one that began in step has shown nothing."""
+    slow = twin(FOUNDED, 1e-6, 6, samples=8)
+    fast = np.repeat([1e-3, 1e-7, 1e-15], 8)
+    time = np.arange(24) / 8 * FOUNDED.period
+    outside = replace(slow, time=time, distance=fast, rate=None, rate_error=None)
+    inside = replace(outside, orbit=None)
+    assert inside.in_step and inside.verdict == "synchronises" and "in step within rounding" in inside.sentence
+    assert not replace(inside, distance=np.zeros(24)).in_step
+    assert replace(inside, distance=np.zeros(24)).verdict == "neither yet"
+    assert not replace(inside, distance=np.full(24, 1e-6)).in_step
+    unstable = replace(slow.orbit, observer_multipliers=np.full(2 * FOUNDED.N, 2.0)) if slow.orbit is not None else None
+    assert unstable is not None and replace(outside, orbit=unstable).verdict == "neither yet"
 
 
 @pytest.mark.parametrize(("call", "sentence"), [

@@ -119,8 +119,7 @@ class ObserverRun:
         linear = self._linear
         if len(self.strobes) < 8 * self._every or len(linear) < self._orbits_needed:
             return None
-        _, found = rates(linear)
-        return max((abs(z) ** (1.0 / self._every) for z in found), default=None)
+        return max((abs(z) ** (1.0 / self._every) for z in multipliers_of(linear)), default=None)
 
     @property
     def _orbits_needed(self) -> float:
