@@ -65,10 +65,10 @@ class ProbePage {
 }
 
 export function render({ model }) {
-  const page = window.granchain;
+  const { granchain } = window;
   const probe = new ProbePage(model);
-  page.on("overlay", () => probe.show());
-  page.on("bead", (bead) => model.send_msg({ do: "probe-bead", bead }));
+  granchain.on("overlay", () => probe.show());
+  granchain.on("bead", (bead) => model.send_msg({ do: "probe-bead", bead }));
   model.on("state", () => probe.show());
   model.on("figures", () => probe.show());
   model.on("msg:custom", (message) => {

@@ -1,7 +1,7 @@
 // Watches the connection. While the server does not answer, pictures and knobs may not belong together. So the pictures
 // are grey, the knobs are disabled, and a banner says so. Once the server is back, the page reloads from its link.
 (() => {
-  const page = window.granchain;
+  const { granchain } = window;
   // All in milliseconds; PING_EVERY + PING_TIMEOUT stays below 2 s.
   const TICK = 100, // how often the state is checked
     PING_EVERY = 300, // from an answer to the next ping
@@ -13,128 +13,194 @@
   const AGAIN = "granchain-again";
   const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
 
-  const say = (sentence) => {
+  const showBanner = (sentence) => {
     const banner = document.getElementById("lost");
     banner.textContent = sentence;
     banner.hidden = !sentence;
   };
-  const show = (lost) => {
-    page.lost = lost;
-    document.getElementById("page").classList.toggle("lost", lost);
-    for (const part of PARTS) document.getElementById(part).inert = lost;
-    say(lost ? LOST : "");
-    page.emit("lost", lost);
-  };
 
-  let ping = null,
-    closed = false;
-  // Times in milliseconds.
-  let sincePing = null, // since the ping that is unanswered; null if there is none
-    sinceAnswer = 0, // since the last answer
-    sinceTry = RETRY_EVERY, // since the last attempt to reach a lost server
-    sinceReached = null; // since a lost server answered HTTP again; null while it does not
+  /** The last pictures as one image, which a reloaded page shows in grey until it has its own. */
+  class LastPictures {
+    #image;
 
-  // The last pictures as one image, shown in grey until the rebuilt page has its own.
-  const canvases = (node) =>
-    [...node.querySelectorAll("*")].flatMap((element) => [
-      ...(element.tagName === "CANVAS" ? [element] : []),
-      ...(element.shadowRoot ? canvases(element.shadowRoot) : []),
-    ]);
-  const snapshot = () => {
-    const canvas = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
-    if (!page.overlay)
-      for (const one of ["stage", "curve"].flatMap((id) => canvases(document.getElementById(id)))) {
-        const { x, y, width, height } = one.getBoundingClientRect();
-        if (width && height && one.width && one.height) canvas.getContext("2d").drawImage(one, x, y, width, height);
+    constructor(src) {
+      this.#image = Object.assign(new Image(), { id: "last-pictures", alt: "", src });
+    }
+
+    show() {
+      document.body.append(this.#image);
+    }
+
+    remove() {
+      this.#image.remove();
+    }
+
+    /** The pictures that are on the screen, as the address of an image. */
+    static taken() {
+      const canvas = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
+      if (!granchain.overlay)
+        for (const one of ["stage", "curve"].flatMap((id) => LastPictures.#canvases(document.getElementById(id)))) {
+          const { x, y, width, height } = one.getBoundingClientRect();
+          if (width && height && one.width && one.height) canvas.getContext("2d").drawImage(one, x, y, width, height);
+        }
+      return canvas.toDataURL("image/webp", 0.7);
+    }
+
+    static #canvases(node) {
+      return [...node.querySelectorAll("*")].flatMap((element) => [
+        ...(element.tagName === "CANVAS" ? [element] : []),
+        ...(element.shadowRoot ? LastPictures.#canvases(element.shadowRoot) : []),
+      ]);
+    }
+  }
+
+  /** Asks the server again and again whether it answers; shows that it does not, and reloads the page once it does. */
+  class Connection {
+    /** What the page before the reload kept; null if it is no reload. */
+    again = Connection.#taken();
+    #kept = {};
+    #lost = false;
+    #leaving = false;
+    #ping = null;
+    #closed = false; // whether the socket is
+    #lastTick = performance.now();
+    // Times in milliseconds.
+    #sincePing = null; // since the ping that is unanswered; null if there is none
+    #sinceAnswer = 0; // since the last answer
+    #sinceTry = RETRY_EVERY; // since the last attempt to reach a lost server
+    #sinceReached = null; // since a lost server answered HTTP again; null while it does not
+
+    constructor() {
+      if (this.again) this.#showLastPictures();
+      setInterval(() => this.#tick(), TICK);
+    }
+
+    /** Whether the server does not answer. */
+    get lost() {
+      return this.#lost;
+    }
+
+    /** Whether the page is being reloaded after a lost connection. */
+    get leaving() {
+      return this.#leaving;
+    }
+
+    /** What the page needs besides its link when it is reloaded. */
+    get kept() {
+      return this.#kept;
+    }
+
+    keep(values) {
+      this.#kept = { ...this.#kept, ...values };
+    }
+
+    /** Begins to watch; `send` sends a ping. */
+    connect(send) {
+      this.#ping = send;
+      for (const one of window.Bokeh.documents)
+        one.on_event("connection_lost", () => {
+          this.#closed = true;
+          this.#tick();
+        });
+    }
+
+    /** The server has answered. If its socket was only silent, the page goes on: the server has read all that was sent. */
+    answerReceived() {
+      this.#sincePing = null;
+      this.#sinceAnswer = 0;
+      this.#sinceReached = null;
+      if (this.#lost && !this.#closed) this.#setLost(false);
+    }
+
+    // A late tick counts as four at most: the server is not to blame if the computer slept or the page is busy.
+    #tick() {
+      const now = performance.now(),
+        passed = Math.min(now - this.#lastTick, 4 * TICK);
+      this.#lastTick = now;
+      if (this.#leaving || !this.#ping || (document.hidden && !this.#closed)) return;
+      this.#countSilence(passed);
+      if (!this.#lost && (this.#closed || this.#sincePing > PING_TIMEOUT)) this.#setLost(true);
+      if (!this.#lost) return;
+      if (this.#sinceReached !== null) this.#sinceReached += passed;
+      this.#sinceTry += passed;
+      if (this.#sinceTry >= RETRY_EVERY) this.#tryAgain();
+    }
+
+    // Sends the next ping, or counts how long the last one has been unanswered.
+    #countSilence(passed) {
+      const resting = !this.#closed && this.#sincePing === null;
+      if (resting) this.#sinceAnswer += passed;
+      if (resting && this.#sinceAnswer >= PING_EVERY) {
+        this.#sincePing = 0;
+        this.#ping();
+      } else if (this.#sincePing !== null) this.#sincePing += passed;
+    }
+
+    #setLost(lost) {
+      this.#lost = lost;
+      document.getElementById("page").classList.toggle("lost", lost);
+      for (const part of PARTS) document.getElementById(part).inert = lost;
+      showBanner(lost ? LOST : "");
+      granchain.emit("lost", lost);
+    }
+
+    async #tryAgain() {
+      this.#sinceTry = -Infinity; // no second attempt while this one is under way
+      const alive = await Connection.#reach();
+      this.#sinceTry = 0;
+      if (!alive) this.#sinceReached = null;
+      else if (this.#closed || this.#sinceReached > SILENT_SOCKET) this.#reload();
+      else this.#sinceReached ??= 0;
+    }
+
+    #reload() {
+      this.#leaving = true;
+      try {
+        const { at } = granchain.steps;
+        sessionStorage.setItem(AGAIN, JSON.stringify({ ...this.#kept, at, snapshot: LastPictures.taken() }));
+      } catch {
+        /* no room to keep them: the sentence and the last pictures are missing for a moment */
       }
-    return canvas.toDataURL("image/webp", 0.7);
-  };
-  const rebuild = () => {
-    page.leaving = true;
-    try {
-      const { at } = page.steps;
-      sessionStorage.setItem(AGAIN, JSON.stringify({ ...page.kept, at, snapshot: snapshot() }));
-    } catch {
-      /* no room to keep them: the sentence and the last pictures are missing for a moment */
+      location.replace(granchain.address.url());
     }
-    location.replace(page.address());
-  };
-  const reach = async () => {
-    try {
-      const { status } = await fetch(new URL("liveness", location.href), {
-        cache: "no-store",
-        signal: AbortSignal.timeout(2 * PING_TIMEOUT),
+
+    #showLastPictures() {
+      const pictures = new LastPictures(this.again.snapshot ?? "");
+      document.addEventListener("DOMContentLoaded", () => {
+        showBanner(BACK);
+        pictures.show();
       });
-      // A server without health checks answers 404, which will do; a proxy whose server is down answers 502.
-      return status < 500;
-    } catch {
-      return false;
+      granchain.on("painted", () => {
+        pictures.remove();
+        if (!this.#lost) showBanner("");
+      });
     }
-  };
-  const tryAgain = async () => {
-    sinceTry = -Infinity; // no second attempt while this one is under way
-    const alive = await reach();
-    sinceTry = 0;
-    if (!alive) sinceReached = null;
-    else if (closed || sinceReached > SILENT_SOCKET) rebuild();
-    else sinceReached ??= 0;
-  };
 
-  // A late tick counts as four at most: the server is not to blame if the computer slept or the page is busy.
-  let last = performance.now();
-  const tick = () => {
-    const now = performance.now(),
-      passed = Math.min(now - last, 4 * TICK);
-    last = now;
-    if (page.leaving || !ping || (document.hidden && !closed)) return;
-    const resting = !closed && sincePing === null;
-    if (resting) sinceAnswer += passed;
-    if (resting && sinceAnswer >= PING_EVERY) {
-      sincePing = 0;
-      ping();
-    } else if (sincePing !== null) sincePing += passed;
-    if (!page.lost && (closed || sincePing > PING_TIMEOUT)) show(true);
-    if (!page.lost) return;
-    if (sinceReached !== null) sinceReached += passed;
-    sinceTry += passed;
-    if (sinceTry >= RETRY_EVERY) tryAgain();
-  };
-  setInterval(tick, TICK);
+    static async #reach() {
+      try {
+        const { status } = await fetch(new URL("liveness", location.href), {
+          cache: "no-store",
+          signal: AbortSignal.timeout(2 * PING_TIMEOUT),
+        });
+        // A server without health checks answers 404, which will do; a proxy whose server is down answers 502.
+        return status < 500;
+      } catch {
+        return false;
+      }
+    }
 
-  // The server has answered. If its socket was only silent, the page goes on, as the server has read all that was sent.
-  const answerReceived = () => {
-    sincePing = null;
-    sinceAnswer = 0;
-    sinceReached = null;
-    if (page.lost && !closed) show(false);
-  };
-  const connect = (send) => {
-    ping = send;
-    for (const one of window.Bokeh.documents)
-      one.on_event("connection_lost", () => {
-        closed = true;
-        tick();
-      });
-  };
-
-  let again = null;
-  try {
-    again = JSON.parse(sessionStorage.getItem(AGAIN));
-    sessionStorage.removeItem(AGAIN);
-  } catch {
-    /* nothing kept */
+    // What the page before kept, which is taken once.
+    static #taken() {
+      try {
+        const kept = JSON.parse(sessionStorage.getItem(AGAIN));
+        sessionStorage.removeItem(AGAIN);
+        return kept;
+      } catch {
+        return null;
+      }
+    }
   }
-  page.steps.begin(again);
-  if (again) {
-    const before = Object.assign(new Image(), { id: "last-pictures", alt: "", src: again.snapshot ?? "" });
-    document.addEventListener("DOMContentLoaded", () => {
-      say(BACK);
-      document.body.append(before);
-    });
-    page.on("painted", () => {
-      before.remove();
-      if (!page.lost) say("");
-    });
-  }
-  Object.assign(page, { again, answerReceived, connect });
+
+  granchain.connection = new Connection();
+  granchain.steps.begin(granchain.connection.again);
 })();

@@ -2,152 +2,176 @@
 // need. The shim would fetch and rewrite every module: 0.2 s of each opening.
 window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); // the maps that Panel adds are empty
 
-// What the parts of the page share in the browser: events, what pages publish, the theme and the drawer of knobs. All
-// members of `window.granchain` are declared at the end.
 window.granchain = (() => {
-  const listeners = new Map();
-  const on = (name, listener) => {
-    if (!listeners.has(name)) listeners.set(name, new Set());
-    listeners.get(name).add(listener);
-  };
-  const emit = (name, detail) => {
-    for (const listener of listeners.get(name) ?? []) listener(detail);
-  };
-
-  // What pages publish for other parts, such as their tabs. It is kept by page and announced as the event "page:NAME",
-  // which cannot be confused with an event that has the name of a page.
-  const pages = new Map();
-  const publish = (name, data) => {
-    pages.set(name, data);
-    emit(`page:${name}`, data);
-  };
-
   const KEPT_AS = "granchain-look"; // the theme, in the browser from visit to visit
   const THEMES = ["light", "dark", "projector"];
-  const remembered = () => {
-    try {
-      return localStorage.getItem(KEPT_AS);
-    } catch {
-      return null;
+
+  /** Tells scripts what happens in others: a script listens to an event by its name, and any script can cause it. */
+  class Events {
+    #listeners = new Map();
+
+    /** Calls `listener` with the detail of every event of this name. */
+    on(name, listener) {
+      if (!this.#listeners.has(name)) this.#listeners.set(name, new Set());
+      this.#listeners.get(name).add(listener);
     }
-  };
-  const system = () => (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
-  let chosen = false; // whether the visitor has chosen the theme on this page
-  const setTheme = (theme, keep) => {
-    if (!THEMES.includes(theme)) return;
-    document.documentElement.dataset.theme = theme;
-    chosen = chosen || keep;
-    if (keep)
+
+    /** Calls all who listen to this name. */
+    emit(name, detail) {
+      for (const listener of this.#listeners.get(name) ?? []) listener(detail);
+    }
+  }
+
+  /** The theme: what the visitor has chosen, now or at an earlier visit, else that of the system. */
+  class Theme {
+    names = THEMES;
+    #events;
+    #chosen = false;
+    #first;
+
+    constructor(events) {
+      this.#events = events;
+      const kept = Theme.#kept();
+      this.set(THEMES.includes(kept) ? kept : Theme.#ofSystem(), false);
+      this.#first = this.name;
+      matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+        if (!Theme.#kept()) this.set(Theme.#ofSystem(), false);
+      });
+    }
+
+    get name() {
+      return document.documentElement.dataset.theme;
+    }
+
+    /** Whether the visitor has chosen the theme on this page, or the address has it. */
+    get chosen() {
+      return this.#chosen;
+    }
+
+    /** Changes the theme and announces it as the event "theme"; a name that no theme has changes nothing. */
+    set(name, keep) {
+      if (!THEMES.includes(name)) return;
+      document.documentElement.dataset.theme = name;
+      this.#chosen ||= keep;
+      if (keep)
+        try {
+          localStorage.setItem(KEPT_AS, name);
+        } catch {
+          /* private browsing keeps nothing */
+        }
+      this.#events.emit("theme", name);
+    }
+
+    /** After a step back or forward: takes the theme of the address or, if it has none, the one before any choice. */
+    restore(name) {
+      this.#chosen = THEMES.includes(name);
+      this.set(this.#chosen ? name : this.#first, false);
+    }
+
+    /** Chooses the next in the list. */
+    next() {
+      this.set(THEMES[(THEMES.indexOf(this.name) + 1) % THEMES.length], true);
+    }
+
+    static #kept() {
       try {
-        localStorage.setItem(KEPT_AS, theme);
+        return localStorage.getItem(KEPT_AS);
       } catch {
-        /* private browsing keeps nothing */
+        return null;
       }
-    emit("theme", theme);
-  };
-  // After a step back or forward: takes the theme of the address or, if it has none, the one before any choice.
-  const restoreTheme = (theme) => {
-    chosen = THEMES.includes(theme);
-    setTheme(chosen ? theme : first, false);
-  };
-  const theme = () => document.documentElement.dataset.theme;
-  setTheme(THEMES.includes(remembered()) ? remembered() : system(), false);
-  const first = theme();
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-    if (!remembered()) setTheme(system(), false);
-  });
+    }
 
-  // `?embed=1`: the pictures alone, for a slide.
-  const embedded = new URLSearchParams(location.search).get("embed") === "1";
-  document.documentElement.classList.toggle("embed", embedded);
-  // On a phone: shows all knobs in the lower half of the screen, or only the first.
-  const drawer = (open) => {
-    if (open) scrollTo({ top: 0 });
-    const { classList } = document.getElementById("page");
-    classList.toggle("drawer", open);
-    if (open) showCurve(false);
-  };
-  // On a phone: shows the resonance curve together with the pictures on one screen, or below them.
-  const showCurve = (shown) => {
-    const { classList } = document.getElementById("page");
-    if (classList.contains("curved") === shown) return;
-    classList.toggle("curved", shown);
-    if (shown) drawer(false);
-    scrollTo({ top: 0 });
-    emit("curved", shown);
-  };
-  // The name of the page over the pictures, or null. An open page stops the curve unless it needs the curve. A name that
-  // no page over the pictures has opens none.
-  let overlay = null;
-  const openPage = (asked) => {
-    const sheets = [...document.querySelectorAll("[data-overlay]")];
-    const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
-    if (name === overlay) return;
-    overlay = name;
-    document.getElementById("page").classList.toggle("overlaid", name !== null);
-    for (const one of sheets) one.hidden = one.dataset.overlay !== name;
-    // The main landmark is the part that is on the screen; a page may have only one.
-    document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
-    emit("overlay", name);
-  };
-  const closePage = () => openPage(null);
-  document.addEventListener("keydown", (event) => {
-    if (event.key === "Escape" && overlay) closePage();
-  });
+    static #ofSystem() {
+      return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+    }
+  }
 
-  // Sealed: no script can add a member. The script that a comment names sets the members below the comment.
-  return Object.seal({
-    on,
-    emit,
-    pages,
-    publish,
-    openPage,
-    closePage,
-    get overlay() {
-      return overlay;
-    },
-    theme,
-    get themeChosen() {
-      return chosen;
-    },
-    setTheme,
-    restoreTheme,
-    embedded,
-    themes: THEMES,
-    nextTheme: () => setTheme(THEMES[(THEMES.indexOf(theme()) + 1) % THEMES.length], true),
-    drawer,
-    showCurve,
+  /**
+   * What the parts of the dashboard share in the browser: events, what pages publish, the page over the pictures, the
+   * panels of a phone, and one object for each of theme, address, history and connection.
+   */
+  class Dashboard extends Events {
+    #overlay = null; // the name of the page over the pictures
+    pages = new Map(); // what pages have published, by page
+    embedded = new URLSearchParams(location.search).get("embed") === "1"; // the pictures alone, for a slide
+    theme = new Theme(this);
+
+    // Below are the members that other scripts set; a comment names the script.
     // visibility.js: the names of what somebody looks at
-    visible: new Set(),
+    visible = new Set();
     // page.html: the glossary's terms with their definitions
-    terms: {},
-    // address.js: the share link, where the visitor is, and the history
-    address: null,
-    isSettled: null,
-    requested: null,
-    linkReceived: null,
-    linkRefined: null,
-    addressApplied: null,
-    place: null, // the open tab and the page over the pictures
-    setLocation: null,
-    steps: null,
-    undo: null,
-    redo: null,
+    terms = {};
+    // address.js: the share link and where the visitor is; the browser's history
+    address = null;
+    steps = null;
     // connection.js
-    lost: false, // whether the server does not answer
-    leaving: false, // whether the page is being reloaded after a lost connection
-    kept: {}, // what the page needs besides its link when it is reloaded
-    again: null, // what the page before the reload kept in `kept`
-    answerReceived: null,
-    connect: null,
+    connection = null;
     // header.js: has the server show what an address says
-    go: null,
+    go = null;
     // chain.js: its drawing, the picture on the screen, and where its replay is in drive periods
-    chain: null,
-    shown: null,
-    phase: 0,
+    chain = null;
+    shown = null;
+    phase = 0;
     // knobs.js and status_line.js: the knobs of the scene, and the regime in words
-    knobNames: [],
-    regime: "",
-  });
+    knobNames = [];
+    regime = "";
+
+    constructor() {
+      super();
+      document.documentElement.classList.toggle("embed", this.embedded);
+      document.addEventListener("keydown", (event) => {
+        if (event.key === "Escape" && this.overlay) this.closePage();
+      });
+    }
+
+    /**
+     * Keeps what a page publishes for other parts, such as its tab. It is announced as the event "page:NAME", which
+     * cannot be confused with an event that has the name of a page.
+     */
+    publish(name, data) {
+      this.pages.set(name, data);
+      this.emit(`page:${name}`, data);
+    }
+
+    /** The name of the page over the pictures, or null. An open page stops the curve unless it needs the curve. */
+    get overlay() {
+      return this.#overlay;
+    }
+
+    /** Opens the page of this name over the pictures. A name that no such page has opens none. */
+    openPage(asked) {
+      const sheets = [...document.querySelectorAll("[data-overlay]")];
+      const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
+      if (name === this.#overlay) return;
+      this.#overlay = name;
+      document.getElementById("page").classList.toggle("overlaid", name !== null);
+      for (const one of sheets) one.hidden = one.dataset.overlay !== name;
+      // The main landmark is the part that is on the screen; a web page may have only one.
+      document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
+      this.emit("overlay", name);
+    }
+
+    closePage() {
+      this.openPage(null);
+    }
+
+    /** On a phone: shows all knobs in the lower half of the screen, or only the first. */
+    drawer(open) {
+      if (open) scrollTo({ top: 0 });
+      document.getElementById("page").classList.toggle("drawer", open);
+      if (open) this.showCurve(false);
+    }
+
+    /** On a phone: shows the resonance curve together with the pictures on one screen, or below them. */
+    showCurve(shown) {
+      const { classList } = document.getElementById("page");
+      if (classList.contains("curved") === shown) return;
+      classList.toggle("curved", shown);
+      if (shown) this.drawer(false);
+      scrollTo({ top: 0 });
+      this.emit("curved", shown);
+    }
+  }
+
+  return Object.seal(new Dashboard()); // no script can add a member
 })();
