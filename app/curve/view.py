@@ -1,4 +1,4 @@
-"""The resonance curve: largest output force over drive frequency, by regime and by direction of the sweep."""
+"""The resonance curve: largest output force over drive frequency, by regime and by the start of the curve."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .pinned_curves import PinnedCurves
 
 
 class CurveFigure:
-    """The figure with, for every direction, the curve being computed and the one before it in grey.
+    """The figure with, for every start (`CURVE_STARTS`), the curve being computed and the one before it in grey.
 
     Lines and marks that most visitors never see are made when they are first needed.
     """
@@ -66,17 +66,17 @@ class CurveFigure:
         plot.on_event(Tap, lambda event: choose(event.x))
         return plot
 
-    def _line(self, direction: str, grey: bool) -> ColumnDataSource:
+    def _line(self, start: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource(curve_columns([], 1.0))
         made = [self.figure.add_glyph(source, Line(
-            **curve_line(direction), line_color=GREY if grey else OUTPUT_COLOUR, line_alpha=0.45 if grey else 0.9))]
+            **curve_line(start), line_color=GREY if grey else OUTPUT_COLOUR, line_alpha=0.45 if grey else 0.9))]
         if not grey:
-            marks = self.figure.add_glyph(source, Scatter(**curve_marks(direction)))
+            marks = self.figure.add_glyph(source, Scatter(**curve_marks(start)))
             made.append(marks)
-            self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(direction)))
+            self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(start)))
         for renderer in made:
-            renderer.visible = direction in self._visible
-        self._renderers[direction] += made
+            renderer.visible = start in self._visible
+        self._renderers[start] += made
         self._bring_forward()
         return source
 
@@ -122,38 +122,38 @@ class CurveFigure:
         """Set the range of frequencies shown."""
         self.figure.x_range.update(start=low, end=high)
 
-    def show_directions(self, directions: list[str]) -> None:
-        """Make only these directions visible."""
-        self._visible = set(directions)
+    def show_only(self, starts: list[str]) -> None:
+        """Make only the curves of these starts visible."""
+        self._visible = set(starts)
         for name, renderers in self._renderers.items():
             for renderer in renderers:
-                renderer.visible = name in directions
+                renderer.visible = name in starts
 
-    def begin(self, directions: list[str]) -> None:
-        """Make the present curves of these directions grey, because new ones will come."""
-        self._whole = self._whole and "rest" not in directions
+    def begin(self, starts: list[str]) -> None:
+        """Make the present curves of these starts grey, because new ones will come."""
+        self._whole = self._whole and "rest" not in starts
         for name in DASHES:
-            if name in directions:
+            if name in starts:
                 self._before[name] = self._points[name] or self._before[name]
                 self._points[name] = []
                 self._draw_before(name)
                 self._draw(name)
 
-    def add(self, direction: str, points: list[CurvePoint], covers: bool) -> None:
+    def add(self, start: str, points: list[CurvePoint], covers: bool) -> None:
         """Add points; once they cover the range the grey curve is removed."""
         self._ordered = None
-        self._points[direction] += [point for point in points if np.isfinite(point.max_output_force)]
+        self._points[start] += [point for point in points if np.isfinite(point.max_output_force)]
         if covers:
-            self._before[direction] = []
-            self._draw_before(direction)
+            self._before[start] = []
+            self._draw_before(start)
         self._rescale()
-        self._draw(direction)
+        self._draw(start)
 
-    def redraw(self, direction: str, points: list[CurvePoint]) -> None:
+    def redraw(self, start: str, points: list[CurvePoint]) -> None:
         """Draw a whole curve in place of the present one, while a knob moves."""
-        self._whole = self._whole and direction != "rest"
-        self._points[direction] = []
-        self.add(direction, points, covers=True)
+        self._whole = self._whole and start != "rest"
+        self._points[start] = []
+        self.add(start, points, covers=True)
 
     def pin(self, places: Sequence[tuple[str, float, float]]) -> None:
         """Mark pinned motions: name, frequency [Hz] and largest output force [N]."""
@@ -177,9 +177,9 @@ class CurveFigure:
         """Newtons for one unit of the axis."""
         return self._scale[0]
 
-    def points(self, direction: str) -> list[CurvePoint]:
-        """The points of a direction in ascending frequency."""
-        return sorted(self._points[direction], key=lambda point: point.frequency)
+    def points(self, start: str) -> list[CurvePoint]:
+        """The points of the curve of this start, in ascending frequency."""
+        return sorted(self._points[start], key=lambda point: point.frequency)
 
     def place(self, run: Run) -> Place | None:
         """Where a run lies on the whole curve from rest; None while that curve is being computed."""
@@ -192,9 +192,9 @@ class CurveFigure:
         transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
         return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 
-    def finished(self, direction: str) -> None:
-        """Note that all points of a direction are there."""
-        self._whole = self._whole or direction == "rest"
+    def finished(self, start: str) -> None:
+        """Note that all points of the curve of this start are there."""
+        self._whole = self._whole or start == "rest"
         if self._measurement is not None:
             self.measured(self._measurement)
 
@@ -275,17 +275,17 @@ class CurveFigure:
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}
 
-    def _draw(self, direction: str) -> None:
-        self._fill(self._new, direction, self._points[direction])
+    def _draw(self, start: str) -> None:
+        self._fill(self._new, start, self._points[start])
 
-    def _draw_before(self, direction: str) -> None:
-        self._fill(self._old, direction, self._before[direction])
+    def _draw_before(self, start: str) -> None:
+        self._fill(self._old, start, self._before[start])
 
-    def _fill(self, sources: dict[str, ColumnDataSource], direction: str, points: list[CurvePoint]) -> None:
-        """Draw the points of a direction in ascending frequency."""
-        if points and direction not in sources:
+    def _fill(self, sources: dict[str, ColumnDataSource], start: str, points: list[CurvePoint]) -> None:
+        """Draw the points of the curve of this start, in ascending frequency."""
+        if points and start not in sources:
             with together(self.figure):
-                sources[direction] = self._line(direction, grey=sources is self._old)
-        if direction in sources:
+                sources[start] = self._line(start, grey=sources is self._old)
+        if start in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            set_properties(sources[direction], data=curve_columns(ordered, self._scale[0]))
+            set_properties(sources[start], data=curve_columns(ordered, self._scale[0]))

@@ -221,7 +221,7 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
 
 
 def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashboard) -> None:
-    """Without `curves` an address means those of its scene. A scene from the menu keeps the directions of a sweep."""
+    """Without `curves` an address means those of its scene. A scene from the menu keeps the chosen starts."""
     dashboard.received({"do": "go", "query": "v=1&scene=sec2&curves=rest.up"})
     assert dashboard.session.curves == "rest.up"
     dashboard.received({"do": "scene", "name": "rig"})
