@@ -187,12 +187,12 @@ class Controller:
 
     # What happens here
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """A settled picture is ready: inform all that show something of it, the pages once it is offered."""
-        self.views.header.began_from(picture.start, self.session)
-        self.pinned.picture_ready(picture)
-        self.files.picture_ready(picture)
-        self._scenes.picture_ready(picture)
+        self.views.header.began_from(settled.start, self.session)
+        self.pinned.picture_ready(settled)
+        self.files.picture_ready(settled)
+        self._scenes.picture_ready(settled)
 
     def _curve_placed(self) -> None:
         self.pictures.show_regime()

@@ -63,7 +63,7 @@ class AccuracyPage(Page):
         if self.status != "none":  # until it is opened there is nothing to see
             self.describe()
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Mark the setting of the new picture among the rows."""
         if self.status != "none":
             self.describe()
@@ -133,13 +133,13 @@ class AccuracyPage(Page):
 
     def _used(self, now: PlacedSetting | None) -> str:
         """What the page uses, and why the error in the status line is another number."""
-        picture = self._host.session.settled
+        settled = self._host.session.settled
         if now is None:
             return ""
         words = f"This page uses {now.method}, {now.label}: error {short_error(now.error)} against the reference"
-        if picture is None or picture.run.displacement_error is None:
+        if settled is None or settled.run.displacement_error is None:
             return f"{words}."
-        stated = picture.run.displacement_error
+        stated = settled.run.displacement_error
         side = " on the safe side" if stated >= now.error else ""
         return f"{words}; the status line has no reference and states an estimate{side}, {short_error(stated)}."
 

@@ -54,7 +54,7 @@ class ObserverStep:
 class ObserverRun:
     """One chain with one observer; it starts from the states of `went_on`, a run before a knob was turned."""
 
-    def __init__(self, scene: Scene, picture: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
+    def __init__(self, scene: Scene, settled: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
         self.scene = scene
         self.orbit: Orbit | None = None
         self.drifts = False
@@ -67,7 +67,7 @@ class ObserverRun:
             self.number = went_on.number
             self._begin(*went_on.pair.states)
         else:
-            start = picture.state if picture is not None else rest(scene)
+            start = settled.state if settled is not None else rest(scene)
             self._begin(start, observer_start(scene, start, NUDGE))
 
     def _begin(self, chain: State, observer: State) -> None:
@@ -87,10 +87,10 @@ class ObserverRun:
         """Let the observer begin at rest, knowing nothing of the chain."""
         self._begin(self.pair.states[0], rest(self.scene))
 
-    def predict(self, picture: Settled) -> None:
+    def predict(self, settled: Settled) -> None:
         """Find the orbit of a settled picture of this very chain, and the observer's multipliers on it."""
         try:
-            self.orbit = periodic_orbit(self.scene, picture.regime.period, picture.state, observer=True,
+            self.orbit = periodic_orbit(self.scene, settled.regime.period, settled.state, observer=True,
                                         stop=self.pair.engine.stop)
             self.drifts = observer_drift(self.orbit) is not None
         except (NumbersFailed, BadInput) as problem:  # the latter where tension is cut
