@@ -11,7 +11,7 @@ import socket
 import threading
 from pathlib import Path
 
-from ..pictures.theme import style_sheet
+from ..plots.theme import style_sheet
 
 #: Longest wait for the head of a request [s].
 _LONGEST_WAIT = 2.0

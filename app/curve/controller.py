@@ -12,7 +12,7 @@ from granchain_core.pieces import CURVE_KERNELS
 from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.steady.curve.resonance_curve import draft_curve
 
-from ..pictures.curve import WORDS
+from ..plots.curve import WORDS
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
 from ..serve.computing.queues import CURVES, LatestWins
 from ..serve.computing.turns import TurnFlag

@@ -10,7 +10,7 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot, Scatter, T
 from granchain_core import CurvePoint
 
 from ..parts.stage.pinned_trains import DASHES
-from ..pictures.theme import GREY
+from ..plots.theme import GREY
 
 
 class PinnedCurves:

@@ -15,10 +15,10 @@ from granchain_core.steady.curve.resonance import Place, place_of
 from ..format import prefixed
 from ..frames import round_up
 from ..parts.figures.figure_style import quiet_axis, quiet_plot, together
-from ..pictures.axes import knob_scale
-from ..pictures.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
-from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
-from ..pictures.theme import GREY, OUTPUT_COLOUR
+from ..plots.axes import knob_scale
+from ..plots.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
+from ..plots.measured import COLUMNS, TOOLTIPS, measured_columns
+from ..plots.theme import GREY, OUTPUT_COLOUR
 from ..serve.document.changes import set_properties
 from .pinned_curves import PinnedCurves
 

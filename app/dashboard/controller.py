@@ -11,7 +11,7 @@ from bokeh.document import Document
 from granchain_core import BadInput, CurvePoint, Scene, Settled, State
 
 from ..curve.controller import CurveController
-from ..pictures.theme import Theme
+from ..plots.theme import Theme
 from ..serve.compiling.compiler import COMPILER
 from ..serve.document.socket_tuning import disable_nagle
 from ..serve.monitoring.metrics import METRICS

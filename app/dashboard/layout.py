@@ -24,9 +24,9 @@ from ..parts.stage.energy import EnergyMap
 from ..parts.stage.trains import WIDEST_TITLES, ForceTrains
 from ..parts.status.status_line import StatusLine
 from ..parts.toolkit.component import text
-from ..pictures.curve import KEY
-from ..pictures.energies import ENERGY_COLOURS
-from ..pictures.theme import Theme, style_sheet
+from ..plots.curve import KEY
+from ..plots.energies import ENERGY_COLOURS
+from ..plots.theme import Theme, style_sheet
 from ..scripts import IN_PAGE, modules
 from ..serve.http.limits import LARGEST_UPLOAD
 from ..session.session import Session

@@ -7,7 +7,7 @@ from typing import Any
 
 from granchain_core import Settled
 
-from ..pictures.theme import Theme
+from ..plots.theme import Theme
 from .activities import Activity
 
 Actions = Mapping[str, Callable[[dict[str, Any]], None]]

@@ -17,7 +17,7 @@ from granchain_core.input_checks import unknown_name
 from granchain_core.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
 
-from ..pictures.theme import THEMES
+from ..plots.theme import THEMES
 
 VERSION = "1"
 #: What the curve's figure may draw: curves from rest and by sweeps, and the paper's stated features.

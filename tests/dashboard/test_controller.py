@@ -20,7 +20,7 @@ from app import server
 from app.dashboard import links_and_files, main_picture, measurement
 from app.dashboard.table import PAGES, watched_pages
 from app.frames import Extremes, settled_frames
-from app.pictures.theme import THEMES, Theme
+from app.plots.theme import THEMES, Theme
 from app.serve.compiling.compiler import COMPILER, Compiler
 from app.serve.http.limits import LARGEST_UPLOAD
 from app.serve.monitoring.metrics import METRICS

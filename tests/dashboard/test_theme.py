@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import app
-from app.pictures.force_lines import DRIVE, INPUT, OUTPUT
-from app.pictures.theme import THEMES, Theme, style_sheet
+from app.plots.force_lines import DRIVE, INPUT, OUTPUT
+from app.plots.theme import THEMES, Theme, style_sheet
 from app.session.share import BROWSER_FIELDS, VIEW_VALUES
 from granchain import figure
 

@@ -13,7 +13,7 @@ import pytest
 from app.format import duration, short_error
 from app.pages.accuracy.page import measured_for
 from app.pages.accuracy.view import described_methods, described_reference, described_rows, naive_message
-from app.pictures.theme import THEMES
+from app.plots.theme import THEMES
 from app.session.active_setting import locate, page_setting
 from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, compared_methods

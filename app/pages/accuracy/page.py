@@ -12,7 +12,7 @@ from granchain_core.kernels.batch_size import machine
 from granchain_core.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
 
 from ...format import duration, short_error
-from ...pictures.accuracy import Annotations
+from ...plots.accuracy import Annotations
 from ...serve.computing.queues import MEASUREMENTS
 from ...session.active_setting import PlacedSetting, locate, page_setting
 from ...session.activities import Activity

@@ -14,10 +14,10 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, compared_methods
 from ...format import prefixed, short_error
 from ...parts.figures.figure_part import FigurePart, page_and_small
 from ...parts.toolkit.component import text
-from ...pictures.accuracy import Annotations, accuracy, marks, points
-from ...pictures.item import figure_item
-from ...pictures.naive_forces import naive_forces
-from ...pictures.theme import Theme
+from ...plots.accuracy import Annotations, accuracy, marks, points
+from ...plots.item import figure_item
+from ...plots.naive_forces import naive_forces
+from ...plots.theme import Theme
 from ...scripts import module
 
 #: If references differ by more than this, the motion is too sensitive to be followed for ten periods.

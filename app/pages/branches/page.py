@@ -12,7 +12,7 @@ from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switc
 from granchain_core.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
 from granchain_core.stop import Stop
 
-from ...pictures.branches import BranchRows
+from ...plots.branches import BranchRows
 from ...serve.computing.queues import LONG
 from ...session.budget import curve_affordable
 from ...session.host import Host

@@ -104,9 +104,9 @@ class HardCasesPage(Page):
         self.rows[name] = rows
         self._change(name, **WORDS.of("drawing"), **described_results(name, rows))
 
-    def _draw(self, name: str, picture: Picture | None) -> None:
-        if picture is not None:
-            self._view.draw(name, picture)
+    def _draw(self, name: str, data: Picture | None) -> None:
+        if data is not None:
+            self._view.draw(name, data)
 
     def _end(self, status: Status, sentence: str) -> None:
         """The first waiting case has ended or failed: begin the next one."""

@@ -11,7 +11,7 @@ from granchain_core.pieces import ORBIT_KERNELS
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
-from ...pictures.multipliers import plane_state
+from ...plots.multipliers import plane_state
 from ...serve.computing.queues import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce

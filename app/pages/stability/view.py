@@ -21,10 +21,10 @@ from ...format import UNSURE_FIGURES, duration, figures_of, prefixed, short_erro
 from ...parts.chain.chain import drawn_chain
 from ...parts.figures.figure_part import FigurePart
 from ...parts.toolkit.component import text
-from ...pictures.item import figure_item
-from ...pictures.multipliers import multiplier_words, plane, plane_state
-from ...pictures.section import SectionPoints, close_up, section, section_state
-from ...pictures.theme import Theme
+from ...plots.item import figure_item
+from ...plots.multipliers import multiplier_words, plane, plane_state
+from ...plots.section import SectionPoints, close_up, section, section_state
+from ...plots.theme import Theme
 from ...scripts import module
 from .work import PHASES, OrbitAnalysis
 

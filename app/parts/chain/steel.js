@@ -3,7 +3,7 @@
 const STEPS = 48; // steps of energy, enough that one cannot see them
 const GLOWS = 0.3; // √(energy over the top of the scale) above which a bead has a halo
 
-// The colour of an energy, given over the top of the scale; app/pictures/energies.py makes the list.
+// The colour of an energy, given over the top of the scale; app/plots/energies.py makes the list.
 export const colourOf = (palette, share) => palette[Math.round((palette.length - 1) * Math.max(0, Math.min(1, share)))];
 
 const channels = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));

@@ -11,7 +11,7 @@ from bokeh.models import ColumnDataSource, Line, Plot
 from granchain_core import Run
 
 from ...frames import jumps_of, with_jumps
-from ...pictures.theme import GREY
+from ...plots.theme import GREY
 
 #: Dashes of the pins, in their order.
 DASHES = ([7, 3], [2, 3], [9, 3, 2, 3])

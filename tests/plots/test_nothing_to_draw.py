@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from bokeh.models import ColumnDataSource
 
-from app.pictures.lyapunov import lyapunov
-from app.pictures.spectrum import spectrum as draw_spectrum
-from app.pictures.theme import THEMES
-from app.pictures.transfer import transfer as draw_transfer
+from app.plots.lyapunov import lyapunov
+from app.plots.spectrum import spectrum as draw_spectrum
+from app.plots.theme import THEMES
+from app.plots.transfer import transfer as draw_transfer
 from granchain_core import BadInput, lyapunov_spectrum, scene, settle, spectrum, transfer
 
 CHAIN = scene("sec2").evolve(N=2, f=2000.0)

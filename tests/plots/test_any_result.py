@@ -8,7 +8,7 @@ from bokeh.models import ColumnDataSource, LayoutDOM
 from bokeh.plotting import figure
 
 import granchain
-from app.pictures.any_result import HEIGHT, WIDTH
+from app.plots.any_result import HEIGHT, WIDTH
 from granchain import BadInput, scene
 from granchain_core.accuracy import Row
 from granchain_core.experiment import read_data

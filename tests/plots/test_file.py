@@ -6,7 +6,7 @@ from bokeh.document import Document
 from bokeh.io.doc import patch_curdoc
 from bokeh.plotting import figure
 
-from app.pictures.file import page_of
+from app.plots.file import page_of
 
 
 def test_a_dashboard_whose_visitor_left_does_not_matter() -> None:

@@ -1,4 +1,4 @@
-"""The picture of a hard case: granchain's result and a naive solver's on the same axes."""
+"""The figure of a hard case: granchain's result and a naive solver's on the same axes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .theme import Theme
 from .themed import apply_theme, frame, themed
 
 _LOGARITHM = ", log10"
-#: Pictures with at most this many points have a dot at each.
+#: Figures with at most this many points have a dot at each.
 _MOST_DOTS = 70
 #: Height of the drawing [px].
 _HEIGHT = 250
@@ -28,14 +28,14 @@ _STYLES: dict[str, list[dict[str, Any]]] = {
 _TRUTH = {"colour": "steel", "width": 5.0, "dash": []}
 
 
-def check(picture: Picture, theme: Theme) -> figure:
+def check(data: Picture, theme: Theme) -> figure:
     """The traces of a hard case: granchain's in ink, naive ones dashed and in colour, the true one broad and grey.
 
-    Nothing is drawn where a trace is NaN; a trace that ends before the picture does has a cross at its end.
+    Nothing is drawn where a trace is NaN; a trace that ends before the figure does has a cross at its end.
     """
-    labels = [trace.label for trace in picture.traces]
-    x_label, x_log, x = _axis(picture.x_label, picture.x)
-    drawn = [_axis(picture.y_label, trace.values) for trace in picture.traces]
+    labels = [trace.label for trace in data.traces]
+    x_label, x_log, x = _axis(data.x_label, data.x)
+    drawn = [_axis(data.y_label, trace.values) for trace in data.traces]
     y_label, y_log, _ = drawn[0]
     plot = frame(name="check", sizing_mode="stretch_width", height=_HEIGHT + _LEGEND_LINE * len(labels), title=y_label,
                  x_axis_type="log" if x_log else "linear", y_axis_type="log" if y_log else "linear")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from bokeh.models import ColumnDataSource
 
-from app.pictures.accuracy import Annotations, accuracy, marks, points, styles
-from app.pictures.naive_forces import naive_columns, naive_forces
-from app.pictures.theme import THEMES
+from app.plots.accuracy import Annotations, accuracy, marks, points, styles
+from app.plots.naive_forces import naive_columns, naive_forces
+from app.plots.theme import THEMES
 from granchain_core.accuracy import Row, compared_methods
 
 ROWS = [Row("rk4", "1 × the default steps", float("inf"), 0.0, 0, 1.0, "It was not done."),

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.pictures.section import SectionPoints, close_up, section, section_state
-from app.pictures.theme import THEMES
+from app.plots.section import SectionPoints, close_up, section, section_state
+from app.plots.theme import THEMES
 
 POINTS = np.array([[8.0, -8.0], [4.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.5, 1.5], [1.0, 2.0]])
 OWN = np.array([[1.0, 1.0], [1.0, 2.0]])

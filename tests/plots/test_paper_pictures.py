@@ -10,9 +10,9 @@ import pytest
 from bokeh.models import ColumnDataSource, GridPlot, LayoutDOM, Plot
 from bokeh.plotting import figure as Figure
 
-from app.pictures.paper import paper_figure, size_of
-from app.pictures.paper.panels import fewer
-from app.pictures.theme import THEMES
+from app.plots.paper import paper_figure, size_of
+from app.plots.paper.panels import fewer
+from app.plots.theme import THEMES
 from granchain_core.experiment import Measured, Series, Shaker
 from granchain_core.paper import FIGURES, Given, Result, computations, compute
 from granchain_core.paper.peaks_and_valleys import dips, peaks

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.pictures.probe import PICTURES, amplitudes, closed_spells, probe, probe_state
-from app.pictures.theme import THEMES
+from app.plots.probe import FIGURES, amplitudes, closed_spells, probe, probe_state
+from app.plots.theme import THEMES
 from granchain_core import Run, scene, settle
 
 
@@ -16,7 +16,7 @@ def third() -> Run:
     return settle(scene("fig3b")).run
 
 
-@pytest.mark.parametrize("name", PICTURES)
+@pytest.mark.parametrize("name", FIGURES)
 def test_every_picture_has_the_points_of_its_state(name: str, third: Run) -> None:
     drawn = probe(name, third, 5, THEMES["dark"])
     sources = {model.name: model.data for model in drawn.references() if hasattr(model, "data")}

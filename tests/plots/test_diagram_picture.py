@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from bokeh.models import LogScale
 
-from app.pictures.diagram import CATEGORIES, category, cell_rows, cell_words, diagram, nothing, scale_models
-from app.pictures.theme import THEMES
+from app.plots.diagram import CATEGORIES, category, cell_rows, cell_words, diagram, nothing, scale_models
+from app.plots.theme import THEMES
 from granchain_core import scene
 from granchain_core.bifurcation_curves import BifurcationCurve, BifurcationPoint
 from granchain_core.parameter_map import Axis, Diagram, Grid

@@ -62,22 +62,22 @@ def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
     _without_tools(figure)
     width, height = size[0], size[1] + caption_height(title, caption, size[0])
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
-        picture = Path(folder) / "picture.png"
-        # The page's body is as high as the picture, whatever the window's own frame takes.
+        image = Path(folder) / "picture.png"
+        # The page's body is as high as the image, whatever the window's own frame takes.
         page = captioned_page(figure, title, caption, theme).replace(
             "html, body { height: 100%;", f"html {{ height: 100%; }} body {{ width: {width}px; height: {height}px;")
-        _run(folder, page, f"--screenshot={picture}", f"--force-device-scale-factor={scale}",
+        _run(folder, page, f"--screenshot={image}", f"--force-device-scale-factor={scale}",
              f"--window-size={width + _FRAME_ROOM},{height + _FRAME_ROOM}")
-        if not picture.exists():
+        if not image.exists():
             raise BadInput(f"{browser()} wrote no picture; write an HTML file instead.")
-        with Image.open(picture) as whole:
+        with Image.open(image) as whole:
             whole.crop((0, 0, round(scale * width), round(scale * height))).convert("RGB").quantize(256).save(
-                picture, optimize=True)
-        return picture.read_bytes()
+                image, optimize=True)
+        return image.read_bytes()
 
 
 def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int]) -> str:
-    """A figure with its title and caption as the text of an SVG picture of `size` [px]."""
+    """A figure with its title and caption as the text of an SVG image of `size` [px]."""
     _without_tools(figure)
     for plot in _plots(figure):
         plot.output_backend = "svg"
@@ -95,7 +95,7 @@ def _plots(figure: LayoutDOM) -> list[Plot]:
 
 
 def _without_tools(figure: LayoutDOM) -> None:
-    """A picture has no buttons."""
+    """An image has no buttons."""
     for plot in _plots(figure):
         plot.toolbar_location = None
     for panels in [*figure.select({"type": GridPlot}), *([figure] if isinstance(figure, GridPlot) else [])]:

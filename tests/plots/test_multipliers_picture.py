@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from app.pages.stability.trail import Trail
-from app.pictures.multipliers import multiplier_words, multipliers, plane, plane_state
-from app.pictures.theme import THEMES
+from app.plots.multipliers import multiplier_words, multipliers, plane, plane_state
+from app.plots.theme import THEMES
 from granchain_core import scene
 from granchain_core.orbits import Orbit, periodic_orbit
 

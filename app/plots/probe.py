@@ -1,7 +1,7 @@
 """One bead of a motion: displacement, velocity, contact forces, phase portrait with stroboscopic points, spectrum; and
 when every contact of the chain is closed, as in figure 12 of Zhang et al. (2016).
 
-Each picture is a figure from a run and a bead. `probe_state` gives the properties of its models by their names, so that
+Each figure is made from a run and a bead. `probe_state` gives the properties of its models by their names, so that
 a page can fill the same figures with the next motion.
 """
 
@@ -32,8 +32,8 @@ _SMALLEST_AMPLITUDE = 1e-4
 
 
 def probe(name: str, run: Run, bead: int, theme: Theme) -> figure:
-    """The picture of this name, one of `PICTURES`, of a bead that counts from 1."""
-    plot = PICTURES[name]()
+    """The figure of this name, one of `FIGURES`, of a bead that counts from 1."""
+    plot = FIGURES[name]()
     models = {model.name: model for model in plot.references() if model.name}
     for model, properties in probe_state(run, bead)[name].items():
         models[model].update(**properties)
@@ -41,8 +41,8 @@ def probe(name: str, run: Run, bead: int, theme: Theme) -> figure:
 
 
 def without_points(name: str, theme: Theme, compact: bool = False) -> figure:
-    """The picture of this name without data, for a page that fills it with `probe_state`; `compact` has no tools."""
-    plot = PICTURES[name]()
+    """The figure of this name without data, for a page that fills it with `probe_state`; `compact` has no tools."""
+    plot = FIGURES[name]()
     if compact:
         plot.toolbar_location = None
         for axis in (plot.xaxis[0], plot.yaxis[0]):
@@ -99,16 +99,16 @@ def _spectrum() -> figure:
     return plot
 
 
-#: The pictures by name: displacement, velocity and the forces of both contacts over time; when each contact is
+#: The figures by name: displacement, velocity and the forces of both contacts over time; when each contact is
 #: closed, 0 the driver's, N the wall's; velocity over displacement, with a dot at every begin of a drive period;
 #: amplitudes over frequency.
-PICTURES: dict[str, Callable[[], figure]] = {
+FIGURES: dict[str, Callable[[], figure]] = {
     "displacement": _displacement, "velocity": _velocity, "forces": _forces, "contacts": _contacts, "phase": _phase,
     "spectrum": _spectrum}
 
 
 def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
-    """Properties of the models of every picture, by picture and by the model's name. Beads count from 1."""
+    """Properties of the models of every figure, by figure and by the model's name. Beads count from 1."""
     one = bead - 1
     time, time_unit = _scaled(run.time, "s")
     u, u_unit = _scaled(run.displacement[:, one], "m")
@@ -222,5 +222,5 @@ def _scaled(values: np.ndarray, unit: str) -> tuple[np.ndarray, str]:
 
 
 def _short(values: np.ndarray) -> list[float]:
-    """Five figures are more than a picture shows."""
+    """Five figures are more than one figure shows."""
     return [float(f"{value:.5g}") for value in values]

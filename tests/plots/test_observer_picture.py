@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from app.pictures.observer import observer, prediction
-from app.pictures.theme import THEMES
+from app.plots.observer import observer, prediction
+from app.plots.theme import THEMES
 
 
 @pytest.mark.parametrize(("distance", "factor", "end"), [

@@ -31,7 +31,7 @@ _DRAW: dict[type, Callable[[Any, Theme], LayoutDOM]] = {
     Rig: rig, Transmission: transmission, EnergyMaps: energy, ShakerAmplitude: shaker, RigResponse: response,
     Trains: trains, Observers: observers,
 }
-#: Width and height of a picture without its caption [px].
+#: Width and height of a figure without its caption [px].
 _SIZES = {Rig: (1100, 400), Transmission: (1100, 560), EnergyMaps: (1100, 560), ShakerAmplitude: (1100, 420),
           RigResponse: (1200, 620), Trains: (1200, 640), Observers: (1200, 640)}
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from bokeh.models import GlyphRenderer, Legend, LogScale
 
-from app.pictures.check import check
-from app.pictures.theme import THEMES
-from app.pictures.themed import apply_theme
+from app.plots.check import check
+from app.plots.theme import THEMES
+from app.plots.themed import apply_theme
 from granchain_core.hard_cases import Picture, Trace
 
 LIGHT = THEMES["light"]

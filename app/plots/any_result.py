@@ -122,19 +122,19 @@ _TOGETHER: dict[type, Callable[..., LayoutDOM]] = {Curve: curve, Branch: branche
 
 def figure_of(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
               **options: Any) -> LayoutDOM:
-    """The picture of a result with a size of its own; what `granchain.figure` says of it holds."""
+    """The figure of a result with a size of its own; what `granchain.figure` says of it holds."""
     drawn, size = _drawn(result, theme, options)
     drawn.update(sizing_mode="fixed", width=width or size[0], height=height or size[1])
     return drawn
 
 
 def stretched(result: Any, theme: str = "light", **options: Any) -> LayoutDOM:
-    """The picture of a result that fills its page."""
+    """The figure of a result that fills its page."""
     return _drawn(result, theme, options)[0]
 
 
 def _drawn(result: Any, theme: str, options: Mapping[str, Any]) -> tuple[LayoutDOM, tuple[int, int]]:
-    """The picture of a result, and the size in which it reads well."""
+    """The figure of a result, and the size in which it reads well."""
     if theme not in THEMES:
         raise unknown_name("theme", theme, THEMES)
     draw, size = _drawing(result)

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from app.pictures.branches import _STYLES, SPECIAL, BranchRows, branches, drawn_orbits, special_words
-from app.pictures.theme import THEMES
+from app.plots.branches import _STYLES, SPECIAL, BranchRows, branches, drawn_orbits, special_words
+from app.plots.theme import THEMES
 from granchain_core import resonance_curve, scene
 from granchain_core.orbits import Branch, continue_branch
 from granchain_core.orbits.branch.special import SPECIAL_KINDS

@@ -1,12 +1,12 @@
-"""Themes: their colours and line widths, for the page and for its pictures (themed.py)."""
+"""Themes: their colours and line widths, for the page and for its figures (themed.py)."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from typing import ClassVar
 
-#: Colours of marks in several pictures, the same in every theme. Blue is the input force; it is also quasi-periodic
-#: motion, because no picture of regimes shows the input force.
+#: Colours of marks in several figures, the same in every theme. Blue is the input force; it is also quasi-periodic
+#: motion, because no figure of regimes shows the input force.
 AMBER = "#e0900a"
 VIOLET = "#9b6bf2"
 TEAL = "#0fa3b8"

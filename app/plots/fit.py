@@ -94,12 +94,12 @@ def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
 
 def _records(found: Fit, target: RecordsTarget, theme: Theme) -> LayoutDOM:
     """Each record over the model, below the one before."""
-    pictures: list[LayoutDOM] = []
+    figures: list[LayoutDOM] = []
     for one, place, _ in target.parts(found.evaluation):
         assert one.frequency is not None
-        title = f"{one.frequency:g} Hz" if pictures else f"{one.frequency:g} Hz – {_verdict(found)}"
-        pictures.append(_series(one, found.evaluation.model[place], 1.0 / one.frequency, title, theme))
-    return column(pictures, sizing_mode="stretch_both")
+        title = f"{one.frequency:g} Hz" if figures else f"{one.frequency:g} Hz – {_verdict(found)}"
+        figures.append(_series(one, found.evaluation.model[place], 1.0 / one.frequency, title, theme))
+    return column(figures, sizing_mode="stretch_both")
 
 
 def _series(target: SeriesTarget, models: np.ndarray, period: float, title: str, theme: Theme) -> figure:

@@ -7,8 +7,8 @@ import pytest
 from bokeh.models import ColumnDataSource, LayoutDOM
 from bokeh.plotting import figure
 
-from app.pictures.fit import fit as drawn
-from app.pictures.theme import THEMES
+from app.plots.fit import fit as drawn
+from app.plots.theme import THEMES
 from granchain_core import fit, scene
 from granchain_core.experiment import Feature
 from granchain_core.fit import CurveTarget, FeatureTarget, Free, SeriesTarget, virtual_curve, virtual_series
