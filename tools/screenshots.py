@@ -66,7 +66,7 @@ def opened(browser: Browser, address: str, size: tuple[int, int]) -> Iterator[Pa
     page = context.new_page()
     page.add_init_script(TOURED)
     page.goto(address)
-    page.wait_for_function("() => document.getElementById('page')?.classList.contains('starting') === false", timeout=300_000)
+    page.wait_for_function("() => document.getElementById('dashboard')?.classList.contains('starting') === false", timeout=300_000)
     page.evaluate(COUNTER)
     yield page
     context.close()

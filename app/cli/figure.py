@@ -78,7 +78,7 @@ def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
     if kind == ".csv":
         return table_of(result).encode("utf-8")
     from ..plots.browser import png_of, svg_of
-    from ..plots.file import captioned_page
+    from ..plots.file import captioned_html
     from ..plots.paper import paper_figure, size_of
 
     colours = THEMES[theme]
@@ -87,7 +87,7 @@ def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
         return png_of(drawn, title, figure.caption, colours, size_of(result))
     if kind == ".svg":
         return svg_of(drawn, title, figure.caption, colours, size_of(result)).encode("utf-8")
-    return captioned_page(drawn, title, figure.caption, colours).encode("utf-8")
+    return captioned_html(drawn, title, figure.caption, colours).encode("utf-8")
 
 
 def table_of(result: Any) -> str:

@@ -57,6 +57,6 @@ def write_files(arguments: argparse.Namespace, title: str, result: Any, **option
 
 def write_figure(name: str, title: str, figure: Any) -> None:
     """Write a figure of `app/plots`."""
-    from ..plots.file import page_of
+    from ..plots.file import html_of
 
-    Path(name).write_text(page_of(figure, title), encoding="utf-8")
+    Path(name).write_text(html_of(figure, title), encoding="utf-8")

@@ -21,7 +21,7 @@ from PIL import Image
 
 from granchain_core import BadInput
 
-from .file import caption_height, captioned_page, page_of
+from .file import caption_height, captioned_html, html_of
 from .theme import Theme
 
 _PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
@@ -64,7 +64,7 @@ def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
         image = Path(folder) / "picture.png"
         # The page's body is as high as the image, whatever the window's own frame takes.
-        page = captioned_page(figure, title, caption, theme).replace(
+        page = captioned_html(figure, title, caption, theme).replace(
             "html, body { height: 100%;", f"html {{ height: 100%; }} body {{ width: {width}px; height: {height}px;")
         _run(folder, page, f"--screenshot={image}", f"--force-device-scale-factor={scale}",
              f"--window-size={width + _FRAME_ROOM},{height + _FRAME_ROOM}")
@@ -81,7 +81,7 @@ def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tupl
     _without_tools(figure)
     for plot in _plots(figure):
         plot.output_backend = "svg"
-    page = page_of(figure, title).replace("</body>", _EXPORT)
+    page = html_of(figure, title).replace("</body>", _EXPORT)
     with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
         dom = _run(folder, page, "--dump-dom", f"--window-size={size[0]},{size[1]}")
     found = re.search(r'<pre id="exported">(.*?)</pre>', dom, re.DOTALL)

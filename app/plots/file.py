@@ -30,12 +30,12 @@ _PAGE = """{%% block contents %%}
 {%% endblock %%}"""
 
 
-def page_of(figure: LayoutDOM, title: str) -> str:
+def html_of(figure: LayoutDOM, title: str) -> str:
     """A whole page with a figure of this package, which fills the window; Bokeh's own scripts are in it."""
     return _page(figure, title)
 
 
-def captioned_page(figure: LayoutDOM, title: str, caption: str, theme: Theme) -> str:
+def captioned_html(figure: LayoutDOM, title: str, caption: str, theme: Theme) -> str:
     """A whole page with a figure, its title in bold and a caption under it."""
     words = f"<b>{html.escape(title)}.</b> {html.escape(caption)}".replace("{", "&#123;")
     template = _PAGE % {"card": theme.card, "ink": theme.ink, "line": _CAPTION_LINE, "caption": words}
@@ -48,5 +48,5 @@ def _page(figure: LayoutDOM, title: str, **options: Any) -> str:
 
 
 def caption_height(title: str, caption: str, width: int) -> int:
-    """Room that `captioned_page` needs for its caption in a window of this width [px]."""
+    """Room that `captioned_html` needs for its caption in a window of this width [px]."""
     return _CAPTION_ROOM + _CAPTION_LINE * -(-(len(title) + len(caption) + 2) // int(width * _CHARACTERS_PER_PIXEL))

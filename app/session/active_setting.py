@@ -25,7 +25,7 @@ class PlacedSetting:
     wall_s: float
 
 
-def page_setting(scene: Scene, settled: Settled | None, live: bool) -> Setting:
+def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> Setting:
     """The setting of the last computation behind the picture, by the rule of steady/settling/refine_orbit.py."""
     if live:
         return LIVE_SETTING

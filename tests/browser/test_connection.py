@@ -66,7 +66,7 @@ def looks_lost(page: Page) -> None:
 
     How soon: a silent server is noticed after `PING_TIMEOUT` of connection.js, counted while the page itself runs.
     """
-    page.wait_for_selector("#page.lost")
+    page.wait_for_selector("#dashboard.lost")
     expect(page.get_by_role("alert").filter(has_text="Connection lost – trying again")).to_be_visible()
     for part in ("stage", "curves"):
         assert "grayscale(1)" in page.evaluate(f"getComputedStyle(document.getElementById('{part}')).filter")

@@ -14,12 +14,12 @@ from playwright.sync_api import BrowserContext, Page, Route
 from server import until
 
 from app.format import prefixed
-from app.scripts import FILES, IN_PAGE
+from app.scripts import FILES, INLINE_SCRIPTS
 
 APP = Path(__file__).parents[2] / "app"
 ORIGIN = "http://scripts.test/"
 #: The elements that the scripts in the page ask for, and what it has of Bokeh.
-BLANK = """<!doctype html><div id="page">
+BLANK = """<!doctype html><div id="dashboard">
   <div id="lost" hidden></div><div id="bar"></div><div id="side"></div><div id="stage"></div><div id="curves"><div id="curve"></div></div>
   <div id="overlay"><div data-overlay="probe" hidden></div></div><div id="foot"></div></div>
 <script>window.Bokeh = { documents: [{ on_event: (name, act) => { window.closeSocket = act; } }] };</script>"""
@@ -42,7 +42,7 @@ class Answers:
             route.fulfill(path=APP / path, content_type="text/javascript")
         else:
             self.opened.append(route.request.url)
-            scripts = "".join(FILES[name].read_text(encoding="utf-8") for name in IN_PAGE)
+            scripts = "".join(FILES[name].read_text(encoding="utf-8") for name in INLINE_SCRIPTS)
             route.fulfill(body=f"{BLANK}<script>{scripts}</script>", content_type="text/html")
 
 

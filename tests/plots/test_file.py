@@ -6,7 +6,7 @@ from bokeh.document import Document
 from bokeh.io.doc import patch_curdoc
 from bokeh.plotting import figure
 
-from app.plots.file import page_of
+from app.plots.file import html_of
 
 
 def test_a_dashboard_whose_visitor_left_does_not_matter() -> None:
@@ -14,4 +14,4 @@ def test_a_dashboard_whose_visitor_left_does_not_matter() -> None:
     gone = Document()
     with patch_curdoc(gone):
         del gone
-        assert "<html" in page_of(figure(), "a picture")
+        assert "<html" in html_of(figure(), "a picture")

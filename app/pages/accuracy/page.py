@@ -14,7 +14,7 @@ from granchain_core.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP
 from ...format import duration, short_error
 from ...plots.accuracy import Annotations
 from ...serve.computing.queues import MEASUREMENTS
-from ...session.active_setting import PlacedSetting, locate, page_setting
+from ...session.active_setting import PlacedSetting, locate, shown_setting
 from ...session.activities import Activity
 from ...session.host import Host
 from ...session.page import Actions, Page
@@ -71,7 +71,7 @@ class AccuracyPage(Page):
     def describe(self) -> None:
         """Show what was asked, what is cheapest, what the page uses now, and whether the rows still hold."""
         scene, session = self._host.session.scene, self._host.session
-        now = locate(page_setting(scene, session.settled, session.mode == "live"), self.rows)
+        now = locate(shown_setting(scene, session.settled, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)
         stale = bool(self._measured) and self._measured != measured_for(scene)
         self._view.mark(self.rows, Annotations(

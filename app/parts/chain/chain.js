@@ -153,7 +153,7 @@ class Chain {
 
   load(frames) {
     Object.assign(frames, unpack(frames).series);
-    document.getElementById("page").classList.remove("starting");
+    document.getElementById("dashboard").classList.remove("starting");
     this.showScale(frames);
     this.crosshair.roll();
     if (this.sound.on) this.sound.play(frames);

@@ -2,7 +2,7 @@
 
 import { markAnotherScene } from "./another_scene.js";
 import { button, chooser, download, element, onWidth } from "../toolkit/dom.js";
-import { wholePage } from "./iframe_link.js";
+import { dashboardLink } from "./iframe_link.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
 import { curveButton, knobsButton } from "./phone_buttons.js";
@@ -23,7 +23,7 @@ class Header {
     this.name = element("h1", { textContent: "granchain" });
     this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
     this.popovers.menu.ariaLabel = "more controls";
-    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), wholePage(this.name)];
+    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), dashboardLink(this.name)];
     const all = [
       knobsButton(),
       this.name,

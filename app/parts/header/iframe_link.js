@@ -2,7 +2,7 @@
 
 import { element } from "../toolkit/dom.js";
 
-export function wholePage(title) {
+export function dashboardLink(title) {
   const { granchain } = window;
   const link = element("a", { textContent: "open in granchain ↗", target: "_blank", rel: "noopener" });
   granchain.on("shown", ({ scene, f }) => {

@@ -155,7 +155,7 @@ class Liveness(RequestHandler):
 _UNKNOWN = "0.0.0.0"
 
 
-class MetricsPage(RequestHandler):
+class MetricsHandler(RequestHandler):
     """`/metrics`."""
 
     def get(self) -> None:

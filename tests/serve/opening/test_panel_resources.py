@@ -9,7 +9,7 @@ import panel.io.server as pages
 import pytest
 from listening import Listening
 
-from app.serve.opening.panel_pages import remember_resources
+from app.serve.opening.panel_resources import remember_resources
 from app.server import Access
 
 

@@ -138,7 +138,7 @@
 
     #setLost(lost) {
       this.#lost = lost;
-      document.getElementById("page").classList.toggle("lost", lost);
+      document.getElementById("dashboard").classList.toggle("lost", lost);
       for (const part of PARTS) document.getElementById(part).inert = lost;
       showBanner(lost ? LOST : "");
       granchain.emit("lost", lost);

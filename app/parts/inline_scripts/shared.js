@@ -99,7 +99,7 @@ window.granchain = (() => {
     // Below are the members that other scripts set; a comment names the script.
     // visibility.js: the names of what somebody looks at
     visible = new Set();
-    // page.html: the glossary's terms with their definitions
+    // dashboard.html: the glossary's terms with their definitions
     terms = {};
     // address.js: the share link and where the visitor is; the browser's history
     address = null;
@@ -144,7 +144,7 @@ window.granchain = (() => {
       const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
       if (name === this.#overlay) return;
       this.#overlay = name;
-      document.getElementById("page").classList.toggle("overlaid", name !== null);
+      document.getElementById("dashboard").classList.toggle("overlaid", name !== null);
       for (const one of sheets) one.hidden = one.dataset.overlay !== name;
       // The main landmark is the part that is on the screen; a web page may have only one.
       document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
@@ -158,13 +158,13 @@ window.granchain = (() => {
     /** On a phone: shows all knobs in the lower half of the screen, or only the first. */
     drawer(open) {
       if (open) scrollTo({ top: 0 });
-      document.getElementById("page").classList.toggle("drawer", open);
+      document.getElementById("dashboard").classList.toggle("drawer", open);
       if (open) this.showCurve(false);
     }
 
     /** On a phone: shows the resonance curve together with the pictures on one screen, or below them. */
     showCurve(shown) {
-      const { classList } = document.getElementById("page");
+      const { classList } = document.getElementById("dashboard");
       if (classList.contains("curved") === shown) return;
       classList.toggle("curved", shown);
       if (shown) this.drawer(false);
