@@ -21,7 +21,7 @@ from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words
 from ..serve.computing.queues import PICTURES, LatestWins
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
-from ..serve.document.pacing import FramePacer
+from ..serve.document.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_account import with_account
@@ -92,7 +92,7 @@ class MainPicture:
         self._show_notice = show_notice
         self._picture_ready = picture_ready
         self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
-        self._pacer: FramePacer[Settled | LiveStep] = FramePacer(self._send, self.next_live_step)
+        self._pacer: PicturePacer[Settled | LiveStep] = PicturePacer(self._send, self.next_live_step)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
         self._newest: Settled | LiveStep | None = None

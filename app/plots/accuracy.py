@@ -14,7 +14,7 @@ from granchain_core.accuracy import Row, compared_methods
 
 from ..format import duration, short_error
 from .theme import AMBER, GREY, TEAL, VIOLET, Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 _PALETTE = (AMBER, VIOLET, TEAL, "#d6489a", "#a97142", "#86a316", "#6d7fd8", "#c26a52")
 _MARKS = ("circle", "square", "diamond", "triangle", "hex", "star", "inverted_triangle", "square_pin")
@@ -91,8 +91,8 @@ def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: boo
 
     The sources have the names of the methods; `points` and `marks` give what changes while a measurement goes on.
     """
-    plot = frame(name="accuracy", x_axis_type="log", y_axis_type="log", min_border=4,
-                 toolbar_location=None if compact else "right")
+    plot = empty_figure(name="accuracy", x_axis_type="log", y_axis_type="log", min_border=4,
+                        toolbar_location=None if compact else "right")
     state = marks(asked, rows)
     good = themed(BoxAnnotation(name="good", fill_alpha=0.09, level="underlay"), fill_color="accent",
                   line_color="accent", line_width=2.0)

@@ -13,7 +13,7 @@ from ..format import figures_of, in_words
 from .axes import force_scale
 from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 
 def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
@@ -25,8 +25,8 @@ def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
     starts = "random states" if drawn else "starts"
     count = sum(len(one.origins) for one in found)
     scale = force_scale("largest output force", max(one.max_output_force for one in found))
-    plot = frame(name="attractors", min_border=4, x_range=Range1d(-4, 104),
-                 y_range=Range1d(0.0, 1.15 * max(one.max_output_force for one in found) / scale.factor))
+    plot = empty_figure(name="attractors", min_border=4, x_range=Range1d(-4, 104),
+                        y_range=Range1d(0.0, 1.15 * max(one.max_output_force for one in found) / scale.factor))
     for one in found:
         key = regime_key(one.regime.name, one.regime.period)
         marker, colour, size = REGIME_MARKS[key]

@@ -12,7 +12,7 @@ from granchain_core import Basins
 from ..format import in_words, prefixed
 from .axes import Scale
 from .theme import GREY, Theme
-from .themed import apply_theme, frame
+from .themed import apply_theme, empty_figure
 
 #: Patterns beside the colours, so that the colours need not be told apart.
 _HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")
@@ -26,7 +26,7 @@ def basins(found: Basins, theme: Theme) -> figure:
     number = found.number.ravel()
     words = [f"{one.regime.sentence}; largest output force {in_words(one.max_output_force, 'N')}; "
              f"{100.0 * share:.0f} % of the plane" for one, share in zip(found.attractors, found.shares, strict=True)]
-    plot = frame(name="basins", min_border=4)
+    plot = empty_figure(name="basins", min_border=4)
     plot.grid.visible = False
     width, height = _spacing(found.x[1] / x.factor), _spacing(found.y[1] / y.factor)
     for i in sorted(set(number.tolist())):

@@ -17,7 +17,7 @@ from granchain_core.regime import modulus_words
 from ..format import in_words, short_error
 from .axes import Scale, force_scale, knob_scale
 from .theme import AMBER, GREY, TEAL, VIOLET, Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 SPECIAL = {"fold": "fold", "period_doubling": "period doubling", "neimark_sacker": "Neimark–Sacker (torus)",
            "grazing": "grazing"}
@@ -185,8 +185,8 @@ def _put(data: Columns, added: dict[str, Any]) -> None:
 
 
 def _drawn(data: Columns, theme: Theme, compact: bool) -> figure:
-    plot = frame(name="branches", min_border=4, toolbar_location=None if compact else "right",
-                 x_range=DataRange1d(range_padding=0.02), y_range=DataRange1d(start=0, range_padding=0.06))
+    plot = empty_figure(name="branches", min_border=4, toolbar_location=None if compact else "right",
+                        x_range=DataRange1d(range_padding=0.02), y_range=DataRange1d(start=0, range_padding=0.06))
     if not compact:
         plot.xaxis[0].name, plot.yaxis[0].name = "knob", "force"
     sources = {name: ColumnDataSource(columns, name=name) for name, columns in data.items()}

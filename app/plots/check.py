@@ -12,7 +12,7 @@ from bokeh.plotting import figure
 from granchain_core.hard_cases import Picture
 
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 _LOGARITHM = ", log10"
 #: Figures with at most this many points have a dot at each.
@@ -37,8 +37,9 @@ def check(data: Picture, theme: Theme) -> figure:
     x_label, x_log, x = _axis(data.x_label, data.x)
     drawn = [_axis(data.y_label, trace.values) for trace in data.traces]
     y_label, y_log, _ = drawn[0]
-    plot = frame(name="check", sizing_mode="stretch_width", height=_HEIGHT + _LEGEND_LINE * len(labels), title=y_label,
-                 x_axis_type="log" if x_log else "linear", y_axis_type="log" if y_log else "linear")
+    plot = empty_figure(name="check", sizing_mode="stretch_width", height=_HEIGHT + _LEGEND_LINE * len(labels),
+                        title=y_label, x_axis_type="log" if x_log else "linear",
+                        y_axis_type="log" if y_log else "linear")
     plot.xaxis.axis_label = x_label
     plot.x_range.range_padding = 0.02
     source = ColumnDataSource({"x": x, **{str(i): y for i, (_, _, y) in enumerate(drawn)}})

@@ -19,7 +19,7 @@ from .axes import force_scale, knob_scale
 from .measured import measured_over
 from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 #: Dashes of the line by the start of a sweep.
 DASHES: dict[str, list[int]] = {"rest": [], "up": [8, 4], "down": [2, 3]}
@@ -49,7 +49,7 @@ def curve(found: Sequence[Curve], theme: Theme, elastic: bool = False, measured:
     if measured is not None:
         largest = max(largest, float(measured.bars[1].max()))
     scale = force_scale("largest elastic output force" if elastic else "largest output force", largest)
-    plot = frame(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
+    plot = empty_figure(name="curve", min_border=4, y_range=DataRange1d(start=0, range_padding=0.06))
     for one in found:
         points = [p for p in one.points if math.isfinite(p.max_output_force)]
         source = ColumnDataSource(name=one.start, data=curve_columns(points, scale.factor, 3, drawn))

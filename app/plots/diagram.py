@@ -34,7 +34,7 @@ from ..format import figures_of, in_words, short_error
 from .axes import Scale, knob_scale
 from .regimes import REGIME_MARKS, regime_key
 from .theme import BROWN, Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 #: What a cell may be, in the curve's colours, each with a hatch of its own.
 CATEGORIES = (*REGIME_MARKS, "failed")
@@ -58,9 +58,9 @@ def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float
     grid = found.grid
     across, up = _scales(grid)
     computed = found.cells[found.cells["regime"] >= 0]
-    plot = frame(name="map", min_border=4, active_scroll=None, x_range=_range(grid.x, across),
-                 y_range=_range(grid.y, up), **{f"{side}_axis_type": "log" if _by_ratio(axis) else "linear"
-                                                for side, axis in (("x", grid.x), ("y", grid.y))})
+    plot = empty_figure(name="map", min_border=4, active_scroll=None, x_range=_range(grid.x, across),
+                        y_range=_range(grid.y, up), **{f"{side}_axis_type": "log" if _by_ratio(axis) else "linear"
+                                                       for side, axis in (("x", grid.x), ("y", grid.y))})
     source = ColumnDataSource(cell_rows(grid, computed), name="cells")
     mapper = LogColorMapper(name="force colours", palette=Inferno256[::4], low=1.0, high=10.0, nan_color="#888888")
     edges: dict[str, Any] = {"left": "left", "right": "right", "bottom": "bottom", "top": "top", "source": source,

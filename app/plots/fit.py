@@ -18,7 +18,7 @@ from .axes import Scale, force_scale, knob_scale
 from .curve import curve_columns
 from .measured import measured_over, residuals_over
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 #: Most parameters whose landscape is drawn.
 _MOST_LANDSCAPES = 4
@@ -61,7 +61,7 @@ def _curve(found: Fit, target: CurveTarget, theme: Theme) -> LayoutDOM:
     name = "max_output_force_elastic" if target.elastic else "max_output_force"
     scale = force_scale("largest elastic output force" if target.elastic else "largest output force",
                         float(np.nanmax([target.measured.force.max(), np.nanmax(found.evaluation.model)])))
-    plot = frame(name="data", min_border=4)
+    plot = empty_figure(name="data", min_border=4)
     assert found.evaluation.curve is not None
     _line(plot, found.evaluation.curve, name, scale.factor)
     measured_over(plot, target.measured, scale.factor, target.sigma)
@@ -77,7 +77,7 @@ def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
     curve = found.evaluation.curve
     assert curve is not None
     scale = force_scale("largest elastic output force", float(np.nanmax(curve.column("max_output_force_elastic"))))
-    plot = frame(name="data", min_border=4)
+    plot = empty_figure(name="data", min_border=4)
     _line(plot, curve, "max_output_force_elastic", scale.factor)
     for one, model in zip(target.features, found.evaluation.model, strict=True):
         role = "drive" if one.is_resonance else "soft"
@@ -107,7 +107,7 @@ def _series(target: SeriesTarget, models: np.ndarray, period: float, title: str,
     channels, time = target.channels, target.time
     count = min(len(time), int(np.searchsorted(time, _MOST_PERIODS * period)) + 1)
     scale = force_scale("force", max(float(np.abs(values).max()) for values in channels.values()))
-    plot, place = frame(name="data", min_border=4), 0
+    plot, place = empty_figure(name="data", min_border=4), 0
     for name, role in (("input_force", "input"), ("output_force", "output")):
         if name not in channels:
             continue
@@ -131,8 +131,8 @@ def _landscape(found: Fit, i: int, theme: Theme) -> figure:
     """χ² above its least over one parameter: every set that was evaluated, the profile, and the interval."""
     one, (values, misfits) = found.free[i], found.landscape
     axis = _axis(one)
-    plot = frame(name=f"landscape of {one.name}", min_border=4, y_axis_type="log",
-                 x_axis_type="log" if one.low > 0.0 else "linear")
+    plot = empty_figure(name=f"landscape of {one.name}", min_border=4, y_axis_type="log",
+                        x_axis_type="log" if one.low > 0.0 else "linear")
     rise = np.maximum(misfits - found.misfit, _SMALLEST_RISE)
     dots = plot.scatter(values[:, i] / axis.factor, rise, size=4, fill_alpha=0.5, line_color=None)
     themed(dots, fill_color="steel")

@@ -9,7 +9,7 @@ from bokeh.plotting import figure
 from granchain_core import LyapunovSpectrum
 
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 
 def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
@@ -18,7 +18,7 @@ def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
     source = ColumnDataSource({"rank": rank, "exponent": found.exponents, "error": found.errors,
                                "low": found.exponents - found.errors, "high": found.exponents + found.errors,
                                "fill": np.where(rank <= found.resolved, 1.0, 0.0)}, name="exponents")
-    plot = frame(name="lyapunov", min_border=4)
+    plot = empty_figure(name="lyapunov", min_border=4)
     plot.add_layout(themed(Span(location=0.0, dimension="width"), line_color="soft", line_width=1.0))
     themed(plot.segment("rank", "low", "rank", "high", source=source), line_color="accent", line_width=1.4)
     dots = plot.scatter("rank", "exponent", source=source, size=8, fill_alpha="fill")

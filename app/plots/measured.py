@@ -12,7 +12,7 @@ from granchain_core.experiment import Measured
 
 from ..format import given_in_words, signed_in_words
 from .axes import knob_scale
-from .themed import frame, themed
+from .themed import empty_figure, themed
 
 COLUMNS = ("frequency", "force", "low", "high", "value", "repeats", "residual", "word")
 TOOLTIPS = [("", "@word"), ("frequency", "@frequency{0.0} Hz"), ("force", "@value"), ("repeats", "@repeats"),
@@ -51,7 +51,7 @@ def measured_over(plot: figure, measured: Measured, factor: float, sigma: np.nda
 
 def residuals_over(frequencies: np.ndarray, residuals: np.ndarray, unit: str) -> figure:
     """Residuals over the frequency, with the line of zero."""
-    plot = frame(name="residuals", min_border=4)
+    plot = empty_figure(name="residuals", min_border=4)
     plot.add_layout(themed(Span(location=0, dimension="width"), line_color="soft", line_width=1.0))
     source = ColumnDataSource(name="residuals", data={"frequency": frequencies, "residual": residuals})
     themed(plot.segment("frequency", 0, "frequency", "residual", source=source), line_color="ink", line_width=1.0)

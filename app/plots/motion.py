@@ -30,7 +30,7 @@ from ..format import prefixed
 from .energies import bead_interval, energy_bar, energy_hover, energy_mapper
 from .force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 #: Most rows of the picture of energies, and most points of a line.
 _MOST_ROWS = 2000
@@ -83,8 +83,8 @@ def drive_panel(run: Recorded, index: np.ndarray, seconds: np.ndarray, time: Ran
     farthest = run.scene.A0 if isinstance(run, Run) else float(np.abs(run.drive_displacement).max())
     amplitude, largest = farthest / length or 1.0, run.max_input_force / force or 1.0
     lowest = min(0.0, float(run.input_force.min()) / force)
-    plot = frame(name="drive", y_range=time, min_border=4, sizing_mode="stretch_height", width=_SIDE_WIDTH,
-                 x_range=Range1d(1.05 * lowest - 0.05 * largest, 1.05 * largest), toolbar_location=None)
+    plot = empty_figure(name="drive", y_range=time, min_border=4, sizing_mode="stretch_height", width=_SIDE_WIDTH,
+                        x_range=Range1d(1.05 * lowest - 0.05 * largest, 1.05 * largest), toolbar_location=None)
     plot.extra_x_ranges = {"drive": Range1d(-1.15 * amplitude, 1.15 * amplitude)}
     plot.add_layout(LinearAxis(x_range_name="drive", axis_line_color=None, major_tick_line_color=None,
                                minor_tick_line_color=None, axis_label_text_font_style="normal"), "above")
@@ -106,7 +106,7 @@ def energy_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units, 
     factor, unit = units.energy
     values = np.asarray(run.kinetic_energy[index] / factor, dtype=np.float32)
     beads = values.shape[1]
-    plot = frame(name="energy", y_range=time, x_range=Range1d(0.5, beads + 0.5), min_border=4)
+    plot = empty_figure(name="energy", y_range=time, x_range=Range1d(0.5, beads + 0.5), min_border=4)
     plot.grid.visible = False
     plot.yaxis.visible = False
     plot.xaxis.axis_label = "bead"
@@ -134,8 +134,8 @@ def _output_panel(run: Recorded, index: np.ndarray, time: Range1d, units: Units,
     force, unit = units.force
     low = min(0.0, float(run.output_force.min()) / force)
     high = run.max_output_force / force or 1.0
-    plot = frame(name="output", y_range=time, min_border=4, sizing_mode="stretch_height", width=_SIDE_WIDTH,
-                 x_range=Range1d(1.05 * low - 0.05 * high, 1.05 * high), toolbar_location=None)
+    plot = empty_figure(name="output", y_range=time, min_border=4, sizing_mode="stretch_height", width=_SIDE_WIDTH,
+                        x_range=Range1d(1.05 * low - 0.05 * high, 1.05 * high), toolbar_location=None)
     plot.yaxis.visible = False
     elastic = columns(run.time[index] / units.time[0], force=(run.output_force_elastic[index], force))
     _line(plot, ELASTIC, ColumnDataSource(elastic, name=ELASTIC.title))

@@ -17,7 +17,7 @@ from granchain_core.regime import modulus_words
 
 from ..format import duration
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 #: Multipliers farther out are drawn at the edge, with their modulus beside them.
 _LARGEST_DRAWN = 2.4
@@ -46,8 +46,8 @@ def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False)
     """The plane drawn from `state`: properties by model name, as `plane_state` returns them."""
     made = {name: ColumnDataSource(name=name, **found) for name, found in state.items() if "data" in found}
     ranges = {axis: DataRange1d(range_padding=0.0) for axis in ("x_range", "y_range")}
-    plot = frame(name="multipliers", min_border=2, match_aspect=True, active_scroll=None,
-                 toolbar_location=None if compact else "right", **ranges)
+    plot = empty_figure(name="multipliers", min_border=2, match_aspect=True, active_scroll=None,
+                        toolbar_location=None if compact else "right", **ranges)
     corners = plot.scatter("x", "y", source=made["reach"], alpha=0.0)
     for data_range in ranges.values():
         data_range.renderers = [corners]

@@ -9,7 +9,7 @@ from bokeh.layouts import column
 from bokeh.models import Column, ColumnDataSource, HoverTool
 
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 
 def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | None, time_unit: str, unit: str,
@@ -20,9 +20,9 @@ def naive_forces(time: np.ndarray, accurate: np.ndarray, naive: np.ndarray | Non
     """
     sure = ColumnDataSource({"time": time, "force": accurate, "nothing": np.zeros_like(time)}, name="accurate")
     drawn = ColumnDataSource(naive_columns(time, accurate, naive), name="naive")
-    above = frame(name="naive forces", min_border=2, toolbar_location="right")
-    below = frame(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=150,
-                  sizing_mode="stretch_width")
+    above = empty_figure(name="naive forces", min_border=2, toolbar_location="right")
+    below = empty_figure(name="difference", x_range=above.x_range, min_border=2, toolbar_location="right", height=150,
+                         sizing_mode="stretch_width")
     # without it the axis would have no range where the naive force could not be computed
     themed(below.line("time", "nothing", source=sure), line_color="faint", line_width=1.0)
     lines: list[tuple[Any, str, Any, str, float, dict[str, Any]]] = [

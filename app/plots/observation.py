@@ -11,7 +11,7 @@ from granchain_core.observe import Observation
 from ..format import prefixed
 from .axes import force_scale
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 
 def observation(found: Observation, theme: Theme) -> figure:
@@ -20,7 +20,7 @@ def observation(found: Observation, theme: Theme) -> figure:
     forces = [found.input_force, found.output_force, *([] if measured is None else [measured])]
     scale = force_scale("force", max(float(np.nanmax(np.abs(one))) for one in forces))
     second, letter = prefixed(float(np.abs(found.time).max()))
-    plot = frame(name="observation", min_border=4)
+    plot = empty_figure(name="observation", min_border=4)
     columns = {"time": found.time / second, "input": forces[0] / scale.factor, "output": forces[1] / scale.factor}
     lines: list[tuple[str, str, str, float, list[int]]] = [
         ("input", "input force, given", "input", 1.8, []), ("output", "output force, computed", "output", 2.4, [])]

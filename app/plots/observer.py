@@ -9,7 +9,7 @@ from bokeh.models import ColumnDataSource, DataRange1d, HoverTool, Range1d
 from bokeh.plotting import figure
 
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 #: Drive periods that are shown at once; panning shows the earlier ones that are kept.
 SHOWN_PERIODS = 60
@@ -29,9 +29,9 @@ def observer(period: Sequence[float], distance: Sequence[float], prediction: Seq
     """
     follow = DataRange1d(follow="end", follow_interval=SHOWN_PERIODS, default_span=SHOWN_PERIODS / 3,
                          range_padding=0.0)
-    plot = frame(name="observer", y_axis_type="log", x_range=follow,
-                 y_range=Range1d(_SMALLEST_DISTANCE, _LARGEST_DISTANCE), active_scroll=None,
-                 toolbar_location=None if compact else "right", min_border=4)
+    plot = empty_figure(name="observer", y_axis_type="log", x_range=follow,
+                        y_range=Range1d(_SMALLEST_DISTANCE, _LARGEST_DISTANCE), active_scroll=None,
+                        toolbar_location=None if compact else "right", min_border=4)
     measured = ColumnDataSource({"period": list(period), "distance": list(distance)}, name="distance")
     expected = ColumnDataSource({"period": [p for p, _ in prediction], "distance": [d for _, d in prediction]},
                                 name="prediction")

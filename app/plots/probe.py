@@ -19,7 +19,7 @@ from granchain_core.analysis.spectrum import cosines
 
 from ..format import prefixed
 from .theme import Theme
-from .themed import apply_theme, frame, span_of, themed
+from .themed import apply_theme, empty_figure, span_of, themed
 
 #: Most points of a line; a longer motion is thinned out evenly.
 _MOST_ROWS = 700
@@ -183,8 +183,8 @@ def _over_time(name: str) -> figure:
 
 
 def _frame(name: str, sources: tuple[str, ...], **options: Any) -> tuple[figure, dict[str, ColumnDataSource]]:
-    plot = frame(name=f"probe {name}", min_border=4, x_range=Range1d(name="across"), y_range=Range1d(name="up"),
-                 active_scroll=None, **options)
+    plot = empty_figure(name=f"probe {name}", min_border=4, x_range=Range1d(name="across"), y_range=Range1d(name="up"),
+                        active_scroll=None, **options)
     plot.xaxis[0].name, plot.yaxis[0].name = "x axis", "y axis"
     for axis in (plot.xaxis[0], plot.yaxis[0]):
         axis.ticker.desired_num_ticks = 4

@@ -8,14 +8,14 @@ from bokeh.plotting import figure
 from granchain_core import RotationNumber
 
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 
 def rotation(found: RotationNumber, theme: Theme) -> figure:
     """The largest difference of three halves of the record over its length, both logarithmic."""
     states, values, differences = found.convergence.T if found.value is not None else ([], [], [])
     source = ColumnDataSource({"states": states, "value": values, "difference": differences}, name="convergence")
-    plot = frame(name="rotation", min_border=4, x_axis_type="log", y_axis_type="log")
+    plot = empty_figure(name="rotation", min_border=4, x_axis_type="log", y_axis_type="log")
     themed(plot.line("states", "difference", source=source, line_width=1.4), line_color="accent")
     dots = plot.scatter("states", "difference", source=source, size=8)
     themed(dots, fill_color="accent", line_color="accent")

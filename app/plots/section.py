@@ -10,7 +10,7 @@ from bokeh.models import ColumnDataSource, HoverTool, Range1d
 from bokeh.plotting import figure
 
 from .theme import Theme
-from .themed import apply_theme, frame, span_of, themed
+from .themed import apply_theme, empty_figure, span_of, themed
 
 #: Sections with fewer points than this have their transient drawn larger.
 _FEW_POINTS = 150
@@ -39,8 +39,8 @@ class SectionPoints:
 def section(shown: SectionPoints, theme: Theme) -> figure:
     """Velocity over displacement of one bead at one phase of the drive; `section_state` gives what changes later."""
     state = section_state(shown)
-    plot = frame(name="section", min_border=4, x_range=Range1d(name="displacements"),
-                 y_range=Range1d(name="velocities"))
+    plot = empty_figure(name="section", min_border=4, x_range=Range1d(name="displacements"),
+                        y_range=Range1d(name="velocities"))
     plot.xaxis[0].name, plot.yaxis[0].name = "displacement", "velocity"
     made = {name: ColumnDataSource(name=name) for name in ("path", "way", "dots", "orbit", "unstable orbit")}
     for name, model in (*made.items(), ("displacements", plot.x_range), ("velocities", plot.y_range),

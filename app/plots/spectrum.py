@@ -11,7 +11,7 @@ from granchain_core import BadInput, Spectrum
 from ..format import prefixed
 from .axes import force_scale
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 #: Decades below the largest line that are drawn.
 _DECADES = 6.0
@@ -31,8 +31,9 @@ def spectrum(found: Spectrum, theme: Theme) -> figure:
     known = np.nonzero(amplitude > max(low, floor))[0]
     highest = float(found.frequency[known[-1] if len(known) else -1])
     hertz, letter = prefixed(highest)
-    plot = frame(name="spectrum", min_border=4, y_axis_type="log", y_range=Range1d(low, 2.0 * float(amplitude.max())),
-                 x_range=Range1d(-0.01 * highest / hertz, 1.05 * highest / hertz))
+    plot = empty_figure(name="spectrum", min_border=4, y_axis_type="log",
+                        y_range=Range1d(low, 2.0 * float(amplitude.max())),
+                        x_range=Range1d(-0.01 * highest / hertz, 1.05 * highest / hertz))
     source = ColumnDataSource(name="lines", data={"frequency": found.frequency[drawn] / hertz,
                                                   "amplitude": amplitude[drawn],
                                                   "phase": found.phase[drawn], "low": np.full(int(drawn.sum()), low)})

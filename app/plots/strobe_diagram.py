@@ -12,7 +12,7 @@ from ..format import prefixed
 from .axes import knob_scale
 from .regimes import REGIME_MARKS, regime_key
 from .theme import Theme
-from .themed import apply_theme, frame
+from .themed import apply_theme, empty_figure
 
 
 def strobe_diagram(found: StrobeDiagram, bead: int, theme: Theme) -> figure:
@@ -25,7 +25,7 @@ def strobe_diagram(found: StrobeDiagram, bead: int, theme: Theme) -> figure:
     source = ColumnDataSource(name="strobes", data={
         "value": values / axis.factor, "state": states / factor, "regime": keys,
         "colour": [REGIME_MARKS[key][1] for key in keys]})
-    plot = frame(name="strobes", min_border=4)
+    plot = empty_figure(name="strobes", min_border=4)
     dots = plot.scatter("value", "state", source=source, size=3, fill_color="colour", line_color=None,
                         legend_group="regime")
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[

@@ -13,7 +13,7 @@ from .theme import Theme
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 
 
-def frame(tools: str = TOOLS, **options: Any) -> figure:
+def empty_figure(tools: str = TOOLS, **options: Any) -> figure:
     """An empty figure with the tools that every figure has; `apply_theme` gives it its colours."""
     plot = figure(tools=tools, output_backend="canvas", outline_line_color=None,
                   **{"sizing_mode": "stretch_both", "toolbar_location": "right", **options})

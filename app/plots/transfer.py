@@ -12,7 +12,7 @@ from granchain_core import BadInput, Transfer
 
 from ..format import prefixed
 from .theme import Theme
-from .themed import apply_theme, frame, themed
+from .themed import apply_theme, empty_figure, themed
 
 
 def transfer(found: Transfer, theme: Theme) -> LayoutDOM:
@@ -32,7 +32,7 @@ def transfer(found: Transfer, theme: Theme) -> LayoutDOM:
 
 
 def _panel(source: ColumnDataSource, name: str, where: str, label: str, **options: Any) -> figure:
-    plot = frame(name=name, min_border=4, **options)
+    plot = empty_figure(name=name, min_border=4, **options)
     dots = themed(plot.scatter("frequency", name, source=source, size=7, line_color=None), fill_color="output")
     plot.add_tools(HoverTool(renderers=[dots], tooltips=[("frequency", where), (label, f"@{name}{{0.0000}}")]))
     plot.yaxis.axis_label = label

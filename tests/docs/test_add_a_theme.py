@@ -42,8 +42,8 @@ parser = argparse.ArgumentParser()
 command.add_options(parser)
 print("sepia" in parser.format_help(), decode("v=1&look=sepia")[1:], b"[data-theme=sepia]" in answer())
 from app.plots.theme import THEMES
-from app.plots.themed import apply_theme, frame
-print(apply_theme(frame(), THEMES["sepia"]).background_fill_color)
+from app.plots.themed import apply_theme, empty_figure
+print(apply_theme(empty_figure(), THEMES["sepia"]).background_fill_color)
 """)
     assert printed.splitlines() == ["True ({'look': 'sepia'}, []) True", "#fbf5e6"]
 

@@ -10,7 +10,7 @@ from granchain_core.paper import CoupledRow, Observers
 
 from ..multipliers import multipliers
 from ..theme import Theme
-from ..themed import apply_theme, frame, themed
+from ..themed import apply_theme, empty_figure, themed
 from .panels import grid
 
 
@@ -30,7 +30,7 @@ def _row(part: CoupledRow, letters: str, place: Range1d, theme: Theme) -> list[f
     panels = [plane]
     for letter, words, role, bead in zip(letters[1:], ("chain", "observer"), ("accent", "second"), part.first_beads,
                                          strict=True):
-        plot = frame(name=f"{words} {part.kappa:g}", y_range=place, min_border=4)
+        plot = empty_figure(name=f"{words} {part.kappa:g}", y_range=place, min_border=4)
         line = plot.line(1e3 * part.twin.time, 1e6 * bead)
         themed(line, line_color=role, line_width=1.6)
         plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[("time", "@x{0.00} ms"),

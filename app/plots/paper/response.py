@@ -15,7 +15,7 @@ from ..axes import knob_scale
 from ..curve import FORCES, forces_in_words
 from ..regimes import REGIME_MARKS, regime_key
 from ..theme import Theme
-from ..themed import apply_theme, frame, themed
+from ..themed import apply_theme, empty_figure, themed
 from .panels import inside_legend, measured_curve
 from .trains import trains
 
@@ -29,7 +29,7 @@ def response(shown: RigResponse, theme: Theme) -> LayoutDOM:
 
 
 def _curves(shown: RigCurves, theme: Theme) -> figure:
-    plot = frame(name="curves", min_border=4)
+    plot = empty_figure(name="curves", min_border=4)
     for one, dash, role in zip(shown.curves, _DASHES, _COLOURS, strict=False):
         _curve(plot, one, dash, role, marked=len(shown.curves) == 1)
     high = max(p.max_output_force_elastic for one in shown.curves for p in one.points

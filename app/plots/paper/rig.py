@@ -9,7 +9,7 @@ from bokeh.plotting import figure
 from granchain_core.paper import Rig
 
 from ..theme import Theme
-from ..themed import apply_theme, frame, themed
+from ..themed import apply_theme, empty_figure, themed
 
 _MM = 1e3
 
@@ -21,8 +21,8 @@ def rig(shown: Rig, theme: Theme) -> figure:
     centres = np.array([row["centre_m"] for row in rows]) * _MM
     radii = np.array([row["radius_m"] for row in rows]) * _MM
     radius, end = float(radii[1]), float(centres[-1] + radii[-1])
-    plot = frame(name="rig", match_aspect=True, min_border=4, x_range=DataRange1d(range_padding=0.02),
-                 y_range=DataRange1d(range_padding=0.04))
+    plot = empty_figure(name="rig", match_aspect=True, min_border=4, x_range=DataRange1d(range_padding=0.02),
+                        y_range=DataRange1d(range_padding=0.04))
     plot.xaxis.axis_label = "distance from the left edge of the driver (mm)"
     plot.yaxis.visible = False
     plot.grid.visible = False

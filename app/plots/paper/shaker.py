@@ -8,7 +8,7 @@ from granchain_core.paper import ShakerAmplitude
 
 from ..axes import knob_scale
 from ..theme import Theme
-from ..themed import apply_theme, frame, themed
+from ..themed import apply_theme, empty_figure, themed
 from .panels import grid, hollow_points, inside_legend
 
 _DASHES = ("dashed", "solid", "dotted")
@@ -19,7 +19,7 @@ def shaker(shown: ShakerAmplitude, theme: Theme) -> LayoutDOM:
     panels = []
     for name, label, unit in (("velocity", "velocity amplitude V0 (mm/s)", 1e3),
                               ("displacement", "displacement amplitude A0 (µm)", 1e6)):
-        plot = frame(name=name, min_border=4)
+        plot = empty_figure(name=name, min_border=4)
         lines = [(a, (shown.velocity(a) if name == "velocity" else 0.0 * shown.frequency + a) * unit)
                  for a in shown.amplitudes]
         band = plot.varea(shown.frequency, lines[0][1], lines[-1][1], fill_alpha=0.15)

@@ -13,7 +13,7 @@ from granchain_core.paper import Column, Trains
 from granchain_core.paper.results import SHOWN
 
 from ..theme import Theme
-from ..themed import apply_theme, frame, themed
+from ..themed import apply_theme, empty_figure, themed
 from .panels import fewer, grid, inside_legend
 
 _MS = 1e3
@@ -29,7 +29,7 @@ def trains(shown: Trains, theme: Theme) -> LayoutDOM:
         forces = Range1d(*_limits(shown, name, unit))
         panels = []
         for place, column in enumerate(shown.columns):
-            plot = frame(name=f"{name} at {column.named:g} Hz", x_range=time, y_range=forces, min_border=3)
+            plot = empty_figure(name=f"{name} at {column.named:g} Hz", x_range=time, y_range=forces, min_border=3)
             _line(plot, column.time, unit * getattr(column, name), role, "model (5)", label)
             if name == "velocity":
                 _velocity(plot, column, place == len(shown.columns) - 1)
