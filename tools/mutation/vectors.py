@@ -51,7 +51,7 @@ IN_BATCHES = (
            "growth in batches is counted from 1, not from the distance it began with", k.LYAPUNOV),
     Mutant("refill-into-old-overlaps", _BATCH, "state.y[:, member], state.overlaps[:, member] = y, 0.0", "state.y[:, member] = y",
            "the first step of the next scene in a place is corrected for contacts of the one before", k.REFILL),
-    Mutant("refill-in-old-phase", _BATCH, "        state.phase[:, member] = 0.0, 1.0\n", "",
+    Mutant("refill-in-old-phase", _BATCH, "        state.phase[0, member], state.phase[1, member] = 0.0, 1.0\n", "",
            "a scene that is put into a place while others move begins at the phase that stood there", k.REFILL),
     Mutant("refill-with-old-effects", _BATCH, "rows[:, member] = value",
            "rows[:, member] += (rows[:, member] == 0.0) * value",
