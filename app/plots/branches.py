@@ -137,9 +137,9 @@ class BranchRows:
 def _runs(wanted: Sequence[bool]) -> list[list[int]]:
     """The runs of neighbouring places that are all wanted, each of two or more places."""
     runs: list[list[int]] = [[]]
-    for place, one in enumerate(wanted):
+    for index, one in enumerate(wanted):
         if one:
-            runs[-1].append(place)
+            runs[-1].append(index)
         elif runs[-1]:
             runs.append([])
     return [run for run in runs if len(run) > 1]

@@ -95,10 +95,10 @@ def _features(found: Fit, target: FeatureTarget, theme: Theme) -> LayoutDOM:
 def _records(found: Fit, target: RecordsTarget, theme: Theme) -> LayoutDOM:
     """Each record over the model, below the one before."""
     figures: list[LayoutDOM] = []
-    for one, place, _ in target.parts(found.evaluation):
+    for one, samples, _ in target.parts(found.evaluation):
         assert one.frequency is not None
         title = f"{one.frequency:g} Hz" if figures else f"{one.frequency:g} Hz – {_verdict(found)}"
-        figures.append(_series(one, found.evaluation.model[place], 1.0 / one.frequency, title, theme))
+        figures.append(_series(one, found.evaluation.model[samples], 1.0 / one.frequency, title, theme))
     return column(figures, sizing_mode="stretch_both")
 
 
@@ -107,12 +107,12 @@ def _series(target: SeriesTarget, models: np.ndarray, period: float, title: str,
     channels, time = target.channels, target.time
     count = min(len(time), int(np.searchsorted(time, _MOST_PERIODS * period)) + 1)
     scale = force_scale("force", max(float(np.abs(values).max()) for values in channels.values()))
-    plot, place = empty_figure(name="data", min_border=4), 0
+    plot, first = empty_figure(name="data", min_border=4), 0
     for name, role in (("input_force", "input"), ("output_force", "output")):
         if name not in channels:
             continue
-        model = models[place : place + len(channels[name])]
-        place += len(channels[name])
+        model = models[first : first + len(channels[name])]
+        first += len(channels[name])
         themed(plot.line(1e3 * time[:count], model[:count] / scale.factor), line_color=role, line_width=1.8)
         themed(plot.scatter(1e3 * time[:count], channels[name][:count] / scale.factor, size=5, fill_color=None,
                             line_width=1, legend_label=name.replace("_", " ")), line_color=role)

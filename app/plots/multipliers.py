@@ -120,11 +120,11 @@ def plane_state(orbit: Orbit | None, observer: bool = False, rank: int | None = 
     rows: dict[str, list[tuple[Any, ...]]] = {name: [] for name in _SETS}
     far: list[tuple[Any, ...]] = []
     for prefix, found in (("", own), ("observer ", () if others is None else others)):
-        for place, mu in enumerate(found):
+        for number, mu in enumerate(found):
             assert orbit is not None
             x, y = _shown(complex(mu), reach)
             kind = prefix + ("outside" if abs(mu) >= 1.0 else "within")
-            rows[kind].append((x, y, _size(abs(mu), kind), *multiplier_words(complex(mu), orbit), place))
+            rows[kind].append((x, y, _size(abs(mu), kind), *multiplier_words(complex(mu), orbit), number))
             if abs(mu) > reach:
                 far.append((x, y, f"|μ| {abs(mu):.3g}", "right" if x > 0.4 else "left" if x < -0.4 else "center",
                             20 if y > 0 else -20))

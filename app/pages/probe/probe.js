@@ -19,8 +19,8 @@ class ProbePage {
     this.title = pageHead("One bead", ...this.steps());
     this.line = paragraph("", "say");
     this.figures = new Map();
-    const places = Object.entries(TITLES).map(([name, words]) => this.place(name, words));
-    this.root = element("div", { className: "part sheet" }, this.title, this.line, ...places);
+    const panels = Object.entries(TITLES).map(([name, words]) => this.panel(name, words));
+    this.root = element("div", { className: "part sheet" }, this.title, this.line, ...panels);
   }
 
   steps() {
@@ -37,7 +37,7 @@ class ProbePage {
     window.granchain.emit("bead", bead);
   }
 
-  place(name, words) {
+  panel(name, words) {
     const host = element("div", { className: "picture" });
     this.figures.set(name, new BokehFigure(host, (one) => fillModels(one, this.drawn?.[name])));
     return element(

@@ -100,8 +100,8 @@ class Chain {
 
   showScale({ fit, driven, energy_labels, peaks }) {
     document.getElementById("stage").dataset.scale = fit ? "fit" : "same";
-    this.energies.forEach((place, i) => {
-      place.textContent = energy_labels[i];
+    this.energies.forEach((label, i) => {
+      label.textContent = energy_labels[i];
     });
     for (const one of this.scales) one.ariaPressed = String((one.value === "fit") === fit);
     // Longer words where there is room, only for the chosen scale.
@@ -109,9 +109,9 @@ class Chain {
     this.leftTitle.textContent = driven ? "driver" : "left end";
     this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
     this.scales[1].replaceChildren(...(fit ? more("fitted", " to each picture") : ["fit"]));
-    this.peaks.forEach((place, i) => {
+    this.peaks.forEach((label, i) => {
       const [most, least] = peaks[i];
-      place.replaceChildren(most, ...(least ? [element("span", { className: "roomy", textContent: least })] : []));
+      label.replaceChildren(most, ...(least ? [element("span", { className: "roomy", textContent: least })] : []));
     });
   }
 

@@ -18,11 +18,11 @@ def observers(shown: Observers, theme: Theme) -> LayoutDOM:
     """A row for each κ: the plane of multipliers, bead 1 of the chain, bead 1 of the observer."""
     values = np.concatenate([bead for part in shown.parts for bead in part.first_beads]) * 1e6
     room = 0.06 * float(np.ptp(values))
-    place = Range1d(float(values.min()) - room, float(values.max()) + room)
-    return grid([_row(part, "abc" if number == 0 else "def", place, theme) for number, part in enumerate(shown.parts)])
+    across = Range1d(float(values.min()) - room, float(values.max()) + room)
+    return grid([_row(part, "abc" if number == 0 else "def", across, theme) for number, part in enumerate(shown.parts)])
 
 
-def _row(part: CoupledRow, letters: str, place: Range1d, theme: Theme) -> list[figure]:
+def _row(part: CoupledRow, letters: str, across: Range1d, theme: Theme) -> list[figure]:
     orbit = part.twin.orbit
     assert orbit is not None  # figure 11 is one of periodic orbits
     plane = multipliers(orbit, theme)
@@ -30,7 +30,7 @@ def _row(part: CoupledRow, letters: str, place: Range1d, theme: Theme) -> list[f
     panels = [plane]
     for letter, words, role, bead in zip(letters[1:], ("chain", "observer"), ("accent", "second"), part.first_beads,
                                          strict=True):
-        plot = empty_figure(name=f"{words} {part.kappa:g}", y_range=place, min_border=4)
+        plot = empty_figure(name=f"{words} {part.kappa:g}", y_range=across, min_border=4)
         line = plot.line(1e3 * part.twin.time, 1e6 * bead)
         themed(line, line_color=role, line_width=1.6)
         plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[("time", "@x{0.00} ms"),

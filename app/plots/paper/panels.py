@@ -39,10 +39,10 @@ def fewer(values: np.ndarray, part: float = 2e-4) -> np.ndarray:
     return np.flatnonzero(kept)
 
 
-def inside_legend(plot: figure, theme: Theme, place: str = "top_right") -> None:
+def inside_legend(plot: figure, theme: Theme, location: str = "top_right") -> None:
     """A small legend within the frame, whose lines can be hidden."""
     for legend in plot.legend:
-        legend.update(location=place, padding=2, margin=4, spacing=0, label_height=14, glyph_height=14,
+        legend.update(location=location, padding=2, margin=4, spacing=0, label_height=14, glyph_height=14,
                       background_fill_alpha=0.8, click_policy="hide", label_text_font_size=f"{theme.small - 2}px")
 
 

@@ -62,11 +62,11 @@ def _driver(plot: figure, radius: float, amplitude: float, f: float) -> None:
            [f"driver: u0 = A0 sin(2πft), A0 = {1e6 * amplitude:g} µm, f = {f:g} Hz"], "drive")
 
 
-def _wall(plot: figure, place: float, radius: float, height: float) -> None:
-    wall = plot.quad(left=[place], right=[place + radius], bottom=[-0.5 * height - radius], top=[0.5 * height + radius],
+def _wall(plot: figure, left: float, radius: float, height: float) -> None:
+    wall = plot.quad(left=[left], right=[left + radius], bottom=[-0.5 * height - radius], top=[0.5 * height + radius],
                      hatch_pattern="/", hatch_alpha=0.6, fill_alpha=0.2)
     themed(wall, fill_color="steel", line_color="ink", line_width=1.6, hatch_color="ink")
-    _words(plot, [place + 0.5 * radius], 0.5 * height + 1.1 * radius, ["wall"], "ink", align="center", up=True)
+    _words(plot, [left + 0.5 * radius], 0.5 * height + 1.1 * radius, ["wall"], "ink", align="center", up=True)
 
 
 def _springs(plot: figure, centres: np.ndarray, radius: float) -> None:

@@ -28,11 +28,11 @@ def trains(shown: Trains, theme: Theme) -> LayoutDOM:
     for name, label, unit, role in _ROWS:
         forces = Range1d(*_limits(shown, name, unit))
         panels = []
-        for place, column in enumerate(shown.columns):
+        for number, column in enumerate(shown.columns):
             plot = empty_figure(name=f"{name} at {column.named:g} Hz", x_range=time, y_range=forces, min_border=3)
             _line(plot, column.time, unit * getattr(column, name), role, "model (5)", label)
             if name == "velocity":
-                _velocity(plot, column, place == len(shown.columns) - 1)
+                _velocity(plot, column, number == len(shown.columns) - 1)
                 plot.title.text = _heading(column)
             if name == "output_force" and column.observer_time is not None:
                 _line(plot, column.observer_time, column.observer, "second", f"model (3), {column.observer_words}",
@@ -40,7 +40,7 @@ def trains(shown: Trains, theme: Theme) -> LayoutDOM:
             measured = None if column.measured is None else getattr(column.measured, name)
             if column.measured is not None and measured is not None:
                 _line(plot, column.measured.time, unit * measured, "ink", column.measured.word, label, [4, 3], 1.2)
-            if place == 0:
+            if number == 0:
                 plot.yaxis[0].axis_label = label
             if name == "output_force":
                 plot.xaxis.axis_label = "time (ms)"
