@@ -24,7 +24,7 @@ def show_settled(views: Views, number: int, settled: Settled) -> None:
     views.trains.name_time(f"time ({letter}s){_periods_shown(frames, settled.run.scene)}")
     _draw(views, number, frames, settled.run, frames.time / factor, f"{letter}s",
           (settled.run.max_input_force, settled.run.max_output_force), final=settled.final)
-    views.curve.now(settled.run.scene.knobs["f"], settled.run.max_output_force)
+    views.curve.mark_motion(settled.run.scene.knobs["f"], settled.run.max_output_force)
     show_regime(views, settled)
 
 
@@ -47,7 +47,7 @@ def show_live(views: Views, number: int, step: LiveStep, running: bool) -> None:
     here = frames.extremes
     _draw(views, number, frames, run, time, unit, (here.input_force, here.output_force), live=True,
           running=running)
-    views.curve.now(run.scene.knobs["f"], frames.largest_output)
+    views.curve.mark_motion(run.scene.knobs["f"], frames.largest_output)
     views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
                                    **run_entries(run, views.trains.output_words(frames.largest_output,
                                                                                 run.force_errors.output)))

@@ -68,32 +68,32 @@ def points(rows: Sequence[Row]) -> dict[str, dict[str, list[Any]]]:
     return columns
 
 
-def marks(asked: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+def marks(annotations: Annotations, rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
     """Properties of the models that show what is asked, the references' agreement, the cheapest and the present row."""
     times = [1e3 * row.wall_s for row in rows if row.wall_s > 0.0] or [1.0]
 
     def one(place: tuple[float, float] | None) -> dict[str, Any]:
         return {"data": {"ms": [1e3 * place[0]] if place else [], "error": [place[1]] if place else []}}
 
-    agreement = asked.agreement or None
+    agreement = annotations.agreement or None
     return {
-        "good": {"top": asked.accuracy},
-        "asked": {"data": {"ms": [min(times)], "error": [asked.accuracy],
-                           "words": [f"asked {short_error(asked.accuracy)}"]}},
+        "good": {"top": annotations.accuracy},
+        "asked": {"data": {"ms": [min(times)], "error": [annotations.accuracy],
+                           "words": [f"asked {short_error(annotations.accuracy)}"]}},
         "agreement line": {"location": agreement, "visible": agreement is not None},
         "agreement": {"data": {"ms": [max(times)] if agreement else [], "error": [agreement] if agreement else []}},
-        "cheapest": one(asked.cheapest), "now": one(asked.now),
+        "cheapest": one(annotations.cheapest), "now": one(annotations.now),
     }
 
 
-def accuracy(rows: Sequence[Row], asked: Annotations, theme: Theme, compact: bool = False) -> figure:
+def accuracy(rows: Sequence[Row], annotations: Annotations, theme: Theme, compact: bool = False) -> figure:
     """Largest error over largest displacement against the processor time of ten drive periods in ms.
 
     The sources have the names of the methods; `points` and `marks` give what changes while a measurement goes on.
     """
     plot = empty_figure(name="accuracy", x_axis_type="log", y_axis_type="log", min_border=4,
                         toolbar_location=None if compact else "right")
-    state = marks(asked, rows)
+    state = marks(annotations, rows)
     good = themed(BoxAnnotation(name="good", fill_alpha=0.09, level="underlay"), fill_color="accent",
                   line_color="accent", line_width=2.0)
     limit = themed(Span(name="agreement line", dimension="width", line_dash=[1, 5], line_cap="round",
@@ -136,10 +136,10 @@ def _lines(plot: figure, columns: Mapping[str, dict[str, list[Any]]], compact: b
 
 def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> list[Any]:
     """A ring around the cheapest, a cross where the page is now, and, where there is room, words at all marks."""
-    made = {name: ColumnDataSource(state[name]["data"], name=name)
+    sources = {name: ColumnDataSource(state[name]["data"], name=name)
             for name in ("asked", "agreement", "cheapest", "now")}
-    ring = plot.scatter("ms", "error", source=made["cheapest"], size=18 if compact else 26, fill_color=None)
-    now = plot.scatter("ms", "error", source=made["now"], marker="square_cross", size=14 if compact else 20,
+    ring = plot.scatter("ms", "error", source=sources["cheapest"], size=18 if compact else 26, fill_color=None)
+    now = plot.scatter("ms", "error", source=sources["now"], marker="square_cross", size=14 if compact else 20,
                        fill_color=None)
     themed(ring, line_color="accent", line_width=3.0)
     themed(now, line_color="ink", line_width=1.8)
@@ -150,7 +150,7 @@ def _rings(plot: figure, state: Mapping[str, dict[str, Any]], compact: bool) -> 
         ("cheapest", {"value": "cheapest"}, "accent", {"x_offset": 17, "y_offset": 5}),
         ("now", {"value": "this page now"}, "ink", {"x_offset": 13, "y_offset": -8}),
     ]
-    texts = [themed(plot.text("ms", "error", text=text, source=made[name], text_font_style="bold",
+    texts = [themed(plot.text("ms", "error", text=text, source=sources[name], text_font_style="bold",
                               text_alpha=0.0 if compact else 1.0, text_font_size="14px",
                               background_fill_alpha=0.0 if compact else 0.8, padding=1, **place),
                     text_color=role, background_fill_color="card")

@@ -44,24 +44,24 @@ def multipliers(orbit: Orbit, theme: Theme, rank: int | None = None) -> figure:
 
 def plane(state: dict[str, dict[str, Any]], theme: Theme, compact: bool = False) -> figure:
     """The plane drawn from `state`: properties by model name, as `plane_state` returns them."""
-    made = {name: ColumnDataSource(name=name, **found) for name, found in state.items() if "data" in found}
+    sources = {name: ColumnDataSource(name=name, **found) for name, found in state.items() if "data" in found}
     ranges = {axis: DataRange1d(range_padding=0.0) for axis in ("x_range", "y_range")}
     plot = empty_figure(name="multipliers", min_border=2, match_aspect=True, active_scroll=None,
                         toolbar_location=None if compact else "right", **ranges)
-    corners = plot.scatter("x", "y", source=made["reach"], alpha=0.0)
+    corners = plot.scatter("x", "y", source=sources["reach"], alpha=0.0)
     for data_range in ranges.values():
         data_range.renderers = [corners]
     _circle(plot, compact)
-    themed(plot.segment("x", "y", "x1", "y1", source=made["ways"], line_alpha="alpha"), line_color="soft",
+    themed(plot.segment("x", "y", "x1", "y1", source=sources["ways"], line_alpha="alpha"), line_color="soft",
            line_width=1.6)
-    themed(plot.scatter("x", "y", source=made["past"], size=5, line_color=None, fill_alpha="alpha"),
+    themed(plot.scatter("x", "y", source=sources["past"], size=5, line_color=None, fill_alpha="alpha"),
            fill_color="soft")
-    themed(plot.scatter("x", "y", source=made["chosen"], size=28, fill_color=None, line_dash=[3, 3]),
+    themed(plot.scatter("x", "y", source=sources["chosen"], size=28, fill_color=None, line_dash=[3, 3]),
            line_color="ink", line_width=1.8)
-    items = _marks(plot, made, compact)
+    items = _marks(plot, sources, compact)
     for item in items:
         item.update(**state[item.name])
-    themed(plot.text("x", "y", "words", source=made["far"], text_font_size="13px", text_align="align",
+    themed(plot.text("x", "y", "words", source=sources["far"], text_font_size="13px", text_align="align",
                      y_offset="down", text_font_style="bold", text_baseline="middle"), text_color="ink")
     if not compact:
         plot.xaxis.axis_label, plot.yaxis.axis_label = "real part of μ", "imaginary part of μ"
@@ -83,12 +83,12 @@ def _circle(plot: figure, compact: bool) -> None:
         axis.ticker = FixedTicker(ticks=[-2, -1, 0, 1, 2])
 
 
-def _marks(plot: figure, made: dict[str, ColumnDataSource], compact: bool) -> list[LegendItem]:
+def _marks(plot: figure, sources: dict[str, ColumnDataSource], compact: bool) -> list[LegendItem]:
     """A renderer and an entry of the legend for each set."""
     shown = {}
     for name in _SETS:
         observer, outside = name.startswith("observer"), name.endswith("outside")
-        one = plot.scatter("x", "y", source=made[name], size="size", marker="square" if observer else
+        one = plot.scatter("x", "y", source=sources[name], size="size", marker="square" if observer else
                            "diamond" if outside else "circle", fill_color=None, line_color=None)
         one.nonselection_glyph = None
         role = "second" if observer else "ink" if outside else "accent"

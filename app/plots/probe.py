@@ -109,18 +109,18 @@ FIGURES: dict[str, Callable[[], figure]] = {
 
 def probe_state(run: Run, bead: int) -> dict[str, dict[str, dict[str, Any]]]:
     """Properties of the models of every figure, by figure and by the model's name. Beads count from 1."""
-    one = bead - 1
+    index = bead - 1
     time, time_unit = _scaled(run.time, "s")
-    u, u_unit = _scaled(run.displacement[:, one], "m")
-    v, v_unit = _scaled(run.velocity[:, one], "m/s")
-    both, force_unit = _scaled(run.force[:, one:one + 2], "N")
+    u, u_unit = _scaled(run.displacement[:, index], "m")
+    v, v_unit = _scaled(run.velocity[:, index], "m/s")
+    both, force_unit = _scaled(run.force[:, index:index + 2], "N")
     seconds = {"x": f"time ({time_unit})"}
     thin = slice(None, None, max(1, -(-len(time) // _MOST_ROWS)))
     closed = closed_spells(run)
-    own = [(c, a, b) for c, a, b in closed if c in (one, bead)]
-    others = [(c, a, b) for c, a, b in closed if c not in (one, bead)]
+    own = [(c, a, b) for c, a, b in closed if c in (index, bead)]
+    others = [(c, a, b) for c, a, b in closed if c not in (index, bead)]
     factor = run.time[-1] / time[-1] if time[-1] else 1.0
-    lines, amplitude = amplitudes(run, one)
+    lines, amplitude = amplitudes(run, index)
     shown, amplitude_unit = _scaled(amplitude, "m")
     whole = {} if run.regime.name == "periodic" else {"note": f"{round((len(time) - 1) / run.samples)} periods"}
     strobes = slice(0, -1, run.samples)
@@ -157,9 +157,9 @@ def closed_spells(run: Run) -> list[tuple[int, float, float]]:
     return found
 
 
-def amplitudes(run: Run, one: int) -> tuple[np.ndarray, np.ndarray]:
+def amplitudes(run: Run, index: int) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies over the drive's, up to _LAST_HARMONIC, and amplitudes of a bead's displacement [m]."""
-    motion = run.displacement[:-1, one]
+    motion = run.displacement[:-1, index]
     periods = len(motion) / run.samples
     repeats = run.regime.period is not None and periods % run.regime.period == 0
     found = np.abs(cosines(motion, repeats))

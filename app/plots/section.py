@@ -42,17 +42,17 @@ def section(shown: SectionPoints, theme: Theme) -> figure:
     plot = empty_figure(name="section", min_border=4, x_range=Range1d(name="displacements"),
                         y_range=Range1d(name="velocities"))
     plot.xaxis[0].name, plot.yaxis[0].name = "displacement", "velocity"
-    made = {name: ColumnDataSource(name=name) for name in ("path", "way", "dots", "orbit", "unstable orbit")}
-    for name, model in (*made.items(), ("displacements", plot.x_range), ("velocities", plot.y_range),
+    sources = {name: ColumnDataSource(name=name) for name in ("path", "way", "dots", "orbit", "unstable orbit")}
+    for name, model in (*sources.items(), ("displacements", plot.x_range), ("velocities", plot.y_range),
                         ("displacement", plot.xaxis[0]), ("velocity", plot.yaxis[0])):
         model.update(**state[name])
-    themed(plot.multi_line("u", "v", source=made["path"], line_alpha=0.45), line_color="soft", line_width=1.4)
-    way = themed(plot.scatter("u", "v", size="size", source=made["way"], line_color=None, fill_alpha=0.75),
+    themed(plot.multi_line("u", "v", source=sources["path"], line_alpha=0.45), line_color="soft", line_width=1.4)
+    way = themed(plot.scatter("u", "v", size="size", source=sources["way"], line_color=None, fill_alpha=0.75),
                  fill_color="soft")
-    dots = themed(plot.scatter("u", "v", size="size", source=made["dots"], line_color=None), fill_color="accent")
-    ring = themed(plot.scatter("u", "v", size=16, source=made["orbit"], fill_color=None),
+    dots = themed(plot.scatter("u", "v", size="size", source=sources["dots"], line_color=None), fill_color="accent")
+    ring = themed(plot.scatter("u", "v", size=16, source=sources["orbit"], fill_color=None),
                   line_color="accent", line_width=3.0)
-    diamond = themed(plot.scatter("u", "v", size=20, marker="diamond", source=made["unstable orbit"],
+    diamond = themed(plot.scatter("u", "v", size=20, marker="diamond", source=sources["unstable orbit"],
                                   fill_color=None), line_color="ink", line_width=3.0)
     plot.add_tools(HoverTool(renderers=[way, dots], tooltips=[("drive period", "@number"), ("displacement", "@u"),
                                                               ("velocity", "@v")]),

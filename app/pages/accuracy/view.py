@@ -52,12 +52,12 @@ class Accuracy(FigurePart):
         self.need_figures()
         self.update_state(rows=described_rows(rows), drawn=points(rows), **reference)
 
-    def mark(self, rows: list[Row], asked: Annotations, stale: bool, sentence: str, used: str) -> None:
+    def mark(self, rows: list[Row], annotations: Annotations, stale: bool, sentence: str, used: str) -> None:
         """Mark the accuracy asked for, the cheapest setting and the one used now.
 
         `stale`: the rows belong to another chain. `sentence` tells the cheapest, `used` what is used now.
         """
-        self.send(type="asked", marks=marks(asked, rows), stale=stale, sentence=sentence, used=used)
+        self.send(type="asked", marks=marks(annotations, rows), stale=stale, sentence=sentence, used=used)
 
     def show_naive(self, shown: Lesson) -> None:
         """Show the forces that naive steps would have drawn."""

@@ -32,7 +32,7 @@ class HardCasesPage(Page):
         self._task = Task(host, MEASUREMENTS, self._end, "The case")
         host.on_close(self._give_up)
         self._shown: dict[str, dict[str, Any]] = {}
-        self._asked = 0
+        self._requested = 0
         self.rows: dict[str, list[Check]] = {}
         self.waiting: list[str] = []
         self.actions: Actions = {
@@ -71,11 +71,11 @@ class HardCasesPage(Page):
     def _run(self, cases: tuple[Case, ...]) -> None:
         idle = not self.waiting
         if idle:
-            self._asked = 0
+            self._requested = 0
         for case in cases:
             if case.name not in self.waiting:
                 self.waiting.append(case.name)
-                self._asked += 1
+                self._requested += 1
                 self._put(case.name, **WORDS.of("waiting"))
         if idle:
             self._begin_next()
@@ -127,4 +127,4 @@ class HardCasesPage(Page):
 
     def _show(self) -> None:
         self._view.update_state(results=self._shown, summary=summary(self.rows), running=bool(self.waiting),
-                                done=1.0 - len(self.waiting) / max(1, self._asked))
+                                done=1.0 - len(self.waiting) / max(1, self._requested))

@@ -52,9 +52,9 @@ class ObserverStep:
 
 
 class ObserverRun:
-    """One chain with one observer; it starts from the states of `went_on`, a run before a knob was turned."""
+    """One chain with one observer; it starts from the states of `previous`, the run before a knob was turned."""
 
-    def __init__(self, scene: Scene, settled: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
+    def __init__(self, scene: Scene, settled: Settled | None, stop: Stop, previous: ObserverRun | None) -> None:
         self.scene = scene
         self.orbit: Orbit | None = None
         self.drifts = False
@@ -63,9 +63,9 @@ class ObserverRun:
         self.pair = Pair(scene, self.samples, stop)
         self.number, self.since = 0, 0
         self._largest_input = 0.0  # of all periods so far: an orbit may push in one of three only
-        if went_on is not None and went_on.scene.N == scene.N:
-            self.number = went_on.number
-            self._begin(*went_on.pair.states)
+        if previous is not None and previous.scene.N == scene.N:
+            self.number = previous.number
+            self._begin(*previous.pair.states)
         else:
             start = settled.state if settled is not None else rest(scene)
             self._begin(start, observer_start(scene, start, NUDGE))

@@ -20,8 +20,8 @@ from ...scripts import module
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
     """All pictures, and the small one of the tab."""
-    made = {name: figure_item(without_points(name, theme)) for name in FIGURES}
-    return {**made, "small": figure_item(without_points("phase", theme, compact=True))}
+    full_size = {name: figure_item(without_points(name, theme)) for name in FIGURES}
+    return {**full_size, "small": figure_item(without_points("phase", theme, compact=True))}
 
 
 class Probe(FigurePart):
