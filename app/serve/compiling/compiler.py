@@ -127,7 +127,9 @@ class Requests:
         """Ask for these kernels; returns why one of them could not be compiled, None as long as that is not known."""
         for piece in pieces:
             key = structure(scene), piece
-            compilation = self._compilations.get(key) or self._compilations.setdefault(key, self._compiler.ask(scene, piece))
+            if key not in self._compilations:
+                self._compilations[key] = self._compiler.ask(scene, piece)
+            compilation = self._compilations[key]
             error = compilation.exception() if compilation.done() else None
             if isinstance(error, Exception):
                 return error
