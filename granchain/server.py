@@ -16,7 +16,7 @@ from types import TracebackType
 
 from granchain_core import BadInput, Scene, scene
 
-from .plots import part_of_app
+from .pictures import part_of_app
 
 #: What the process runs: the command `granchain`, and nothing that depends on the PATH. It ends with this process.
 _PROGRAM = ("import sys; from granchain_core.child_processes import end_with_parent; "
