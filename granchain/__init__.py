@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from granchain_core import periodic_orbit as periodic_orbit
     from granchain_core import settled as settled
 
-    from .plots import figure
+    from .pictures import figure
     from .server import Dashboard, dashboard
 
 #: What the core does not have, and the module here in which it is.
