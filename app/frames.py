@@ -64,13 +64,14 @@ class Frames:
     @cached_property
     def extremes(self) -> Extremes:
         """The largest values; forces with the top of each jump, displacements with the driver's."""
-        places = np.concatenate([self.drive_displacement[:, None], self.displacement, np.zeros((self.rows, 1))], axis=1)
+        driver, wall = self.drive_displacement[:, None], np.zeros((self.rows, 1))
+        displacement = np.concatenate([driver, self.displacement, wall], axis=1)
         return Extremes(
             input_force=float(max(self.input_force.max(), self.input_jumps[:, 1].max(initial=0.0))),
             output_force=self.largest_output,
             kinetic_energy=float(self.kinetic_energy.max()),
-            displacement=float(np.abs(places).max()),
-            overlap=float(max((places[:, :-1] - places[:, 1:]).max(), 0.0)),
+            displacement=float(np.abs(displacement).max()),
+            overlap=float(max((displacement[:, :-1] - displacement[:, 1:]).max(), 0.0)),
             input_pull=float(max(-self.input_force.min(), 0.0)),
             output_pull=float(max(-min(self.output_force.min(), self.output_force_elastic.min()), 0.0)))
 
@@ -133,9 +134,9 @@ def with_jumps(time: np.ndarray, force: np.ndarray, jumps: np.ndarray) -> tuple[
     """A force train as a line with vertical jumps (J, 2): each adds two points, at 0 and at the force reached."""
     if not len(jumps):
         return time, force
-    places = np.searchsorted(time, jumps[:, 0])
+    rows = np.searchsorted(time, jumps[:, 0])
     feet = np.zeros(len(jumps))
-    twice = np.repeat(places, 2)
+    twice = np.repeat(rows, 2)
     return (np.insert(time, twice, np.repeat(jumps[:, 0], 2)),
             np.insert(force, twice, np.stack([feet, jumps[:, 1]], axis=1).ravel()))
 

@@ -20,8 +20,8 @@ log = logging.getLogger("granchain")
 WITH_TABLES = (
     "serve.http.guard", "serve.http.compressed", "serve.monitoring.logs", "serve.document.document_lock",
     "serve.document.channel", "serve.document.changes", "serve.document.socket_tuning", "serve.opening.bokeh_defaults",
-    "serve.opening.panel_shortcuts", "serve.opening.panel_pages", "parts.figures.figure_style", "dashboard.template",
-    "dashboard.entry",
+    "serve.opening.panel_shortcuts", "serve.opening.panel_resources", "parts.figures.figure_style",
+    "dashboard.template", "dashboard.entry",
 )
 
 

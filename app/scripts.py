@@ -26,7 +26,7 @@ def files_by_name(pattern: str, folder: Path = _HERE) -> dict[str, Path]:
 #: Every module by its name.
 FILES = files_by_name("*.js")
 #: Those that are written into the page itself, in this order: they listen before any module is there.
-IN_PAGE = ("page.js", "address.js", "connection.js")
+INLINE_SCRIPTS = ("shared.js", "address.js", "connection.js")
 
 
 class Scripts:
@@ -50,7 +50,7 @@ _BY_ADDRESS = {address(name): path for name, path in FILES.items()}
 
 def modules() -> list[str]:
     """The addresses of all modules that are fetched. The page lists them: a browser need not find them one by one."""
-    return [address(name) for name in FILES if name not in IN_PAGE]
+    return [address(name) for name in FILES if name not in INLINE_SCRIPTS]
 
 
 def file_at(path: str) -> Path | None:

@@ -28,9 +28,9 @@ from .serve.computing.turns import TURNS
 from .serve.http.guard import Rules, guard_handlers, guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.monitoring import logs
-from .serve.monitoring.metrics import METRICS, Liveness, MetricsPage
+from .serve.monitoring.metrics import METRICS, Liveness, MetricsHandler
 from .serve.opening.bokeh_defaults import remember_defaults
-from .serve.opening.panel_pages import remember_resources
+from .serve.opening.panel_resources import remember_resources
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
@@ -116,7 +116,7 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
         {"/": page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
         websocket_max_message_size=LARGEST_MESSAGE,
-        extra_patterns=[(r"/liveness", Liveness), (r"/metrics", MetricsPage)],
+        extra_patterns=[(r"/liveness", Liveness), (r"/metrics", MetricsHandler)],
         http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
                             "max_body_size": LARGEST_BODY, "xheaders": access.proxy},
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,

@@ -19,8 +19,8 @@ import numpy as np
 
 from app.dashboard.gallery import FOLDER
 from app.frames import Frames, samples_for, settled_frames
-from app.pictures.energies import ENERGY_COLOURS
-from app.pictures.theme import THEMES
+from app.plots.energies import ENERGY_COLOURS
+from app.plots.theme import THEMES
 from granchain_core import Scene, scene, scene_names, settle
 from tools.scales import digest_of
 

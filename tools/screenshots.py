@@ -27,7 +27,7 @@ sys.path.insert(0, str(ROOT / "tests" / "browser"))
 from server import dashboard, launch  # noqa: E402  (the browser tests start them in the same way)
 
 from app.dashboard.table import TABS, overlay_names  # noqa: E402
-from app.pictures.theme import THEMES  # noqa: E402
+from app.plots.theme import THEMES  # noqa: E402
 from app.session.stories import Story, stories  # noqa: E402
 
 SIZES = {"laptop": (1280, 800), "screen": (1920, 1080), "hall": (2560, 1440), "phone": (390, 844)}
@@ -66,7 +66,7 @@ def opened(browser: Browser, address: str, size: tuple[int, int]) -> Iterator[Pa
     page = context.new_page()
     page.add_init_script(TOURED)
     page.goto(address)
-    page.wait_for_function("() => document.getElementById('page')?.classList.contains('starting') === false", timeout=300_000)
+    page.wait_for_function("() => document.getElementById('dashboard')?.classList.contains('starting') === false", timeout=300_000)
     page.evaluate(COUNTER)
     yield page
     context.close()

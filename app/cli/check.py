@@ -77,8 +77,8 @@ def _drawn() -> Any:
 
     from granchain_core.hard_cases.table import CASES
 
-    from ..pictures.check import check as drawn
-    from ..pictures.theme import THEMES
+    from ..plots.check import check as drawn
+    from ..plots.theme import THEMES
 
     shown = [(case.name, case.picture()) for case in CASES if case.picture is not None]
     models = [model for name, picture in shown for model in (Div(text=heading(name)), drawn(picture, THEMES["light"]))]

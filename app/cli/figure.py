@@ -11,7 +11,7 @@ from typing import Any
 
 from granchain_core import BadInput
 
-from ..pictures.theme import THEMES
+from ..plots.theme import THEMES
 from .common import in_background, say, show_percent
 from .data_options import add_answers, with_answers
 
@@ -67,7 +67,7 @@ def _checked(name: str, theme: str) -> str:
     if theme not in THEMES:
         raise unknown_name("theme", theme, THEMES)
     if kind in (".png", ".svg"):
-        from ..pictures.browser import browser
+        from ..plots.browser import browser
 
         browser()
     return kind
@@ -77,9 +77,9 @@ def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
     """The content of the file."""
     if kind == ".csv":
         return table_of(result).encode("utf-8")
-    from ..pictures.browser import png_of, svg_of
-    from ..pictures.file import captioned_page
-    from ..pictures.paper import paper_figure, size_of
+    from ..plots.browser import png_of, svg_of
+    from ..plots.file import captioned_html
+    from ..plots.paper import paper_figure, size_of
 
     colours = THEMES[theme]
     drawn, title = paper_figure(result, colours), f"Figure {figure.number}: {figure.title}"
@@ -87,7 +87,7 @@ def _written(figure: Any, result: Any, kind: str, theme: str) -> bytes:
         return png_of(drawn, title, figure.caption, colours, size_of(result))
     if kind == ".svg":
         return svg_of(drawn, title, figure.caption, colours, size_of(result)).encode("utf-8")
-    return captioned_page(drawn, title, figure.caption, colours).encode("utf-8")
+    return captioned_html(drawn, title, figure.caption, colours).encode("utf-8")
 
 
 def table_of(result: Any) -> str:

@@ -203,9 +203,9 @@ def _rows(found: Fit) -> list[str]:
 
     target, evaluation = found.target, found.evaluation
     if isinstance(target, RecordsTarget):
-        return [f"{one.frequency:10.6g} Hz  χ² {float((evaluation.residuals[place] ** 2).sum()):10.5g} of "
-                f"{place.stop - place.start} samples  {_in_words(regime)}"
-                for one, place, regime in target.parts(evaluation)]
+        return [f"{one.frequency:10.6g} Hz  χ² {float((evaluation.residuals[samples] ** 2).sum()):10.5g} of "
+                f"{samples.stop - samples.start} samples  {_in_words(regime)}"
+                for one, samples, regime in target.parts(evaluation)]
     if isinstance(target, CurveTarget):
         rows = zip(target.frequencies, target.measured.force, evaluation.model, evaluation.residuals,
                    evaluation.regimes, strict=True)

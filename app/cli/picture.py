@@ -40,7 +40,7 @@ def write_picture(name: str | None, title: str, result: Any, **options: Any) -> 
     """Write the picture that `granchain.figure` draws of a result, if one was asked for; `options` are its own."""
     if name is None:
         return
-    from ..pictures.any_result import stretched
+    from ..plots.any_result import stretched
 
     write_figure(name, title, stretched(result, **options))
 
@@ -56,7 +56,7 @@ def write_files(arguments: argparse.Namespace, title: str, result: Any, **option
 
 
 def write_figure(name: str, title: str, figure: Any) -> None:
-    """Write a figure of `app/pictures`."""
-    from ..pictures.file import page_of
+    """Write a figure of `app/plots`."""
+    from ..plots.file import html_of
 
-    Path(name).write_text(page_of(figure, title), encoding="utf-8")
+    Path(name).write_text(html_of(figure, title), encoding="utf-8")

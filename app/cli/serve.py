@@ -62,7 +62,7 @@ def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
     """Import the dashboard and serve it; `before` is called when it is about to listen."""
     gc.disable()  # an import makes nothing but what stays, and a tenth of its time was the search for garbage
     from ..server import Access, is_loopback
-    from ..server import serve as serve_page
+    from ..server import serve as serve_dashboard
 
     secret, sign_in = _secret(arguments), _sign_in(arguments)
     exposed = arguments.behind_proxy or not is_loopback(arguments.address)
@@ -75,7 +75,7 @@ def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
     access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.most_visitors,
                     tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()))
     try:
-        serve_page(arguments.port, arguments.address, access=access, log_level=arguments.log_level, before=before)
+        serve_dashboard(arguments.port, arguments.address, access=access, log_level=arguments.log_level, before=before)
     except OSError as problem:
         raise BadInput(f"Cannot listen on {arguments.address}:{arguments.port}: {problem.strerror or problem}; "
                        f"try --port {arguments.port + 1}.") from None

@@ -11,7 +11,7 @@ import socket
 import threading
 from pathlib import Path
 
-from ..pictures.theme import style_sheet
+from ..plots.theme import style_sheet
 
 #: Longest wait for the head of a request [s].
 _LONGEST_WAIT = 2.0
@@ -25,7 +25,7 @@ def answer() -> bytes:
     """The whole answer: the skeleton with the page's own layout and themes."""
     folder = Path(__file__).resolve().parent
     layout = folder.parent / "dashboard"
-    files = [layout / name for name in ("page.css", "skeleton.css")]
+    files = [layout / name for name in ("dashboard.css", "skeleton.css")]
     sheets = style_sheet() + "".join(one.read_text(encoding="utf-8") for one in files)
     body = (folder / "waiting.html").read_text(encoding="utf-8").replace("/* style sheets */", sheets).encode()
     head = ("HTTP/1.1 503 Service Unavailable\r\nContent-Type: text/html; charset=utf-8\r\nCache-Control: no-store\r\n"

@@ -12,7 +12,7 @@ from granchain_core.precompile.pieces import CURVE_KERNELS
 from granchain_core.steady.curve.order import CURVE_STARTS
 from granchain_core.steady.curve.resonance_curve import draft_curve
 
-from ..pictures.curve import WORDS
+from ..plots.curve import WORDS
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
 from ..serve.computing.queues import CURVES, LatestWins
 from ..serve.computing.turns import TurnFlag
@@ -53,17 +53,17 @@ class CurveController:
         self._quiet = Debounce(host, CURVE_QUIET)
         self._reports = Reports(host, self._draw)
         self._visible = True
-        #: By direction, and for the stated features: whether it is selected.
+        #: By the start of a curve, and for the stated features: whether it is selected.
         self._wanted = {name: name == "rest" for name, *_ in CHOICES}
         #: Scenes of `without_frequency`, since a curve is the same at every f: of the present knobs, of the curve that
-        #: was begun last, and of the complete curve of each direction.
+        #: was begun last, and of the complete curve from each start.
         self._wanted_for: Scene | None = None
         self._begun_for: Scene | None = None
         self._complete_for: dict[str, Scene] = {}
         #: How many curves were begun; a draft that was asked for before the last of them is out of date.
         self._begun = 0
-        #: Directions that were missing when the last curve was begun, and the part of them that is computed, from 0 to
-        #: 1; -1 if nothing is under way.
+        #: Starts whose curves were missing when the last curve was begun, and the part of these curves that is
+        #: computed, from 0 to 1; -1 if nothing is under way.
         self._missing: list[str] = []
         self._done = -1.0
         #: Why the kernels of the present knobs could not be compiled.
@@ -80,7 +80,7 @@ class CurveController:
     def show_preset(self, scene: Scene, selected: str) -> str:
         """Show an empty figure over the frequencies of another scene, with the curves of a link; return which.
 
-        An empty text leaves the directions as they are, and shows the stated features of the paper's rig.
+        An empty text leaves the selected curves as they are, and shows the stated features of the paper's rig.
         """
         self._complete_for.clear()
         self._names.forget()
@@ -174,7 +174,7 @@ class CurveController:
         return self.selection(scene)
 
     def switch(self, name: str, wanted: bool, scene: Scene) -> None:
-        """Switch a direction or the stated features on or off."""
+        """Switch the curve of a start, or the stated features, on or off."""
         if name not in self._wanted:
             return
         self._wanted[name] = wanted
@@ -199,7 +199,7 @@ class CurveController:
         return 0.0 <= self._done < 1.0
 
     def activities(self) -> list[Activity]:
-        """Name, state and detail of every direction, as it is at this moment."""
+        """Name, state and detail of the curve of every start, as it is at this moment."""
         found = []
         for name in CURVE_STARTS:
             title = f"resonance curve, {WORDS[name]}"
@@ -241,7 +241,7 @@ class CurveController:
                 if self._wanted[name] and self._complete_for.get(name) == key}
 
     def _begin(self, scene: Scene) -> None:
-        """Compute the selected directions that are missing; a change of f alone needs no new curve."""
+        """Compute the selected curves that are missing; a change of f alone needs no new curve."""
         key = without_frequency(scene)
         missing = [name for name in CURVE_STARTS
                    if self._visible and self._wanted[name] and self._complete_for.get(name) != key]
@@ -249,7 +249,7 @@ class CurveController:
             self._complete_for.pop(name, None)
         self._begun_for = key
         shown = [name for name in CURVE_STARTS if self._wanted[name]]
-        self._figure.show_directions(shown)
+        self._figure.show_only(shown)
         self._figure.begin(missing)
         self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
         self._begun += bool(missing)
@@ -269,30 +269,29 @@ class CurveController:
                                stated=[stated_name(feature) for feature in stated])
 
     def _draw(self, reports: list[Progress]) -> None:
-        """Draw the points of these reports, and note which directions they complete."""
+        """Draw the points of these reports, and note which curves they complete."""
         points: dict[str, list[CurvePoint]] = {}
         for progress in reports:
-            points.setdefault(progress.direction, []).extend(progress.points)
-        covers = {progress.direction for progress in reports if progress.covers}
-        for direction, new in points.items():
-            self._figure.add(direction, new, direction in covers)
+            points.setdefault(progress.start, []).extend(progress.points)
+        covers = {progress.start for progress in reports if progress.covers}
+        for start, new in points.items():
+            self._figure.add(start, new, start in covers)
         for progress in reports:
             if progress.complete and self._begun_for is not None:
-                self._complete_for[progress.direction] = self._begun_for
-                self._figure.finished(progress.direction)
+                self._complete_for[progress.start] = self._begun_for
+                self._figure.finished(progress.start)
                 self._placed()
-                if progress.direction == "rest":
+                if progress.start == "rest":
                     self._names.name(self._figure.points("rest"), self._begun_for)
                 self._tell_compared(self._figure.difference)
         self._done = self._overall(reports[-1])
         self._bar.update_state(done=self._done)
 
     def _overall(self, progress: Progress) -> float:
-        """Progress over all directions of this request."""
-        if progress.direction not in self._missing:
+        """Progress over all curves of this request."""
+        if progress.start not in self._missing:
             return -1.0
-        place = self._missing.index(progress.direction)
-        return (place + progress.done) / len(self._missing)
+        return (self._missing.index(progress.start) + progress.done) / len(self._missing)
 
     def _show_names(self, names: list[dict[str, Any]]) -> None:
         """Show the names of peaks, valleys and stop band, with their heights on the axis."""

@@ -8,8 +8,8 @@ from typing import Any
 from granchain_core.steady.curve.resonance import STRONG_PART
 
 from ..parts.toolkit.component import Component, text
-from ..pictures.curve import LABELS
-from ..pictures.regimes import REGIME_MARKS, SYMBOLS
+from ..plots.curve import LABELS
+from ..plots.regimes import REGIME_MARKS, SYMBOLS
 from ..scripts import module
 
 _MEANINGS = {"rest": "Every frequency started from rest.", "up": "Frequency rising, the state carried along.",

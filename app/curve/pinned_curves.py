@@ -10,7 +10,7 @@ from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot, Scatter, T
 from granchain_core import CurvePoint
 
 from ..parts.stage.pinned_trains import DASHES
-from ..pictures.theme import GREY
+from ..plots.theme import GREY
 
 
 class PinnedCurves:
@@ -55,12 +55,12 @@ class PinnedCurves:
         names, frequencies, forces = zip(*self.places, strict=True) if self.places else ((), (), ())
         self._source.data = {"name": list(names), "frequency": list(frequencies),
                              "force": [force / factor for force in forces]}
-        for place, dash in enumerate(DASHES):
-            points = self._curves[place] if place < len(self._curves) else []
-            if points and place not in self._lines:
-                self._lines[place] = self._line(dash)
-            if place in self._lines:
-                self._lines[place].data = {"frequency": [p.frequency for p in points],
+        for number, dash in enumerate(DASHES):
+            points = self._curves[number] if number < len(self._curves) else []
+            if points and number not in self._lines:
+                self._lines[number] = self._line(dash)
+            if number in self._lines:
+                self._lines[number].data = {"frequency": [p.frequency for p in points],
                                            "force": [p.max_output_force / factor for p in points]}
 
     def _line(self, dash: list[int]) -> ColumnDataSource:

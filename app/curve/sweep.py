@@ -28,12 +28,12 @@ _FINER_PASSES = 2
 
 @dataclass
 class Progress:
-    """How far one curve is, `done` from 0 to 1; `points` are new since the last report.
+    """How far the curve of one start is, `done` from 0 to 1; `points` are new since the last report.
 
     `covers` says that points lie over the whole range, `complete` that no more will come.
     """
 
-    direction: str
+    start: str
     points: list[CurvePoint]
     done: float
     complete: bool = False
@@ -63,22 +63,22 @@ def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Sweep:
-    """The work of one request on a worker thread: some directions of one scene, one after the other.
+    """The work of one request on a worker thread: the curves of some starts of one scene, one after the other.
 
     It waits while `busy` returns True. Visitors at the same knobs share one computation.
     """
 
     scene: Scene
-    directions: list[str]
+    starts: list[str]
     report: Callable[[Progress], None]
     busy: Callable[[], bool]
     cpu_time: CpuTime
 
     def __call__(self, job: Job) -> None:
         """Report everything as it comes; what was reported stays when the job is cancelled."""
-        for direction in self.directions:
-            key = without_frequency(self.scene), direction
-            with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, direction), job.stop,
+        for start in self.starts:
+            key = without_frequency(self.scene), start
+            with closing(CURVES_SHARED.follow(key, partial(_computed, self.scene, start), job.stop,
                                               self.cpu_time)) as found:
                 for progress in found:
                     job.stop.check()
@@ -86,39 +86,39 @@ class Sweep:
                     job.give_way(self.busy)
 
 
-def _computed(scene: Scene, direction: str, stop: Stop) -> Iterator[Progress]:
+def _computed(scene: Scene, start: str, stop: Stop) -> Iterator[Progress]:
     """One curve, from coarse to fine. Raises `Cancelled`."""
-    if direction != "rest":
-        yield from _points(scene, grid(scene, _SWEEP), direction, stop, 0.0, 1.0)
-        yield Progress(direction, [], 1.0, complete=True, covers=True)
+    if start != "rest":
+        yield from _points(scene, grid(scene, _SWEEP), start, stop, 0.0, 1.0)
+        yield Progress(start, [], 1.0, complete=True, covers=True)
         return
     found: list[CurvePoint] = []
     frequencies = grid(scene, COARSE)
     finest = 0.26 * float(frequencies[1] - frequencies[0])
     for number in range(_FINER_PASSES + 1):
         low, high = number / (_FINER_PASSES + 1), (number + 1) / (_FINER_PASSES + 1)
-        for progress in _points(scene, frequencies, direction, stop, low, high):
+        for progress in _points(scene, frequencies, start, stop, low, high):
             found += progress.points
             yield progress
-        yield Progress(direction, [], high, complete=number == _FINER_PASSES, covers=True)
+        yield Progress(start, [], high, complete=number == _FINER_PASSES, covers=True)
         frequencies = midpoints(found, finest)
 
 
-def _points(scene: Scene, frequencies: np.ndarray, direction: str, stop: Stop, low: float,
+def _points(scene: Scene, frequencies: np.ndarray, start: str, stop: Stop, low: float,
             high: float) -> Iterator[Progress]:
     """Compute a point for each frequency and report each; progress goes from `low` to `high` meanwhile."""
     if not len(frequencies):
         return
-    for number, point in enumerate(iter_curve(scene, frequencies, start=direction, stop=stop), 1):
+    for number, point in enumerate(iter_curve(scene, frequencies, start=start, stop=stop), 1):
         stop.check()
-        yield Progress(direction, [point], low + (high - low) * number / len(frequencies))
+        yield Progress(start, [point], low + (high - low) * number / len(frequencies))
     stop.check()
 
 
 def _whole(found: list[Progress]) -> list[Progress]:
     """A finished curve, as it is kept for the next visitor: all points at once."""
     points = [point for progress in found for point in progress.points]
-    return [Progress(found[-1].direction, points, 1.0, complete=True, covers=True)]
+    return [Progress(found[-1].start, points, 1.0, complete=True, covers=True)]
 
 
 def _size(progress: Progress) -> int:

@@ -1,4 +1,4 @@
-"""The resonance curve: largest output force over drive frequency, by regime and by direction of the sweep."""
+"""The resonance curve: largest output force over drive frequency, by regime and by the start of the curve."""
 
 from __future__ import annotations
 
@@ -15,23 +15,23 @@ from granchain_core.steady.curve.resonance import Place, place_of
 from ..format import prefixed
 from ..frames import round_up
 from ..parts.figures.figure_style import quiet_axis, quiet_plot, together
-from ..pictures.axes import knob_scale
-from ..pictures.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
-from ..pictures.measured import COLUMNS, TOOLTIPS, measured_columns
-from ..pictures.theme import GREY, OUTPUT_COLOUR
+from ..plots.axes import knob_scale
+from ..plots.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
+from ..plots.measured import COLUMNS, TOOLTIPS, measured_columns
+from ..plots.theme import GREY, OUTPUT_COLOUR
 from ..serve.document.changes import set_properties
 from .pinned_curves import PinnedCurves
 
 
 class CurveFigure:
-    """The figure with, for every direction, the curve being computed and the one before it in grey.
+    """The figure with, for every start (`CURVE_STARTS`), the curve being computed and the one before it in grey.
 
     Lines and marks that most visitors never see are made when they are first needed.
     """
 
     def __init__(self, choose: Callable[[object], None]) -> None:
         self._points: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
-        self._before: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
+        self._grey_points: dict[str, list[CurvePoint]] = {name: [] for name in DASHES}
         self._scale = (1.0, "")
         self._whole = False
         #: Whether a curve from rest is being computed or will be, without being asked for.
@@ -39,7 +39,7 @@ class CurveFigure:
         self._ordered: tuple[np.ndarray, np.ndarray, list[int | None]] | None = None
         self._shown: tuple[float, float | None] = (0.0, None)
         self._place: tuple[object, ...] = ()
-        self._now = ColumnDataSource({"frequency": [], "force": []})
+        self._motion_source = ColumnDataSource({"frequency": [], "force": []})
         self._measured = ColumnDataSource({name: [] for name in COLUMNS})
         self._features = ColumnDataSource({name: [] for name in ("frequency", "top", "label", "source")})
         self._measurement: Measured | None = None
@@ -48,13 +48,13 @@ class CurveFigure:
         self._ink = GREY
         self.figure = self._frame(choose)
         self._pinned = PinnedCurves(self.figure)
-        self._old: dict[str, ColumnDataSource] = {}
-        self._new: dict[str, ColumnDataSource] = {}
+        self._grey_sources: dict[str, ColumnDataSource] = {}
+        self._sources: dict[str, ColumnDataSource] = {}
         # In the overlay, so that moving f repaints a line and a dot and not the whole curve.
-        self._current = Span(dimension="height", line_color=GREY, line_width=1, level="overlay")
-        self.figure.add_layout(self._current)
+        self._frequency_line = Span(dimension="height", line_color=GREY, line_width=1, level="overlay")
+        self.figure.add_layout(self._frequency_line)
         self._marks()
-        self._new["rest"] = self._line("rest", grey=False)
+        self._sources["rest"] = self._line("rest", grey=False)
 
     def _frame(self, choose: Callable[[float], None]) -> Plot:
         plot = quiet_plot((58, 26), (5, 5), ("below", "left"), name="resonance curve", x_range=Range1d(0, 1),
@@ -66,17 +66,17 @@ class CurveFigure:
         plot.on_event(Tap, lambda event: choose(event.x))
         return plot
 
-    def _line(self, direction: str, grey: bool) -> ColumnDataSource:
+    def _line(self, start: str, grey: bool) -> ColumnDataSource:
         source = ColumnDataSource(curve_columns([], 1.0))
-        made = [self.figure.add_glyph(source, Line(
-            **curve_line(direction), line_color=GREY if grey else OUTPUT_COLOUR, line_alpha=0.45 if grey else 0.9))]
+        renderers = [self.figure.add_glyph(source, Line(
+            **curve_line(start), line_color=GREY if grey else OUTPUT_COLOUR, line_alpha=0.45 if grey else 0.9))]
         if not grey:
-            marks = self.figure.add_glyph(source, Scatter(**curve_marks(direction)))
-            made.append(marks)
-            self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(direction)))
-        for renderer in made:
-            renderer.visible = direction in self._visible
-        self._renderers[direction] += made
+            marks = self.figure.add_glyph(source, Scatter(**curve_marks(start)))
+            renderers.append(marks)
+            self.figure.add_tools(HoverTool(renderers=[marks], tooltips=curve_tooltips(start)))
+        for renderer in renderers:
+            renderer.visible = start in self._visible
+        self._renderers[start] += renderers
         self._bring_forward()
         return source
 
@@ -93,7 +93,7 @@ class CurveFigure:
             line_cap="round"))
         plot.add_tools(HoverTool(renderers=[self._stated], line_policy="interp",
                                  tooltips=[("stated", "@label"), ("source", "@source")]))
-        self._dot = plot.add_glyph(self._now, Scatter(x="frequency", y="force", size=15, fill_color=None,
+        self._dot = plot.add_glyph(self._motion_source, Scatter(x="frequency", y="force", size=15, fill_color=None,
                                                       line_width=3), level="overlay")
         self._bars: list[GlyphRenderer] = []
 
@@ -122,38 +122,38 @@ class CurveFigure:
         """Set the range of frequencies shown."""
         self.figure.x_range.update(start=low, end=high)
 
-    def show_directions(self, directions: list[str]) -> None:
-        """Make only these directions visible."""
-        self._visible = set(directions)
+    def show_only(self, starts: list[str]) -> None:
+        """Make only the curves of these starts visible."""
+        self._visible = set(starts)
         for name, renderers in self._renderers.items():
             for renderer in renderers:
-                renderer.visible = name in directions
+                renderer.visible = name in starts
 
-    def begin(self, directions: list[str]) -> None:
-        """Make the present curves of these directions grey, because new ones will come."""
-        self._whole = self._whole and "rest" not in directions
+    def begin(self, starts: list[str]) -> None:
+        """Make the present curves of these starts grey, because new ones will come."""
+        self._whole = self._whole and "rest" not in starts
         for name in DASHES:
-            if name in directions:
-                self._before[name] = self._points[name] or self._before[name]
+            if name in starts:
+                self._grey_points[name] = self._points[name] or self._grey_points[name]
                 self._points[name] = []
-                self._draw_before(name)
+                self._draw_grey(name)
                 self._draw(name)
 
-    def add(self, direction: str, points: list[CurvePoint], covers: bool) -> None:
+    def add(self, start: str, points: list[CurvePoint], covers: bool) -> None:
         """Add points; once they cover the range the grey curve is removed."""
         self._ordered = None
-        self._points[direction] += [point for point in points if np.isfinite(point.max_output_force)]
+        self._points[start] += [point for point in points if np.isfinite(point.max_output_force)]
         if covers:
-            self._before[direction] = []
-            self._draw_before(direction)
+            self._grey_points[start] = []
+            self._draw_grey(start)
         self._rescale()
-        self._draw(direction)
+        self._draw(start)
 
-    def redraw(self, direction: str, points: list[CurvePoint]) -> None:
+    def redraw(self, start: str, points: list[CurvePoint]) -> None:
         """Draw a whole curve in place of the present one, while a knob moves."""
-        self._whole = self._whole and direction != "rest"
-        self._points[direction] = []
-        self.add(direction, points, covers=True)
+        self._whole = self._whole and start != "rest"
+        self._points[start] = []
+        self.add(start, points, covers=True)
 
     def pin(self, places: Sequence[tuple[str, float, float]]) -> None:
         """Mark pinned motions: name, frequency [Hz] and largest output force [N]."""
@@ -177,9 +177,9 @@ class CurveFigure:
         """Newtons for one unit of the axis."""
         return self._scale[0]
 
-    def points(self, direction: str) -> list[CurvePoint]:
-        """The points of a direction in ascending frequency."""
-        return sorted(self._points[direction], key=lambda point: point.frequency)
+    def points(self, start: str) -> list[CurvePoint]:
+        """The points of the curve of this start, in ascending frequency."""
+        return sorted(self._points[start], key=lambda point: point.frequency)
 
     def place(self, run: Run) -> Place | None:
         """Where a run lies on the whole curve from rest; None while that curve is being computed."""
@@ -192,9 +192,9 @@ class CurveFigure:
         transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
         return place_of(*self._ordered, run.scene.f, run.max_output_force, transmission)
 
-    def finished(self, direction: str) -> None:
-        """Note that all points of a direction are there."""
-        self._whole = self._whole or direction == "rest"
+    def finished(self, start: str) -> None:
+        """Note that all points of the curve of this start are there."""
+        self._whole = self._whole or start == "rest"
         if self._measurement is not None:
             self.measured(self._measurement)
 
@@ -202,20 +202,21 @@ class CurveFigure:
         """Remove all curves, because another scene was opened."""
         self._whole = False
         for name in DASHES:
-            self._points[name], self._before[name] = [], []
+            self._points[name], self._grey_points[name] = [], []
             self._draw(name)
-            self._draw_before(name)
+            self._draw_grey(name)
 
-    def now(self, frequency: float, force: float | None) -> None:
-        """Mark the current point; without a force, only its frequency."""
+    def mark_motion(self, frequency: float, force: float | None) -> None:
+        """Mark the present motion; without a force, only its frequency."""
         shown = frequency, None if force is None else float(f"{force:.3g}")
         if (shown, self._scale) == self._place:
             return
         self._shown, self._place = shown, (shown, self._scale)
-        set_properties(self._current, location=frequency)
+        set_properties(self._frequency_line, location=frequency)
         factor = self._scale[0]
-        set_properties(self._now, data={"frequency": [frequency] if force is not None else [],
-                                "force": [force / factor] if force is not None else []})
+        set_properties(self._motion_source, data={
+            "frequency": [frequency] if force is not None else [],
+            "force": [force / factor] if force is not None else []})
 
     def features(self, features: Sequence[Feature]) -> None:
         """Draw vertical marks at the frequencies that the paper states; it states no forces."""
@@ -252,7 +253,7 @@ class CurveFigure:
 
     def _rescale(self) -> None:
         """Fit the force axis to all curves and measured data; in another unit, draw everything anew."""
-        curves = (*self._points.values(), *self._before.values())
+        curves = (*self._points.values(), *self._grey_points.values())
         forces = [point.max_output_force for points in curves for point in points] + self._pinned.forces
         if self._measurement is not None:
             forces.append(float(np.max(self._measurement.force)))
@@ -262,8 +263,8 @@ class CurveFigure:
             self._scale = scale
             for name in DASHES:
                 self._draw(name)
-                self._draw_before(name)
-            self.now(*self._shown)
+                self._draw_grey(name)
+            self.mark_motion(*self._shown)
             self._pinned.draw(scale[0])
             if self._measurement is not None:
                 self.measured(self._measurement)
@@ -275,17 +276,17 @@ class CurveFigure:
         if list(self._features.data["top"]) != top:
             self._features.data = {**self._features.data, "top": top}
 
-    def _draw(self, direction: str) -> None:
-        self._fill(self._new, direction, self._points[direction])
+    def _draw(self, start: str) -> None:
+        self._fill(self._sources, start, self._points[start])
 
-    def _draw_before(self, direction: str) -> None:
-        self._fill(self._old, direction, self._before[direction])
+    def _draw_grey(self, start: str) -> None:
+        self._fill(self._grey_sources, start, self._grey_points[start])
 
-    def _fill(self, sources: dict[str, ColumnDataSource], direction: str, points: list[CurvePoint]) -> None:
-        """Draw the points of a direction in ascending frequency."""
-        if points and direction not in sources:
+    def _fill(self, sources: dict[str, ColumnDataSource], start: str, points: list[CurvePoint]) -> None:
+        """Draw the points of the curve of this start, in ascending frequency."""
+        if points and start not in sources:
             with together(self.figure):
-                sources[direction] = self._line(direction, grey=sources is self._old)
-        if direction in sources:
+                sources[start] = self._line(start, grey=sources is self._grey_sources)
+        if start in sources:
             ordered = sorted(points, key=lambda point: point.frequency)
-            set_properties(sources[direction], data=curve_columns(ordered, self._scale[0]))
+            set_properties(sources[start], data=curve_columns(ordered, self._scale[0]))

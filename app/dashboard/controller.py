@@ -11,7 +11,7 @@ from bokeh.document import Document
 from granchain_core import BadInput, CurvePoint, Scene, Settled, State
 
 from ..curve.controller import CurveController
-from ..pictures.theme import Theme
+from ..plots.theme import Theme
 from ..serve.compiling.compiler import COMPILER
 from ..serve.document.socket_tuning import disable_nagle
 from ..serve.monitoring.metrics import METRICS
@@ -187,12 +187,12 @@ class Controller:
 
     # What happens here
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """A settled picture is ready: inform all that show something of it, the pages once it is offered."""
-        self.views.header.began_from(picture.start, self.session)
-        self.pinned.picture_ready(picture)
-        self.files.picture_ready(picture)
-        self._scenes.picture_ready(picture)
+        self.views.header.began_from(settled.start, self.session)
+        self.pinned.picture_ready(settled)
+        self.files.picture_ready(settled)
+        self._scenes.picture_ready(settled)
 
     def _curve_placed(self) -> None:
         self.pictures.show_regime()

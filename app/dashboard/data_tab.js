@@ -49,8 +49,8 @@ function answersTo(question) {
 }
 
 // The two choices over a column, quantity and unit. The units depend on the quantity; volts need a sensitivity, too.
-function columnChoice(question, place, chosen) {
-  const [number, title] = question.columns[place];
+function columnChoice(question, index, chosen) {
+  const [number, title] = question.columns[index];
   const quantity = element("select", { ariaLabel: `what column ${number} holds` });
   quantity.append(...options([["", "not used"], ...question.quantities], chosen.quantity));
   const unit = element("select", { ariaLabel: `unit of column ${number}` });
@@ -95,9 +95,9 @@ function questionForm(model, question) {
   const kept = answersTo(question);
   const about = (what) => question.about.includes(what);
   const head = element("tr", {}, element("th", { textContent: "line" }));
-  const choice = (place) => columnChoice(question, place, kept.columns[place]);
+  const choice = (index) => columnChoice(question, index, kept.columns[index]);
   const named = ([number, title]) => element("th", { textContent: `${number}: ${title}` });
-  head.append(...question.columns.map((column, place) => (about("columns") ? choice(place) : named(column))));
+  head.append(...question.columns.map((column, index) => (about("columns") ? choice(index) : named(column))));
   const body = question.rows.map(([line, fields]) =>
     element("tr", {}, ...[line, ...fields].map((textContent) => element("td", { textContent }))),
   );

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from ..curve.controller import CurveController
-from ..pictures.theme import THEMES, Theme
+from ..plots.theme import THEMES, Theme
 from ..session.page import Actions
 from ..session.session import Session
 from .layout import Views

@@ -20,7 +20,7 @@ FOLDER = ASSETS / "gallery"
 def cards() -> list[dict[str, str]]:
     """Name, title, sentence, question and picture of every scene; the picture is an address that holds it."""
     return [{"name": name, "title": scene(name).title, "sentence": first_sentence(scene(name).look_at),
-             "ask": question_of(name), "picture": picture_of(name)} for name in scene_names()]
+             "ask": question_of(name), "picture": thumbnail_of(name)} for name in scene_names()]
 
 
 def first_sentence(text: str) -> str:
@@ -28,6 +28,6 @@ def first_sentence(text: str) -> str:
     return text.partition(". ")[0].rstrip(".") + "."
 
 
-def picture_of(name: str) -> str:
+def thumbnail_of(name: str) -> str:
     """The picture of a scene as an address that holds it."""
     return "data:image/svg+xml," + quote((FOLDER / f"{name}.svg").read_text(encoding="utf-8"), safe=" =:/;,'()+")

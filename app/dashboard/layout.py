@@ -24,10 +24,10 @@ from ..parts.stage.energy import EnergyMap
 from ..parts.stage.trains import WIDEST_TITLES, ForceTrains
 from ..parts.status.status_line import StatusLine
 from ..parts.toolkit.component import text
-from ..pictures.curve import KEY
-from ..pictures.energies import ENERGY_COLOURS
-from ..pictures.theme import Theme, style_sheet
-from ..scripts import IN_PAGE, modules
+from ..plots.curve import KEY
+from ..plots.energies import ENERGY_COLOURS
+from ..plots.theme import Theme, style_sheet
+from ..scripts import INLINE_SCRIPTS, modules
 from ..serve.http.limits import LARGEST_UPLOAD
 from ..session.session import Session
 from ..session.terms import definitions
@@ -74,7 +74,7 @@ class Views:
             overlay.apply_theme(theme)
 
     def put_into(self, document: Document) -> None:
-        """Make all parts roots of a visitor's document; their layout is a CSS grid in page.css."""
+        """Make all parts roots of a visitor's document; their layout is a CSS grid in dashboard.css."""
         parts = {
             "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
             "curvebar": self.curve_bar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
@@ -86,9 +86,9 @@ class Views:
 @cache
 def _page() -> tuple[str, dict[str, Any]]:
     """The page's template and what stands in it, the same for every visitor."""
-    return (_HERE / "page.html").read_text(encoding="utf-8"), {
-        "page_css": style_sheet() + text("page.css") + text("skeleton.css"),
-        "page_js": "".join(map(text, IN_PAGE)),
+    return (_HERE / "dashboard.html").read_text(encoding="utf-8"), {
+        "dashboard_css": style_sheet() + text("dashboard.css") + text("skeleton.css"),
+        "inline_scripts": "".join(map(text, INLINE_SCRIPTS)),
         "terms": json.dumps(definitions()).replace("<", "\\u003c"),
         "modules": modules(),
         "frame_top": TOP, "frame_bottom": BOTTOM, "frame_left": LEFT, "gap": GAP,

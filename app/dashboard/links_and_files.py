@@ -40,9 +40,9 @@ class LinksAndFiles:
         self._measurement = MeasurementActions(host, views, curves)
         self.actions: Actions = {"share": self._share, "export": self._export, **self._measurement.actions}
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Compare a measured series with the new picture."""
-        self._measurement.picture_ready(picture)
+        self._measurement.picture_ready(settled)
 
     def _share(self, _: dict[str, Any]) -> None:
         """Send the link, and say which pins have no room in it."""

@@ -21,19 +21,19 @@ from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words
 from ..serve.computing.queues import PICTURES, LatestWins
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
-from ..serve.document.pacing import FramePacer
+from ..serve.document.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
 from ..session.energy_account import with_account
 from ..session.host import Host
-from ..session.live import LivePicture, LiveRun
+from ..session.live import LiveRun, LiveStep
 from .layout import Views
 from .show import show_live, show_regime, show_settled
 
 
-def size_of(picture: Settled) -> int:
+def size_of(settled: Settled) -> int:
     """Memory of a picture [bytes], which is that of its arrays and a little."""
-    arrays = [*vars(picture.run).values(), picture.state.displacement, picture.state.velocity]
+    arrays = [*vars(settled.run).values(), settled.state.displacement, settled.state.velocity]
     return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
 
@@ -50,9 +50,9 @@ def _computed(scene: Scene, start: State | None, most: float, stop: TurnFlag) ->
         compiled = all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES)
     if not compiled:
         raise Cancelled
-    for picture in pictures:
-        yield picture
-        if time.thread_time() - began > most and not picture.final:
+    for settled in pictures:
+        yield settled
+        if time.thread_time() - began > most and not settled.final:
             raise TooLong
 
 
@@ -92,11 +92,11 @@ class MainPicture:
         self._show_notice = show_notice
         self._picture_ready = picture_ready
         self._jobs = LatestWins(self._keep_newest, partial(host.next_tick, self._failed), self._session.cpu_time)
-        self._pacer: FramePacer[Settled | LivePicture] = FramePacer(self._send, self.next_live_step)
+        self._pacer: PicturePacer[Settled | LiveStep] = PicturePacer(self._send, self.next_live_step)
         self._live: LiveRun | None = None
         self._lock = threading.Lock()
-        self._newest: Settled | LivePicture | None = None
-        self._accepted: Settled | LivePicture | None = None
+        self._newest: Settled | LiveStep | None = None
+        self._accepted: Settled | LiveStep | None = None
         #: The settled picture that was sent last; None while a live run is shown.
         self._sent: Settled | None = None
         self._requested_at: float | None = None
@@ -181,12 +181,12 @@ class MainPicture:
         most = math.inf if insisted else WHOLE_PICTURE
         with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, origin, most), stop,
                                             self._jobs.cpu_time)) as pictures:
-            for picture in pictures:
-                yield picture
+            for settled in pictures:
+                yield settled
         if request.account:
             with stop.held():
-                picture = with_account(picture, stop)
-            yield picture
+                settled = with_account(settled, stop)
+            yield settled
 
     def _begun_from(self, origin: State | None) -> None:
         """Remember where the motion begins; called with the document locked, before the first picture arrives."""
@@ -209,7 +209,7 @@ class MainPicture:
                 raise Cancelled
 
     def _live_step(self, samples: int | None, speed: float, insisted: Scene | None,
-                   stop: TurnFlag) -> Iterator[LivePicture]:
+                   stop: TurnFlag) -> Iterator[LiveStep]:
         live = self.live  # the newest run, should another have begun while this step waited
         if live is None:
             return
@@ -219,16 +219,16 @@ class MainPicture:
                 check_first_picture(scene)
         self._await_first_kernels(scene, stop)
         with live.flag.held(anew=True):
-            picture = live.advance(samples) if samples else live.step(speed)
-        yield picture
+            result = live.advance(samples) if samples else live.step(speed)
+        yield result
 
-    def _keep_newest(self, picture: object) -> None:
+    def _keep_newest(self, result: object) -> None:
         """Keep a new picture for the event loop; it replaces an older picture that a busy loop has not fetched yet."""
-        assert isinstance(picture, (Settled, LivePicture))
-        if isinstance(picture, Settled):
-            self._frames.append(prepared_frames(picture.run))
+        assert isinstance(result, (Settled, LiveStep))
+        if isinstance(result, Settled):
+            self._frames.append(prepared_frames(result.run))
         with self._lock:
-            first, self._newest = self._newest is None, picture
+            first, self._newest = self._newest is None, result
         if first:
             self._host.next_tick(self._take_newest)
 
@@ -237,24 +237,24 @@ class MainPicture:
     def _take_newest(self) -> None:
         """Take the newest picture that a worker has kept."""
         with self._lock:
-            picture, self._newest = self._newest, None
-        if picture is not None:
-            self._accept(picture)
+            result, self._newest = self._newest, None
+        if result is not None:
+            self._accept(result)
 
-    def _accept(self, picture: Settled | LivePicture) -> None:
+    def _accept(self, result: Settled | LiveStep) -> None:
         """Make a picture that still belongs to the mode and the scene the present one, and offer it to the browser."""
-        live = isinstance(picture, LivePicture)
-        if live != (self._session.mode == "live") or picture.run.scene.name != self._session.scene.name:
+        live = isinstance(result, LiveStep)
+        if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
             return
         METRICS.count("pictures")
         self._count_answer()
-        if isinstance(picture, Settled):
-            self._session.settled = picture
-            self._picture_ready(picture)
+        if isinstance(result, Settled):
+            self._session.settled = result
+            self._picture_ready(result)
         if self._session.notice:
             self._show_notice("")
-        self._accepted = picture
-        self._pacer.offer(picture)
+        self._accepted = result
+        self._pacer.offer(result)
         if live:
             self.next_live_step()  # two are in transit from the first step on, not only once a knob was moved
 
@@ -272,13 +272,13 @@ class MainPicture:
         words = f"The server is busy: pictures follow every {seconds:.1f} s." if METRICS.busy else ""
         self._views.status_line.update_state(busy=words)
 
-    def _send(self, number: int, picture: Settled | LivePicture) -> None:
-        if isinstance(picture, Settled):
-            self._sent = picture
-            show_settled(self._views, number, picture)
+    def _send(self, number: int, result: Settled | LiveStep) -> None:
+        if isinstance(result, Settled):
+            self._sent = result
+            show_settled(self._views, number, result)
         else:
             self._sent = None
-            show_live(self._views, number, picture, self._session.playing)
+            show_live(self._views, number, result, self._session.playing)
 
     def show_regime(self) -> None:
         """Write the status line anew: the curve may tell now on which of its peaks or valleys the motion lies."""
@@ -292,7 +292,7 @@ class MainPicture:
     def redraw(self) -> None:
         """Send the picture on the screen again, to be drawn in another way; a running chain sends pictures anyway."""
         shown, live = self._accepted, self.live is not None
-        if shown is None or isinstance(shown, LivePicture) != live or (live and self._session.playing):
+        if shown is None or isinstance(shown, LiveStep) != live or (live and self._session.playing):
             return
         if shown.run.scene.name == self._session.scene.name:
             self._pacer.offer(shown)

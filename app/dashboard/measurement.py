@@ -85,12 +85,12 @@ class MeasurementActions:
                                  "csv-remove": self._remove, "csv-sample": self._sample,
                                  "csv-virtual": self._virtual}
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Lay the series over the new picture; over a preview, no difference is stated."""
         if self._series is None:
             return
-        if picture.final:
-            self._moving.start(partial(self._overlay_in_thread, self._series, picture.run))
+        if settled.final:
+            self._moving.start(partial(self._overlay_in_thread, self._series, settled.run))
         else:
             self._tabs.update_state(misfit=None)
 
@@ -159,9 +159,9 @@ class MeasurementActions:
         self._views.trains.measured(None)
         self._tabs.update_state(understood=f"{self._name}: {measured.understood}", question=None,
                                 series=measured.word if self._series is not None else "", misfit=_misfit(difference))
-        picture = self._host.session.settled
-        if picture is not None:
-            self.picture_ready(picture)
+        settled = self._host.session.settled
+        if settled is not None:
+            self.picture_ready(settled)
 
     def _compared(self, difference: Difference | None) -> None:
         """The curve from rest is complete, or a new one was begun."""

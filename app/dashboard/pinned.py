@@ -60,9 +60,9 @@ class Pinned:
             self._curve_task.cancel()
         self._views.curve.pinned_curves([self._curves.get(key, []) if key else [] for key in others])
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Compare the pins with another picture."""
-        if self._session.pins and picture.final:
+        if self._session.pins and settled.final:
             self._tell()
 
     # What the visitor does
@@ -73,12 +73,12 @@ class Pinned:
             raise BadInput("Only a settled picture can be pinned: a live run keeps changing. Choose “settled” first.")
         if len(session.pins) == len(NAMES):
             raise BadInput(f"{len(NAMES)} pictures are pinned already; remove one of them in the tab “numbers” first.")
-        picture = session.settled
-        if picture.run.scene != session.scene:  # where it begins is not known yet
+        settled = session.settled
+        if settled.run.scene != session.scene:  # where it begins is not known yet
             raise BadInput("The picture of these knobs is still being computed; pin it when it is shown.")
         pin = Pin(session.scene, session.started_from)
-        if picture.final:
-            self._runs[_key(pin)] = picture.run
+        if settled.final:
+            self._runs[_key(pin)] = settled.run
         if self._views.curve.whole:
             self._curves[without_frequency(session.scene)] = self._views.curve.points("rest")
         session.pins = (*session.pins, pin)
@@ -148,14 +148,14 @@ class Pinned:
 
     def _tell(self) -> None:
         session = self._session
-        picture = session.settled
+        settled = session.settled
         self._views.tabs.send(
             type="compare", now=setting_words(session.scene, session.scene),
             pins=[{"name": name, "sign": sign, "words": setting_words(pin.scene, session.scene),
                    "known": _key(pin) in self._runs}
                   for name, sign, pin in zip(NAMES, SIGNS, session.pins, strict=False)],
             full=len(session.pins) == len(NAMES),
-            rows=[] if picture is None else compared_rows(picture.run, self._found()))
+            rows=[] if settled is None else compared_rows(settled.run, self._found()))
 
 
 def _key(pin: Pin) -> str:

@@ -86,16 +86,16 @@ class SceneChanges:
             page.picture_requested()
         self._pictures.compute(start)
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Inform the pages once a picture is offered to the browser, unless another is requested or ready by then."""
-        self._untold = picture
+        self._untold = settled
         self._next_tick(self._tell_picture)
 
     def _tell_picture(self) -> None:
-        picture, self._untold = self._untold, None
-        if picture is not None:
+        settled, self._untold = self._untold, None
+        if settled is not None:
             for page in self._pages:
-                page.picture_ready(picture)
+                page.picture_ready(settled)
 
     # What the visitor does
 

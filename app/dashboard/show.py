@@ -13,41 +13,41 @@ from ..frames import PERIODS, Frames, prepared_frames, round_up
 from ..parts.chain.chain import frames_message
 from ..parts.status.status_line import run_entries, settled_entries
 from ..serve.document.changes import set_properties
-from ..session.live import LivePicture
+from ..session.live import LiveStep
 from .layout import Views
 
 
-def show_settled(views: Views, number: int, picture: Settled) -> None:
+def show_settled(views: Views, number: int, settled: Settled) -> None:
     """Show a settled picture: whole periods, which the browser replays."""
-    frames = prepared_frames(picture.run)
+    frames = prepared_frames(settled.run)
     factor, letter = prefixed(float(frames.time[-1]))
-    views.trains.name_time(f"time ({letter}s){_periods_shown(frames, picture.run.scene)}")
-    _draw(views, number, frames, picture.run, frames.time / factor, f"{letter}s",
-          (picture.run.max_input_force, picture.run.max_output_force), final=picture.final)
-    views.curve.now(picture.run.scene.knobs["f"], picture.run.max_output_force)
-    show_regime(views, picture)
+    views.trains.name_time(f"time ({letter}s){_periods_shown(frames, settled.run.scene)}")
+    _draw(views, number, frames, settled.run, frames.time / factor, f"{letter}s",
+          (settled.run.max_input_force, settled.run.max_output_force), final=settled.final)
+    views.curve.mark_motion(settled.run.scene.knobs["f"], settled.run.max_output_force)
+    show_regime(views, settled)
 
 
-def show_regime(views: Views, picture: Settled) -> None:
+def show_regime(views: Views, settled: Settled) -> None:
     """Write the status line: a complete curve shows on which of its peaks or valleys the motion lies."""
-    run = picture.run
+    run = settled.run
     force = views.trains.output_words(run.max_output_force, run.force_errors.output)
-    views.status_line.update_state(**settled_entries(picture, views.curve.place(run), force))
+    views.status_line.update_state(**settled_entries(settled, views.curve.place(run), force))
 
 
-def show_live(views: Views, number: int, picture: LivePicture, running: bool) -> None:
+def show_live(views: Views, number: int, step: LiveStep, running: bool) -> None:
     """Show the last periods of the live run, with the present at the bottom."""
-    frames, run = picture.frames, picture.run
-    time, unit, since = frames.time, "drive periods", f"drive period {picture.periods:.0f}"
+    frames, run = step.frames, step.run
+    time, unit, since = frames.time, "drive periods", f"drive period {step.periods:.0f}"
     if not run.scene.is_driven:
         factor, letter = prefixed(PERIODS / run.scene.f)
         time, unit = frames.time / (run.scene.f * factor), f"{letter}s"
-        since = f"{1e3 * picture.periods / run.scene.f:.0f} ms after the start"
+        since = f"{1e3 * step.periods / run.scene.f:.0f} ms after the start"
     views.trains.name_time(f"time before now ({unit})")
     here = frames.extremes
     _draw(views, number, frames, run, time, unit, (here.input_force, here.output_force), live=True,
           running=running)
-    views.curve.now(run.scene.knobs["f"], frames.largest_output)
+    views.curve.mark_motion(run.scene.knobs["f"], frames.largest_output)
     views.status_line.update_state(regime=f"live, {since}", regime_shorter=[], regime_hint="", start="",
                                    **run_entries(run, views.trains.output_words(frames.largest_output,
                                                                                 run.force_errors.output)))

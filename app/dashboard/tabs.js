@@ -125,7 +125,7 @@ class Tabs {
     document.getElementById("curves").classList.toggle("taller", Boolean(taller));
     this.larger.set(this.larger.wanted || (Boolean(tallest) && !PHONE.matches));
     this.show();
-    window.granchain.setLocation({ tab: name === this.first ? "" : name });
+    window.granchain.address.setPlace({ tab: name === this.first ? "" : name });
     window.granchain.emit("tab", name);
   }
 
@@ -162,7 +162,7 @@ class Tabs {
     const measured = document.getElementById("measured-series");
     measured.hidden = !this.model.state.series;
     measured.textContent = this.model.state.series || "";
-    window.granchain.kept = { ...window.granchain.kept, uploaded: Boolean(this.model.state.understood) };
+    window.granchain.connection.keep({ uploaded: Boolean(this.model.state.understood) });
     if (!this.updatesItself) this.show();
   }
 }
@@ -179,7 +179,7 @@ export function render({ model }) {
     window.granchain.on(`page:${name}`, () => {
       if (tabs.chosen === name) tabs.redraw();
     });
-  window.granchain.on("overlay", (name) => window.granchain.setLocation({ page: name ?? "" }));
+  window.granchain.on("overlay", (name) => window.granchain.address.setPlace({ page: name ?? "" }));
   window.granchain.on("compare", () => {
     window.granchain.closePage();
     tabs.choose("numbers");
@@ -204,6 +204,6 @@ export function render({ model }) {
   const { tab = tabs.first, page } = model.state.place;
   tabs.choose(tab);
   if (page) window.granchain.openPage(page);
-  else window.granchain.setLocation({ page: "" }); // an unknown page is dropped from the address
+  else window.granchain.address.setPlace({ page: "" }); // an unknown page is dropped from the address
   return tabs.root;
 }

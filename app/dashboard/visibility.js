@@ -10,28 +10,29 @@ const CURVE_NAME = "curve"; // stands for the curve among the names of the pages
 // in a story, because the status line takes names from it. Scripts find the same names in `granchain.visible`; the event
 // "visible" announces a change.
 export function watchVisibility(pages, tell) {
-  const page = window.granchain;
+  const { granchain } = window;
   const shown = { tabs: true, curve: true }; // which of these elements are on the screen
   let tab = "";
   let inStory = false; // whether a story is shown
-  page.visible = new Set([CURVE_NAME]); // what the server starts with
+  granchain.visible = new Set([CURVE_NAME]); // what the server starts with
 
-  const isOpen = (name) => (page.overlay ?? tab) === name;
-  const isSeen = (name) => !document.hidden && (page.overlay === name || shown.tabs);
+  const isOpen = (name) => (granchain.overlay ?? tab) === name;
+  const isSeen = (name) => !document.hidden && (granchain.overlay === name || shown.tabs);
   // A page that has published nothing is not built yet; it would miss messages sent to it.
-  const isBuilt = (name) => !pages[name].overlay || page.pages.has(name);
+  const isBuilt = (name) => !pages[name].overlay || granchain.pages.has(name);
   const isVisible = (name) => isOpen(name) && isBuilt(name) && (pages[name].works_hidden || isSeen(name));
 
   const check = () => {
-    const before = page.visible;
+    const before = granchain.visible;
     const now = new Set(Object.keys(pages).filter(isVisible));
-    if (page.overlay ? pages[page.overlay]?.needs_curve : shown.curve || inStory || PHONE.matches) now.add(CURVE_NAME);
+    if (granchain.overlay ? pages[granchain.overlay]?.needs_curve : shown.curve || inStory || PHONE.matches)
+      now.add(CURVE_NAME);
     const [gone, come] = [[...before].filter((name) => !now.has(name)), [...now].filter((name) => !before.has(name))];
     if (!gone.length && !come.length) return;
-    page.visible = now;
+    granchain.visible = now;
     for (const name of gone) tell(name, false);
     for (const name of come) tell(name, true);
-    page.emit("visible", now);
+    granchain.emit("visible", now);
   };
 
   for (const id of Object.keys(shown))
@@ -41,15 +42,15 @@ export function watchVisibility(pages, tell) {
     });
   document.addEventListener("visibilitychange", check);
   for (const name of Object.keys(pages))
-    page.on(`page:${name}`, () => {
-      if (isOpen(name) && !page.visible.has(name)) check();
+    granchain.on(`page:${name}`, () => {
+      if (isOpen(name) && !granchain.visible.has(name)) check();
     });
-  page.on("overlay", check);
-  page.on("story", (now) => {
+  granchain.on("overlay", check);
+  granchain.on("story", (now) => {
     inStory = now;
     check();
   });
-  page.on("tab", (name) => {
+  granchain.on("tab", (name) => {
     tab = name;
     check();
   });

@@ -25,15 +25,15 @@ class PlacedSetting:
     wall_s: float
 
 
-def page_setting(scene: Scene, picture: Settled | None, live: bool) -> Setting:
+def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> Setting:
     """The setting of the last computation behind the picture, by the rule of steady/settling/refine_orbit.py."""
     if live:
         return LIVE_SETTING
-    if picture is None:
+    if settled is None:
         return method_for(scene.accuracy, scene.cuts_tension)
-    if picture.preview or picture.regime.name != "periodic":
-        return Setting(picture.run.cost.method)
-    return orbit_setting(scene, scene.accuracy, picture.regime.assumed_contraction).finer()
+    if settled.preview or settled.regime.name != "periodic":
+        return Setting(settled.run.cost.method)
+    return orbit_setting(scene, scene.accuracy, settled.regime.assumed_contraction).finer()
 
 
 def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:

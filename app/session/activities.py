@@ -14,15 +14,15 @@ Activity = tuple[str, str, str]
 
 def picture_activities(session: Session, busy: bool) -> list[Activity]:
     """The chain and its pictures, the live run, the steady state and its Lyapunov exponent."""
-    picture, live = session.settled, session.mode == "live"
+    settled, live = session.settled, session.mode == "live"
     running = COMPUTING if busy else READY
     return [
         ("chain, map, forces", running, f"from one {'live' if live else 'settled'} run"),
         ("live run", (COMPUTING if session.playing else READY) if live else OFF,
          ("goes on" if session.playing else "paused") if live else "the page shows the steady state"),
         ("steady state", OFF if live else running,
-         "not computed in live mode" if live else "not found yet" if picture is None else picture.regime.sentence),
-        ("Lyapunov exponent", *_lyapunov(None if live else picture)),
+         "not computed in live mode" if live else "not found yet" if settled is None else settled.regime.sentence),
+        ("Lyapunov exponent", *_lyapunov(None if live else settled)),
     ]
 
 
@@ -31,19 +31,19 @@ def account_activity(session: Session, busy: bool) -> Activity:
     return ("energy account", *_account(session, busy))
 
 
-def _lyapunov(picture: Settled | None) -> tuple[str, str]:
+def _lyapunov(settled: Settled | None) -> tuple[str, str]:
     """State and detail of the exponent, which is computed only for a motion that does not become periodic."""
-    if picture is None or picture.regime.lyapunov is None:
+    if settled is None or settled.regime.lyapunov is None:
         return OFF, "only for motions that do not become periodic"
-    return READY, f"{exponent_words(*picture.regime.lyapunov)} per period"
+    return READY, f"{exponent_words(*settled.regime.lyapunov)} per period"
 
 
 def _account(session: Session, busy: bool) -> tuple[str, str]:
-    picture = session.settled
+    settled = session.settled
     if not session.energy_account:
         return OFF, "switched off"
     if session.mode == "live":
         return OFF, "not computed in a live run"
-    if picture is None or picture.run.energy_residual is None:
+    if settled is None or settled.run.energy_residual is None:
         return COMPUTING if busy else READY, "computed after the picture"
-    return READY, f"closes to {picture.run.energy_residual:.0e}"
+    return READY, f"closes to {settled.run.energy_residual:.0e}"

@@ -13,11 +13,11 @@ from granchain_core.results.run import residual
 _TOLERANCE_PART = 0.01
 
 
-def with_account(picture: Settled, stop: Stop) -> Settled:
+def with_account(settled: Settled, stop: Stop) -> Settled:
     """The picture with its energy residual over the periods shown. Raises `Cancelled`."""
-    run = picture.run
+    run = settled.run
     setting = adaptive_setting(max(1e-13, _TOLERANCE_PART * run.scene.accuracy))
     engine = Engine(run.scene, setting, 1, account=True, stop=stop)
-    engine.start(picture.state)
+    engine.start(settled.state)
     samples = engine.record(max(1, round((len(run.time) - 1) / run.samples)))
-    return replace(picture, run=replace(run, energy_residual=residual(samples.energy)))
+    return replace(settled, run=replace(run, energy_residual=residual(samples.energy)))

@@ -24,7 +24,7 @@ _LONGEST_COMPUTING = 0.1
 
 
 @dataclass(frozen=True)
-class LivePicture:
+class LiveStep:
     """One step of the live run: the last few periods, the run of the newest samples, drive periods since rest."""
 
     frames: Frames
@@ -74,7 +74,7 @@ class LiveRun:
         """End the computation under way: the visitor left."""
         self.flag.set()
 
-    def step(self, periods_per_second: float) -> LivePicture:
+    def step(self, periods_per_second: float) -> LiveStep:
         """Advance by the viewing time since the last step; in slow motion, wait for the next sample.
 
         No step takes longer than `_LONGEST_COMPUTING`, so that a slow chain lags behind the clock and not behind its
@@ -95,7 +95,7 @@ class LiveRun:
         """The periods on the screen as one run, to be saved."""
         return joined(list(self._runs)) if self._runs else None
 
-    def advance(self, samples: int) -> LivePicture:
+    def advance(self, samples: int) -> LiveStep:
         """The window after `samples` more samples."""
         chain = self._chain = self._chain or self._made()
         with self._lock:
@@ -114,7 +114,7 @@ class LiveRun:
         self._most = max(1, int(samples * _LONGEST_COMPUTING / max(time.thread_time() - began, 1e-6)))
         self._shown += samples
         self._remember(run)
-        return LivePicture(self._window.add(run), run, self._shown / self.samples)
+        return LiveStep(self._window.add(run), run, self._shown / self.samples)
 
     def _made(self) -> LiveChain:
         scene, start = self._first

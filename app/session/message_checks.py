@@ -27,8 +27,8 @@ def whole(what: str, value: object, low: int, high: int) -> int:
     return int(value)
 
 
-def listed(what: str, items: Sequence[Item], place: object) -> Item:
+def listed(what: str, items: Sequence[Item], index: object) -> Item:
     """Return the item at a place of a list on the page; raise `BadInput` if the list no longer has it."""
-    if not is_number(place) or not isinstance(place, int) or not 0 <= place < len(items):
+    if not is_number(index) or not isinstance(index, int) or not 0 <= index < len(items):
         raise BadInput(f"That {what} is no longer on the page; choose another.")
-    return items[place]
+    return items[index]

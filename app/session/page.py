@@ -7,7 +7,7 @@ from typing import Any
 
 from granchain_core import Settled
 
-from ..pictures.theme import Theme
+from ..plots.theme import Theme
 from .activities import Activity
 
 Actions = Mapping[str, Callable[[dict[str, Any]], None]]
@@ -38,10 +38,10 @@ class Page:
     def address_applied(self) -> None:
         """The session became what an address says: a visit, or a step back or forward."""
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """A settled picture has been offered to the browser, whose pace may still hold it back.
 
-        A better one for these knobs may follow unless `picture.final`.
+        A better one for these knobs may follow unless `settled.final`.
         """
 
     def curve_ready(self) -> None:

@@ -17,7 +17,7 @@ from granchain_core.inputs.checks import unknown_name
 from granchain_core.scene.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
 
-from ..pictures.theme import THEMES
+from ..plots.theme import THEMES
 
 VERSION = "1"
 #: What the curve's figure may draw: curves from rest and by sweeps, and the paper's stated features.
@@ -59,8 +59,8 @@ VIEW: dict[str, ViewField] = {
     "speed": ViewField("speed", tuple(f"{speed:g}" for speed in SPEEDS), float, lambda speed: f"{speed:g}"),
     "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }
-#: Fields that the browser adds to a link, because it alone knows them (`parts/page_scripts/address.js`): the open tab,
-#: the page over the pictures, the theme if the visitor has chosen one, and whether another page embeds this one.
+#: Fields that the browser adds to a link, because it alone knows them (`parts/inline_scripts/address.js`): the open
+#: tab, the page over the pictures, the theme if the visitor has chosen one, and whether another page embeds this one.
 BROWSER_FIELDS = ("tab", "page", "look", "embed")
 #: The values of the view settings; the first is the default.
 VIEW_VALUES: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}

@@ -125,10 +125,10 @@ def told_words(story: Story, number: int, words: str) -> str:
     """`say`, `ask` or `answer` of step `number`, from 1, with its numbers: {output}, {input}, {2.output} of step 2."""
 
     def value(match: re.Match[str]) -> str:
-        place = int(match[1] or number)
-        if not 1 <= place <= len(story.steps):
-            raise BadInput(f"step {number}: {match[0]} is of step {place}, but there are {len(story.steps)}.")
-        step = story.steps[place - 1]
+        other = int(match[1] or number)
+        if not 1 <= other <= len(story.steps):
+            raise BadInput(f"step {number}: {match[0]} is of step {other}, but there are {len(story.steps)}.")
+        step = story.steps[other - 1]
         repeats = step.expect.regime not in NEVER_REPEATING
         numbers = {"output": _force(step.expect.output, repeats), "input": _force(step.expect.input, repeats),
                    "share": f"{100 * step.expect.output / step.expect.input:.0f} %",

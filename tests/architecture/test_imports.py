@@ -85,7 +85,7 @@ SHARED = {"format", "frames", "needed", "scripts"}
 
 
 #: Folders whose own folders the map orders. Others may use all of them; of a folder of `pages`, `dashboard` alone.
-FAMILIES = {folder.split(".")[0] for folder in USES if "." in folder} - {"pictures"}
+FAMILIES = {folder.split(".")[0] for folder in USES if "." in folder} - {"plots"}
 
 
 def layer(module: str) -> str:
@@ -109,14 +109,14 @@ def test_the_order_of_the_map_is_read() -> None:
     """A family's own folders, and those that other folders use with it."""
     assert {"serve", "parts", "pages"} == FAMILIES
     assert allowed("serve.compiling") == {"serve.compiling", "serve.computing", "serve.monitoring"}
-    assert {"parts.toolkit", "serve.document", "pictures"} <= allowed("parts.stage")
+    assert {"parts.toolkit", "serve.document", "plots"} <= allowed("parts.stage")
     assert not {"parts.chain", "curve", "pages"} & allowed("parts.stage")
     assert {"parts.chain", "serve.computing"} <= allowed("pages.map") and "pages.probe" not in allowed("pages.map")
 
 
 @pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app.")])
 def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None:
-    """Pages know their host and not the controller, parts know no page, the command line only pictures and the server.
+    """Pages know their host and not the controller, parts know no page, the command line only plots and the server.
     """
     mine = layer(module)
     for name in sorted(one for one in imports(module) if one.startswith("app.")):

@@ -1,4 +1,4 @@
-"""Figures of app/pictures in the browser: the data of their sources, and where on the screen a point is."""
+"""Figures of app/plots in the browser: the data of their sources, and where on the screen a point is."""
 
 from __future__ import annotations
 

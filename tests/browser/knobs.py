@@ -39,7 +39,7 @@ def type_into(page: Page, name: str, text: str) -> None:
 
 def settled(page: Page) -> None:
     """Wait until the final picture of the knobs as they are is painted, and the status line has it."""
-    page.wait_for_function("granchain.isSettled() && painted.at(-1)?.number === granchain.shown.number", timeout=COMPILED)
+    page.wait_for_function("granchain.address.isSettled() && painted.at(-1)?.number === granchain.shown.number", timeout=COMPILED)
     expect(page.locator("#foot b")).not_to_contain_text("preview")
 
 

@@ -54,7 +54,7 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
         expect(words).to_contain_text(sentence, timeout=COMPILED)
     expect(sheet.get_by_role("img", name="Spectrum of the output force, sec2 at 1130 Hz")).to_be_visible()
     expect(sheet.locator("code")).to_have_text("granchain spectrum sec2 --set f=1130.0 --force output")
-    page.evaluate("window.kept = granchain.pages.get('analysis').figure.document; granchain.nextTheme()")
+    page.evaluate("window.kept = granchain.pages.get('analysis').figure.document; granchain.theme.next()")
     until(page, lambda: bool(page.evaluate(
         "granchain.pages.get('analysis').figure.document && kept !== granchain.pages.get('analysis').figure.document")))
 

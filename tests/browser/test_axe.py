@@ -7,7 +7,7 @@ from axe_playwright_python.sync_playwright import Axe
 from knobs import COMPILED, Visit, settled, type_into
 from playwright.sync_api import Page, expect
 
-from app.pictures.theme import THEMES
+from app.plots.theme import THEMES
 
 POPOVERS = ("Help and keys (?)", "Export: pictures, tables, a program", "Link to this picture")
 
@@ -59,7 +59,7 @@ RUN = """async ([within, themes]) => {
 
 def violations(page: Page, within: str | None = None) -> dict[str, list[str]]:
     """Rule and element of everything that axe-core finds in light, and of words without contrast in the other themes,
-    on the whole page or within one element. A theme's colours are all in the style sheet (app/pictures/theme.py).
+    on the whole page or within one element. A theme's colours are all in the style sheet (app/plots/theme.py).
     """
     if not page.evaluate("'axe' in window"):
         page.evaluate(Axe().axe_script)  # once: it is half a megabyte, and many places are looked at

@@ -49,7 +49,7 @@ def grows_without_being_made_anew(page: Page) -> None:
     before = page.evaluate(COUNT)
     page.wait_for_function(grown % (before + 5), polling=100)
     assert page.evaluate("kept === granchain.pages.get('branches').figures[0].document")
-    page.evaluate("granchain.nextTheme()")
+    page.evaluate("granchain.theme.next()")
     page.wait_for_function("granchain.pages.get('branches').figures[0].document && kept !== granchain.pages.get('branches').figures[0].document")
     page.wait_for_function(grown % (before + 5), polling=100)
 

@@ -66,7 +66,7 @@ def looks_lost(page: Page) -> None:
 
     How soon: a silent server is noticed after `PING_TIMEOUT` of connection.js, counted while the page itself runs.
     """
-    page.wait_for_selector("#page.lost")
+    page.wait_for_selector("#dashboard.lost")
     expect(page.get_by_role("alert").filter(has_text="Connection lost – trying again")).to_be_visible()
     for part in ("stage", "curves"):
         assert "grayscale(1)" in page.evaluate(f"getComputedStyle(document.getElementById('{part}')).filter")
@@ -100,7 +100,7 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
     page.get_by_role("tab", name="data").click()
     data = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
     page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": data})
-    page.wait_for_function("!granchain.kept.playing && granchain.kept.uploaded && granchain.address().search.includes('speed=5')")
+    page.wait_for_function("!granchain.connection.kept.playing && granchain.connection.kept.uploaded && granchain.address.url().search.includes('speed=5')")
 
     server.kill()
     looks_lost(page)
@@ -126,7 +126,7 @@ def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Serve
 def a_socket_that_stays_silent_while_the_server_answers_is_given_up(page: Page) -> None:
     """As behind a proxy that forgot it: neither side learns that it is closed."""
     page.evaluate("window.before = true")
-    page.evaluate("granchain.answerReceived = () => {}")
+    page.evaluate("granchain.connection.answerReceived = () => {}")
     looks_lost(page)
     page.wait_for_function("window.granchain && !window.before")
     page.wait_for_function(BELONGS, arg=700)

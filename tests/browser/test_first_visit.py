@@ -56,13 +56,13 @@ def test_before_the_first_picture_every_part_says_what_is_coming(chromium: Brows
     page = chromium.new_page(reduced_motion="reduce")
     page.add_init_script(HOLDS_ITS_MESSAGES)
     page.goto(prepared)
-    page.wait_for_selector("#page.starting")
+    page.wait_for_selector("#dashboard.starting")
     coming = page.evaluate(SKELETON)
     assert all(words in content for words, content in zip(
         ("the chain of beads", "at the driver", "kinetic energy", "at the wall", "resonance curve"), coming, strict=True))
     assert page.evaluate(OVER) == 0
     page.evaluate("release()")
-    page.wait_for_selector("#page:not(.starting)")
+    page.wait_for_selector("#dashboard:not(.starting)")
     assert page.evaluate(SKELETON) == ["none"] * 5 and page.evaluate(OVER) == 7
     page.close()
 
@@ -87,13 +87,13 @@ def test_pictures_of_another_scene_are_grey_until_its_own_come(visit: Visit) -> 
     page = visit()
     page.evaluate("""() => {
       window.greyed = [];
-      const one = document.getElementById("page");
+      const one = document.getElementById("dashboard");
       new MutationObserver(() => greyed.push(one.classList.contains("another"))).observe(one, { attributeFilter: ["class"] });
     }""")
     page.locator("select.scene").select_option("fig3b")
     page.wait_for_function("granchain.shown.scene === 'fig3b'")
     assert page.evaluate("greyed.includes(true)")
-    expect(page.locator("#page.another")).to_have_count(0)
+    expect(page.locator("#dashboard.another")).to_have_count(0)
 
 
 def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:

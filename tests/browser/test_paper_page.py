@@ -41,7 +41,7 @@ def test_figures_are_drawn_with_caption_and_rows(visit: Visit) -> None:
     chosen(sheet, "3a")
     expect(sheet.get_by_role("img", name="Figure 3a")).to_be_visible(timeout=COMPILED)
     until(page, lambda: bool(page.evaluate("granchain.pages.get('paper').figure.model('input force')?.data.force.length > 700")))
-    page.evaluate("window.kept = granchain.pages.get('paper').figure.document; granchain.nextTheme()")  # another theme, another figure
+    page.evaluate("window.kept = granchain.pages.get('paper').figure.document; granchain.theme.next()")  # another theme, another figure
     until(page, lambda: bool(page.evaluate(
         "granchain.pages.get('paper').figure.document && kept !== granchain.pages.get('paper').figure.document")))
     assert page.evaluate("granchain.pages.get('paper').figure.model('drive').background_fill_color") == "#161a21"

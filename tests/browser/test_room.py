@@ -12,7 +12,7 @@ from layout_faults import faults
 from playwright.sync_api import Page, expect
 from server import ROOT, at_rest, until
 
-from app.pictures.theme import THEMES, style_sheet
+from app.plots.theme import THEMES, style_sheet
 
 #: Laptops, screens, a beamer, a phone.
 SIZES = ((1024, 768), (1180, 820), (1280, 800), (1280, 720), (1366, 768), (1440, 900), (1536, 864), (1920, 1080),

@@ -14,12 +14,12 @@ from playwright.sync_api import BrowserContext, Page, Route
 from server import until
 
 from app.format import prefixed
-from app.scripts import FILES, IN_PAGE
+from app.scripts import FILES, INLINE_SCRIPTS
 
 APP = Path(__file__).parents[2] / "app"
 ORIGIN = "http://scripts.test/"
 #: The elements that the scripts in the page ask for, and what it has of Bokeh.
-BLANK = """<!doctype html><div id="page">
+BLANK = """<!doctype html><div id="dashboard">
   <div id="lost" hidden></div><div id="bar"></div><div id="side"></div><div id="stage"></div><div id="curves"><div id="curve"></div></div>
   <div id="overlay"><div data-overlay="probe" hidden></div></div><div id="foot"></div></div>
 <script>window.Bokeh = { documents: [{ on_event: (name, act) => { window.closeSocket = act; } }] };</script>"""
@@ -42,7 +42,7 @@ class Answers:
             route.fulfill(path=APP / path, content_type="text/javascript")
         else:
             self.opened.append(route.request.url)
-            scripts = "".join(FILES[name].read_text(encoding="utf-8") for name in IN_PAGE)
+            scripts = "".join(FILES[name].read_text(encoding="utf-8") for name in INLINE_SCRIPTS)
             route.fulfill(body=f"{BLANK}<script>{scripts}</script>", content_type="text/html")
 
 
@@ -127,51 +127,51 @@ def page(profile: BrowserContext, answers: Answers) -> Iterator[Page]:
       granchain.knobNames = ["f", "k", "kappa"];
       window.gone = [];
       granchain.go = (query) => gone.push(query);
-      granchain.linkReceived("v=1&scene=sec2", [], ["mode", "scale"]);
+      granchain.address.linkReceived("v=1&scene=sec2", [], ["mode", "scale"]);
     }""")
     page.clock.run_for(500)
     yield page
     page.close()
 
 
-def query(page: Page, expression: str = "granchain.address().search") -> str:
+def query(page: Page, expression: str = "granchain.address.url().search") -> str:
     """The query of the address as it would be now."""
     return str(page.evaluate(expression)).removeprefix("?")
 
 
 def test_requests_are_in_the_address_until_the_server_has_answered_them(page: Page) -> None:
-    page.evaluate("granchain.requested('f', 615)")
+    page.evaluate("granchain.address.requested('f', 615)")
     assert query(page) == "v=1&scene=sec2&f=615"
-    page.evaluate("granchain.requested('kappa', 0.001); granchain.requested('k', 5)")
+    page.evaluate("granchain.address.requested('kappa', 0.001); granchain.address.requested('k', 5)")
     assert query(page) == "v=1&scene=sec2&f=615&k=5", "k and kappa are one knob"
-    page.evaluate("granchain.linkReceived('v=1&scene=sec2&f=615&k=5&scale=fit', ['f', 'k', 'kappa'])")
-    page.evaluate("granchain.requested('scene', 'rig')")
+    page.evaluate("granchain.address.linkReceived('v=1&scene=sec2&f=615&k=5&scale=fit', ['f', 'k', 'kappa'])")
+    page.evaluate("granchain.address.requested('scene', 'rig')")
     assert query(page) == "v=1&scale=fit&scene=rig", "a scene takes no knobs of the one before"
 
 
 def test_a_picture_is_settled_when_it_is_final_and_of_the_knobs_that_were_asked_for(page: Page) -> None:
     shown = "granchain.shown = { knobs: 'v=1&scene=sec2&f=615', final: true }"
-    assert not page.evaluate("granchain.isSettled()")
-    page.evaluate("granchain.requested('f', 615)")
-    assert not page.evaluate(f"{shown}; granchain.isSettled()"), "the server has not answered"
-    page.evaluate("granchain.linkReceived('v=1&scene=sec2&f=615&scale=fit', ['f'])")
-    assert page.evaluate("granchain.isSettled()")
-    assert not page.evaluate("granchain.shown.final = false; granchain.isSettled()")
+    assert not page.evaluate("granchain.address.isSettled()")
+    page.evaluate("granchain.address.requested('f', 615)")
+    assert not page.evaluate(f"{shown}; granchain.address.isSettled()"), "the server has not answered"
+    page.evaluate("granchain.address.linkReceived('v=1&scene=sec2&f=615&scale=fit', ['f'])")
+    assert page.evaluate("granchain.address.isSettled()")
+    assert not page.evaluate("granchain.shown.final = false; granchain.address.isSettled()")
 
 
 def test_a_change_followed_by_a_rest_is_a_step_and_a_refined_link_is_none(page: Page) -> None:
     for link in ("f=615", "f=616"):
-        page.evaluate("link => granchain.linkReceived(`v=1&scene=sec2&${link}`, [])", link)
+        page.evaluate("link => granchain.address.linkReceived(`v=1&scene=sec2&${link}`, [])", link)
         page.clock.run_for(200)
     assert query(page, "location.search") == "v=1&scene=sec2"
     page.clock.run_for(300)
     assert query(page, "location.search") == "v=1&scene=sec2&f=616" and page.evaluate("granchain.steps.at") == 1
-    page.evaluate("granchain.linkRefined('v=1&scene=sec2&f=616&from=here')")
-    page.evaluate("granchain.setLocation({ tab: 'probe' })")
-    page.evaluate("granchain.setLocation({ tab: '' })")
+    page.evaluate("granchain.address.linkRefined('v=1&scene=sec2&f=616&from=here')")
+    page.evaluate("granchain.address.setPlace({ tab: 'probe' })")
+    page.evaluate("granchain.address.setPlace({ tab: '' })")
     page.clock.run_for(500)
     assert page.evaluate("[granchain.steps.at, history.state.at]") == [2, 2]
-    page.evaluate("granchain.linkRefined('v=1&scene=sec2&f=616&from=there')")
+    page.evaluate("granchain.address.linkRefined('v=1&scene=sec2&f=616&from=there')")
     page.clock.run_for(500)
     assert query(page, "location.search").endswith("from=there") and page.evaluate("granchain.steps.at") == 2
 
@@ -179,55 +179,55 @@ def test_a_change_followed_by_a_rest_is_a_step_and_a_refined_link_is_none(page: 
 def test_undo_and_redo_go_to_the_server_and_wait_for_its_answer(page: Page) -> None:
     page.evaluate("granchain.on('steps', (one) => { window.told = one; })")
     for number in (1, 2):
-        page.evaluate("number => granchain.linkReceived(`v=1&scene=sec2&f=${number}`, [])", number)
+        page.evaluate("number => granchain.address.linkReceived(`v=1&scene=sec2&f=${number}`, [])", number)
         page.clock.run_for(500)
     assert page.evaluate("told") == {"back": True, "forward": False}
-    page.evaluate("granchain.undo()")
+    page.evaluate("granchain.steps.undo()")
     until(page, lambda: page.evaluate("gone") == ["v=1&scene=sec2&f=1"])
     assert page.evaluate("[told, granchain.steps.returning]") == [{"back": True, "forward": True}, True]
-    page.evaluate("granchain.addressApplied('v=1&scene=sec2&f=1')")
+    page.evaluate("granchain.address.applied('v=1&scene=sec2&f=1')")
     assert not page.evaluate("granchain.steps.returning")
-    page.evaluate("granchain.redo()")
+    page.evaluate("granchain.steps.redo()")
     until(page, lambda: len(page.evaluate("gone")) == 2)
     assert page.evaluate("granchain.steps.at") == 2
-    page.evaluate("granchain.addressApplied('v=1&scene=sec2&f=2'); granchain.redo()")
+    page.evaluate("granchain.address.applied('v=1&scene=sec2&f=2'); granchain.steps.redo()")
     assert page.evaluate("[granchain.steps.at, granchain.steps.newest]") == [2, 2], "there is nothing ahead"
 
 
 def test_a_silent_server_is_asked_counted_as_lost_and_taken_back(page: Page) -> None:
-    page.evaluate("window.pings = 0; granchain.connect(() => { pings += 1; })")
+    page.evaluate("window.pings = 0; granchain.connection.connect(() => { pings += 1; })")
     page.clock.run_for(500)
     assert page.evaluate("pings") == 1, "one ping is unanswered, and no other follows"
     page.clock.run_for(1000)
-    assert not page.evaluate("granchain.lost")
+    assert not page.evaluate("granchain.connection.lost")
     page.clock.run_for(500)
-    assert page.evaluate("[granchain.lost, stage.inert, lost.hidden, lost.textContent.slice(0, 15)]") == [
+    assert page.evaluate("[granchain.connection.lost, stage.inert, lost.hidden, lost.textContent.slice(0, 15)]") == [
         True, True, False, "Connection lost"]
-    page.evaluate("granchain.answerReceived()")
-    assert page.evaluate("[granchain.lost, stage.inert, lost.hidden]") == [False, False, True]
+    page.evaluate("granchain.connection.answerReceived()")
+    assert page.evaluate("[granchain.connection.lost, stage.inert, lost.hidden]") == [False, False, True]
     for _ in range(4):
         page.clock.run_for(500)
-        page.evaluate("granchain.answerReceived()")
-    assert not page.evaluate("granchain.lost") and page.evaluate("pings") == 5
+        page.evaluate("granchain.connection.answerReceived()")
+    assert not page.evaluate("granchain.connection.lost") and page.evaluate("pings") == 5
 
 
 def test_a_hidden_window_asks_nothing_and_a_closed_socket_is_lost_at_once(page: Page) -> None:
     page.evaluate("""() => {
       window.pings = 0;
-      granchain.connect(() => { pings += 1; });
+      granchain.connection.connect(() => { pings += 1; });
       Object.defineProperty(document, "hidden", { configurable: true, get: () => true });
     }""")
     page.clock.run_for(3000)
-    assert page.evaluate("[pings, granchain.lost]") == [0, False]
+    assert page.evaluate("[pings, granchain.connection.lost]") == [0, False]
     page.evaluate("closeSocket()")
-    assert page.evaluate("granchain.lost")
+    assert page.evaluate("granchain.connection.lost")
 
 
 def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(page: Page, answers: Answers) -> None:
     page.evaluate("""() => {
-      granchain.connect(() => {});
-      granchain.linkReceived("v=1&scene=sec2&f=616", []);
-      granchain.kept = { playing: false };
+      granchain.connection.connect(() => {});
+      granchain.address.linkReceived("v=1&scene=sec2&f=616", []);
+      granchain.connection.keep({ playing: false });
       closeSocket();
     }""")
     page.clock.run_for(1000)
@@ -235,6 +235,6 @@ def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(
     answers.alive = True
     until(page, lambda: page.clock.run_for(500) is None and len(answers.opened) == 2)
     assert answers.opened[-1] == f"{ORIGIN}?v=1&scene=sec2&f=616"
-    until(page, lambda: page.evaluate("window.granchain?.again?.playing") is False)
+    until(page, lambda: page.evaluate("window.granchain?.connection?.again?.playing") is False)
     assert page.evaluate("[lost.hidden, lost.textContent.slice(0, 15), Boolean(document.getElementById('last-pictures'))]") == [
         False, "Connected again", True]

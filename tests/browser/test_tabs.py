@@ -42,7 +42,7 @@ def test_a_name_of_no_page_opens_none(at: Visit) -> None:
     page = at("?v=1&scene=sec2&page=probe")
     page.wait_for_function("granchain.overlay === 'probe'")
     page.evaluate("granchain.openPage('map')")
-    assert page.evaluate("[granchain.overlay, document.getElementById('page').classList.contains('overlaid')]") == [None, False]
+    assert page.evaluate("[granchain.overlay, document.getElementById('dashboard').classList.contains('overlaid')]") == [None, False]
     expect(page.locator("#tabs")).to_be_visible()
 
 

@@ -50,7 +50,7 @@ def test_the_command_answers_before_its_server_and_leaves_it_the_port(monkeypatc
     assert main(["serve", "--port", str(port)]) == 0
     (status, page), (health, _) = seen
     assert (status, health) == (503, 503), "a health check waits"
-    assert "granchain is starting" in page and 'id="page" class="starting"' in page and "/liveness" in page
+    assert "granchain is starting" in page and 'id="dashboard" class="starting"' in page and "/liveness" in page
     assert not listens(port)
 
 

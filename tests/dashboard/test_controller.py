@@ -20,7 +20,7 @@ from app import server
 from app.dashboard import links_and_files, main_picture, measurement
 from app.dashboard.table import PAGES, watched_pages
 from app.frames import Extremes, settled_frames
-from app.pictures.theme import THEMES, Theme
+from app.plots.theme import THEMES, Theme
 from app.serve.compiling.compiler import COMPILER, Compiler
 from app.serve.http.limits import LARGEST_UPLOAD
 from app.serve.monitoring.metrics import METRICS
@@ -221,7 +221,7 @@ def test_the_effects_panel_is_told_the_slot_of_each_effect_and_the_slots_of_none
 
 
 def test_a_step_to_another_scene_has_the_curves_of_its_address(dashboard: Dashboard) -> None:
-    """Without `curves` an address means those of its scene. A scene from the menu keeps the directions of a sweep."""
+    """Without `curves` an address means those of its scene. A scene from the menu keeps the chosen starts."""
     dashboard.received({"do": "go", "query": "v=1&scene=sec2&curves=rest.up"})
     assert dashboard.session.curves == "rest.up"
     dashboard.received({"do": "scene", "name": "rig"})

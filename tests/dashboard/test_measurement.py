@@ -20,7 +20,7 @@ from app.dashboard import measurement
 from app.dashboard.measurement import SAMPLES, MeasurementActions
 from app.dashboard.show import show_settled
 from app.frames import samples_for
-from app.pictures.measured import measured_columns
+from app.plots.measured import measured_columns
 from app.serve.computing.queues import LONG
 from granchain_core import CurvePoint, Scene, scene, settle, settling
 from granchain_core.experiment import Measured, compared, read_data

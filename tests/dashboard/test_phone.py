@@ -14,7 +14,7 @@ from app.scripts import FILES
 (PHONE,) = re.findall(r'PHONE = matchMedia\("([^"]+)"\)', FILES["dom.js"].read_text(encoding="utf-8"))
 _WIDTH, _HEIGHT = PHONE.split(", ")
 (_WIDEST,) = re.findall(r"\d+", _WIDTH)
-#: Other windows that page.css has rules for: a phone by one of its two sides, one wider than a phone, large ones.
+#: Other windows that dashboard.css has rules for: a phone by one of its two sides, one wider than a phone, large ones.
 OTHERS = {_WIDTH, _HEIGHT, f"(min-width: {int(_WIDEST) + 1}px) and {_HEIGHT}", f"(min-width: 600px) and {_HEIGHT}",
           "(max-height: 950px)", "(max-width: 1100px)", "(min-width: 1700px)"}
 

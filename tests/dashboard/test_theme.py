@@ -9,12 +9,12 @@ from pathlib import Path
 import pytest
 
 import app
-from app.pictures.force_lines import DRIVE, INPUT, OUTPUT
-from app.pictures.theme import THEMES, Theme, style_sheet
+from app.plots.force_lines import DRIVE, INPUT, OUTPUT
+from app.plots.theme import THEMES, Theme, style_sheet
 from app.session.share import BROWSER_FIELDS, VIEW_VALUES
 from granchain import figure
 
-SCRIPTS = Path(app.__file__).parent / "parts" / "page_scripts"
+SCRIPTS = Path(app.__file__).parent / "parts" / "inline_scripts"
 
 
 def properties(name: str) -> dict[str, str]:
@@ -37,7 +37,7 @@ def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
 
 
 def test_no_theme_but_the_projectors_fixes_the_size_of_words() -> None:
-    """On a large or small screen page.css gives them another size, in a rule for `:root` alone."""
+    """On a large or small screen dashboard.css gives them another size, in a rule for `:root` alone."""
     rules = dict(re.findall(r"(\S+) \{ (.*) \}", style_sheet()))
     assert [selector for selector, body in rules.items() if "--type" in body] == [":root", ":root[data-theme=projector]"]
 
@@ -57,7 +57,7 @@ def names_in(script: str, constant: str) -> tuple[str, ...]:
 
 def test_a_theme_is_known_everywhere() -> None:
     """Links, tooltip, command line and screenshots take the names from these."""
-    assert tuple(THEMES) == VIEW_VALUES["look"][1:] == names_in("page.js", "THEMES")
+    assert tuple(THEMES) == VIEW_VALUES["look"][1:] == names_in("shared.js", "THEMES")
 
 
 def test_the_docstring_names_all_themes() -> None:

@@ -10,7 +10,7 @@ from edited_tree import copied, edited_copy, files_of, follow
 
 PAGE = ROOT / "docs" / "add-a-page.md"
 #: The heading of the step that not every page needs.
-PICTURE = "## 7. A picture"
+PLOT = "## 7. A plot"
 
 
 @pytest.fixture(scope="module")
@@ -25,16 +25,16 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_the_page_edits_three_files_and_writes_five() -> None:
-    edits, new = files_of(PAGE, PICTURE)
+    edits, new = files_of(PAGE, PLOT)
     assert (len(edits - new), len(new)) == (3, 5)
     assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a page: edit 3 files, write 5"
 
 
-def test_a_picture_edits_four_files_and_writes_one() -> None:
-    (edits, new), (_, of_the_page) = files_of(PAGE), files_of(PAGE, PICTURE)
-    picture = {block.path for block in blocks(PAGE)[len(blocks(PAGE, PICTURE)):]}
-    assert (len(picture & edits), len(new - of_the_page)) == (4, 1)
-    assert "edit 4 files, write one." in PAGE.read_text(encoding="utf-8").partition(PICTURE)[2]
+def test_a_plot_edits_four_files_and_writes_one() -> None:
+    (edits, new), (_, of_the_page) = files_of(PAGE), files_of(PAGE, PLOT)
+    plot = {block.path for block in blocks(PAGE)[len(blocks(PAGE, PLOT)):]}
+    assert (len(plot & edits), len(new - of_the_page)) == (4, 1)
+    assert "edit 4 files, write one." in PAGE.read_text(encoding="utf-8").partition(PLOT)[2]
 
 
 def test_the_new_page_has_its_overlay_its_tab_and_its_hooks(tree: Path) -> None:
@@ -47,10 +47,10 @@ from app.session.session import Session
 from app.scripts import FILES
 
 dashboard = Controller(Document(), Session())
-picture = SimpleNamespace(run=SimpleNamespace(max_output_force=1.0, max_input_force=4.0), final=False)
-dashboard.session.settled = picture
+settled = SimpleNamespace(run=SimpleNamespace(max_output_force=1.0, max_input_force=4.0), final=False)
+dashboard.session.settled = settled
 page = next(one for one in dashboard.pages if type(one).__name__ == "TransmissionPage")
-page.picture_ready(picture)
+page.picture_ready(settled)
 print(dashboard.views.overlays["transmission"].state["sentence"])
 dashboard.views.overlays["transmission"].update_state(sentence="")
 dashboard.received({"do": "transmission-say"})
@@ -75,7 +75,7 @@ sys.path.insert(0, "tests")
 from types import SimpleNamespace
 from host import FakeHost
 from app.pages.transmission.page import TransmissionPage
-from app.pictures.theme import THEMES
+from app.plots.theme import THEMES
 from granchain_core import scene
 
 host, shown, figures = FakeHost(), {"running": False}, []

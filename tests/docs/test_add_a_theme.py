@@ -23,7 +23,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_the_page_edits_three_files_and_writes_none() -> None:
     edits, new = files_of(PAGE)
-    assert edits == {"app/pictures/theme.py", "app/parts/page_scripts/page.js", "granchain/pictures.py"} and not new
+    assert edits == {"app/plots/theme.py", "app/parts/inline_scripts/shared.js", "granchain/pictures.py"} and not new
     assert PAGE.read_text(encoding="utf-8").splitlines()[0] == "# Add a theme: edit 3 files"
 
 
@@ -41,14 +41,14 @@ from app.session.share import decode
 parser = argparse.ArgumentParser()
 command.add_options(parser)
 print("sepia" in parser.format_help(), decode("v=1&look=sepia")[1:], b"[data-theme=sepia]" in answer())
-from app.pictures.theme import THEMES
-from app.pictures.themed import apply_theme, frame
-print(apply_theme(frame(), THEMES["sepia"]).background_fill_color)
+from app.plots.theme import THEMES
+from app.plots.themed import apply_theme, empty_figure
+print(apply_theme(empty_figure(), THEMES["sepia"]).background_fill_color)
 """)
     assert printed.splitlines() == ["True ({'look': 'sepia'}, []) True", "#fbf5e6"]
 
 
-@pytest.mark.parametrize(("path", "added"), [("app/parts/page_scripts/page.js", ', "sepia"]'), ("granchain/pictures.py", ' or "sepia".')])
+@pytest.mark.parametrize(("path", "added"), [("app/parts/inline_scripts/shared.js", ', "sepia"]'), ("granchain/pictures.py", ' or "sepia".')])
 def test_what_is_forgotten_is_named(tree: Path, path: str, added: str) -> None:
     file = tree / path
     text = file.read_text(encoding="utf-8")

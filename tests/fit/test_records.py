@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from app.pictures.fit import fit as drawn
-from app.pictures.theme import THEMES
+from app.plots.fit import fit as drawn
+from app.plots.theme import THEMES
 from granchain_core import Amplitude, BadInput, Fit, Scene, Stop, fit, save, scene
 from granchain_core.experiment import Series
 from granchain_core.fit import Free, RecordsTarget, SeriesTarget, per_frequency, virtual_series

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.cli.branch import branch_json, normal_form_words
-from app.pictures.branches import criticality_words
+from app.plots.branches import criticality_words
 from granchain_core import BadInput, scene, settle
 from granchain_core.hdf5 import seal
 from granchain_core.orbits import Branch, Continuation, SpecialPoint, continue_branch, switch_to_doubled

@@ -10,7 +10,7 @@ import pytest
 from page_host import Trial, picture
 
 from app.pages.accuracy import page as module
-from app.pictures.accuracy import points
+from app.plots.accuracy import points
 from granchain_core.accuracy import Row
 
 ROWS = [Row("rk4", "100 steps", 1e-3, 1e-4, 400, 100.0), Row("dop853", "1e-9", 2e-8, 3e-4, 900, 1e-9)]

@@ -13,8 +13,8 @@ import pytest
 from app.format import duration, short_error
 from app.pages.accuracy.page import measured_for
 from app.pages.accuracy.view import described_methods, described_reference, described_rows, naive_message
-from app.pictures.theme import THEMES
-from app.session.active_setting import locate, page_setting
+from app.plots.theme import THEMES
+from app.session.active_setting import locate, shown_setting
 from granchain_core import scene, settled
 from granchain_core.accuracy import Row, WorkPrecision, compared_methods
 from granchain_core.accuracy.naive import lesson
@@ -39,7 +39,7 @@ def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monk
         monkeypatch.setattr(module, "Engine", noting)
     shown = scene("sec2").evolve(accuracy=accuracy)
     picture = settled(shown)
-    told = page_setting(shown, picture, live=False)
+    told = shown_setting(shown, picture, live=False)
     same = [one for one in used if one.method == picture.run.cost.method]
     assert told.method == picture.run.cost.method
     # where the relaxation had to refine, the real setting is finer by powers of eight, or of two in the step
@@ -53,7 +53,7 @@ def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monk
 
 def test_live_and_irregular_pictures_have_the_live_method() -> None:
     shown = scene("sec2")
-    assert page_setting(shown, None, live=True) == Setting("rk4-split", refine=2)
+    assert shown_setting(shown, None, live=True) == Setting("rk4-split", refine=2)
 
 
 def test_a_setting_between_two_rows_is_found_between_them() -> None:

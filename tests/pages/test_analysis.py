@@ -21,7 +21,7 @@ from app.pages.analysis.questions import (
     question_text,
     read_question,
 )
-from app.pictures.theme import THEMES
+from app.plots.theme import THEMES
 from granchain_core import BadInput, Stop, scene
 
 #: Settles soon, to one point.

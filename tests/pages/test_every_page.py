@@ -16,7 +16,7 @@ from page_host import PageHost, Trial, picture
 from app.dashboard.table import PAGES, PageSpec
 from app.pages.analysis.questions import QUESTIONS
 from app.pages.stories.page import story_places, story_step
-from app.pictures.theme import THEMES
+from app.plots.theme import THEMES
 from app.session.host import Host
 from app.session.page import Page
 from app.session.progress import COMPUTING, OFF, READY

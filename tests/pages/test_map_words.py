@@ -6,7 +6,7 @@ import numpy as np
 
 from app.pages.map.page import COLUMNS, ROWS, page_grid
 from app.pages.map.view import cells_message, described_attractor, head_message
-from app.pictures.theme import THEMES
+from app.plots.theme import THEMES
 from granchain_core import scene
 from granchain_core.attractors import attractors
 from granchain_core.parameter_map.cells import empty_cells

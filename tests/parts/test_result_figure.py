@@ -7,7 +7,7 @@ from typing import Any
 from bokeh.models import Div
 
 from app.parts.figures.result_figure import ResultFigure
-from app.pictures.theme import THEMES, Theme
+from app.plots.theme import THEMES, Theme
 
 
 def figure(theme: Theme) -> Div:

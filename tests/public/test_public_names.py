@@ -78,7 +78,7 @@ def test_importing_loads_no_compiler_and_no_file_library() -> None:
     """
     modules = "('numba', 'scipy', 'h5py', 'panel', 'bokeh')"
     assert alone(f"import sys, granchain; print([m for m in {modules} if m in sys.modules])") == "[]\n"
-    assert alone("import sys, granchain; granchain.figure; from app.pictures import any_result; print('panel' in sys.modules)") == "False\n"
+    assert alone("import sys, granchain; granchain.figure; from app.plots import any_result; print('panel' in sys.modules)") == "False\n"
 
 
 def test_a_function_keeps_its_name_beside_a_folder_of_the_same_name() -> None:

@@ -78,7 +78,7 @@ def test_the_wheel_has_only_names_that_are_ours_and_runs(wheel: Path) -> None:
     assert ran.returncode == 0 and '"sec2"' in ran.stdout, ran.stderr
     code = ("import sys; sys.path.insert(0, sys.argv[1]); import granchain\n"
             "found = granchain.WorkPrecision(granchain.scene('sec2'), 'dop853', 'another', 1e-9)\n"
-            "print(granchain.figure(found).height, 'granchain_app.pictures.any_result' in sys.modules, 'app' in sys.modules)")
+            "print(granchain.figure(found).height, 'granchain_app.plots.any_result' in sys.modules, 'app' in sys.modules)")
     drawn = subprocess.run([sys.executable, "-c", code, str(wheel)], cwd=wheel, text=True, capture_output=True, check=False)
     assert drawn.stdout == "420 True False\n", drawn.stderr
 

@@ -67,9 +67,9 @@ def test_every_component_renders_a_module_of_its_own() -> None:
     assert rendered == {module(name) for name, path in FILES.items() if "render" in EXPORT.findall(path.read_text(encoding="utf-8"))}
 
 
-@pytest.mark.parametrize("path", ["scripts.py", "dashboard/controller.py", "../pyproject.toml", "dashboard/page.html"])
+@pytest.mark.parametrize("path", ["scripts.py", "dashboard/controller.py", "../pyproject.toml", "dashboard/dashboard.html"])
 def test_no_other_file_is_served(path: str) -> None:
-    root = address("page.js").removesuffix("parts/page_scripts/page.js")
+    root = address("shared.js").removesuffix("parts/inline_scripts/shared.js")
     with pytest.raises(HTTPError):
         served(root + path)
 
@@ -82,7 +82,7 @@ def test_an_address_changes_with_what_is_served() -> None:
 def test_a_module_is_found_without_panel_and_kept_by_the_browser_for_good() -> None:
     assert all(scripts.file_at(url.removeprefix("components/")) == served(url) for url in map(address, FILES))
     assert scripts.file_at("app.scripts/Scripts_000000000000/__javascript_modules__/parts/toolkit/plot.js") is None
-    assert set(scripts.modules()) == {address(name) for name in FILES} - {address(name) for name in scripts.IN_PAGE}
+    assert set(scripts.modules()) == {address(name) for name in FILES} - {address(name) for name in scripts.INLINE_SCRIPTS}
     one = Listening(Access())
     try:
         assert all(f'<link rel="modulepreload" href="{url}">' in one.ask()[2] for url in (address("plot.js"), address("chain.js")))

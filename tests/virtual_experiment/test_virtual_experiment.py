@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from app.pictures.measured import measured_columns
+from app.plots.measured import measured_columns
 from granchain_core import BadInput, Scene, scene, settle
 from granchain_core.experiment import Answers, Measured, Series, read_data
 from granchain_core.experiment.measured import VIRTUAL

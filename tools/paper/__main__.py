@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import sys
 
-from app.pictures.browser import png_of
-from app.pictures.paper import paper_figure, size_of
-from app.pictures.theme import THEMES
+from app.plots.browser import png_of
+from app.plots.paper import paper_figure, size_of
+from app.plots.theme import THEMES
 from granchain_core.paper import FIGURES, compute, figure_of, statements
 
 from .page import FOLDER, PAGE, with_parts

@@ -12,9 +12,9 @@ from granchain_core.kernels.batch_size import machine
 from granchain_core.precompile.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
 
 from ...format import duration, short_error
-from ...pictures.accuracy import Annotations
+from ...plots.accuracy import Annotations
 from ...serve.computing.queues import MEASUREMENTS
-from ...session.active_setting import PlacedSetting, locate, page_setting
+from ...session.active_setting import PlacedSetting, locate, shown_setting
 from ...session.activities import Activity
 from ...session.host import Host
 from ...session.page import Actions, Page
@@ -63,7 +63,7 @@ class AccuracyPage(Page):
         if self.status != "none":  # until it is opened there is nothing to see
             self.describe()
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Mark the setting of the new picture among the rows."""
         if self.status != "none":
             self.describe()
@@ -71,7 +71,7 @@ class AccuracyPage(Page):
     def describe(self) -> None:
         """Show what was asked, what is cheapest, what the page uses now, and whether the rows still hold."""
         scene, session = self._host.session.scene, self._host.session
-        now = locate(page_setting(scene, session.settled, session.mode == "live"), self.rows)
+        now = locate(shown_setting(scene, session.settled, session.mode == "live"), self.rows)
         best = cheapest(self.rows, scene.accuracy)
         stale = bool(self._measured) and self._measured != measured_for(scene)
         self._view.mark(self.rows, Annotations(
@@ -133,13 +133,13 @@ class AccuracyPage(Page):
 
     def _used(self, now: PlacedSetting | None) -> str:
         """What the page uses, and why the error in the status line is another number."""
-        picture = self._host.session.settled
+        settled = self._host.session.settled
         if now is None:
             return ""
         words = f"This page uses {now.method}, {now.label}: error {short_error(now.error)} against the reference"
-        if picture is None or picture.run.displacement_error is None:
+        if settled is None or settled.run.displacement_error is None:
             return f"{words}."
-        stated = picture.run.displacement_error
+        stated = settled.run.displacement_error
         side = " on the safe side" if stated >= now.error else ""
         return f"{words}; the status line has no reference and states an estimate{side}, {short_error(stated)}."
 

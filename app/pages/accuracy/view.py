@@ -14,10 +14,10 @@ from granchain_core.accuracy import Lesson, Row, WorkPrecision, compared_methods
 from ...format import prefixed, short_error
 from ...parts.figures.figure_part import FigurePart, page_and_small
 from ...parts.toolkit.component import text
-from ...pictures.accuracy import Annotations, accuracy, marks, points
-from ...pictures.item import figure_item
-from ...pictures.naive_forces import naive_forces
-from ...pictures.theme import Theme
+from ...plots.accuracy import Annotations, accuracy, marks, points
+from ...plots.item import figure_item
+from ...plots.naive_forces import naive_forces
+from ...plots.theme import Theme
 from ...scripts import module
 
 #: If references differ by more than this, the motion is too sensitive to be followed for ten periods.
@@ -52,12 +52,12 @@ class Accuracy(FigurePart):
         self.need_figures()
         self.update_state(rows=described_rows(rows), drawn=points(rows), **reference)
 
-    def mark(self, rows: list[Row], asked: Annotations, stale: bool, sentence: str, used: str) -> None:
+    def mark(self, rows: list[Row], annotations: Annotations, stale: bool, sentence: str, used: str) -> None:
         """Mark the accuracy asked for, the cheapest setting and the one used now.
 
         `stale`: the rows belong to another chain. `sentence` tells the cheapest, `used` what is used now.
         """
-        self.send(type="asked", marks=marks(asked, rows), stale=stale, sentence=sentence, used=used)
+        self.send(type="asked", marks=marks(annotations, rows), stale=stale, sentence=sentence, used=used)
 
     def show_naive(self, shown: Lesson) -> None:
         """Show the forces that naive steps would have drawn."""

@@ -62,9 +62,9 @@ class AnalysisPage(Page):
         self._unasked = self._unasked or (visible and self._question is None)
         self._begin_unasked()
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """The knobs stand still."""
-        if picture.final:
+        if settled.final:
             self._begin_unasked()
 
     def _begin_unasked(self) -> None:

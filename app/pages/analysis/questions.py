@@ -19,11 +19,11 @@ from granchain_core.precompile.pieces import CURVE_KERNELS, MOTION_KERNELS, ORBI
 from granchain_core.scene.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
 
-from ...pictures.basins import basins as draw_basins
-from ...pictures.lyapunov import lyapunov as draw_lyapunov
-from ...pictures.spectrum import spectrum as draw_spectrum
-from ...pictures.strobe_diagram import strobe_diagram as draw_strobes
-from ...pictures.theme import Theme
+from ...plots.basins import basins as draw_basins
+from ...plots.lyapunov import lyapunov as draw_lyapunov
+from ...plots.spectrum import spectrum as draw_spectrum
+from ...plots.strobe_diagram import strobe_diagram as draw_strobes
+from ...plots.theme import Theme
 
 # The page's own limits; the commands take more.
 #: Most beads of a chain.

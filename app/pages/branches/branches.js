@@ -144,10 +144,10 @@ class BranchesPage {
 
   draw() {
     const { figures, state } = this.model;
-    const page = window.granchain;
+    const { granchain } = window;
     const { curve, orbits } = this.data.rows;
-    if (page.overlay === "branches" && (curve || orbits)) this.figure.load(figures.page, WORDS);
-    page.publish("branches", {
+    if (granchain.overlay === "branches" && (curve || orbits)) this.figure.load(figures.page, WORDS);
+    granchain.publish("branches", {
       data: this.data,
       words: state.words,
       small: figures.small,

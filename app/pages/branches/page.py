@@ -12,7 +12,7 @@ from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
 
-from ...pictures.branches import BranchRows
+from ...plots.branches import BranchRows
 from ...serve.computing.queues import LONG
 from ...session.budget import curve_affordable
 from ...session.host import Host
@@ -71,9 +71,9 @@ class BranchesPage(Page):
         if self._begun or self._waits:
             self._view.update_state(now=now.f, stale=stale)
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Follow the orbit if the page was opened before the motion had settled."""
-        if self._waits and picture.final:
+        if self._waits and settled.final:
             self._begin()
 
     def curve_ready(self) -> None:
@@ -101,10 +101,10 @@ class BranchesPage(Page):
     def _begin(self) -> None:
         """Follow the orbit on the screen, if there is one and its branch may be computed without being asked for."""
         self._begun, self._waits = True, False
-        scene, picture = self._host.session.scene, self._host.session.settled
-        if picture is None or not scene.is_driven or not curve_affordable(scene):
+        scene, settled = self._host.session.scene, self._host.session.settled
+        if settled is None or not scene.is_driven or not curve_affordable(scene):
             return
-        if picture.regime.period:
+        if settled.regime.period:
             self._start({})
         else:
             self._view.update_state(words=NOT_PERIODIC)
@@ -113,13 +113,13 @@ class BranchesPage(Page):
         period = message.get("period")
         if period is not None:
             period = whole("period of a branch", period, 1, LONGEST_BRANCH_PERIOD)
-        scene, picture = self._host.session.scene, self._host.session.settled
+        scene, settled = self._host.session.scene, self._host.session.settled
         low, high = slider_range(scene, "f")
         axis = min(low, scene.f), max(high, scene.f)
         self._begun, self._waits, seed = True, False, None
-        if picture is not None and picture.final and picture.run.scene == scene and picture.regime.period \
-                and period in (None, picture.regime.period):
-            seed, period = picture.state, picture.regime.period
+        if settled is not None and settled.final and settled.run.scene == scene and settled.regime.period \
+                and period in (None, settled.regime.period):
+            seed, period = settled.state, settled.regime.period
         self._clear()
         self._submit(lambda stop: [begin_branch(scene, "f", *axis, period, seed, both=True, stop=stop)], scene)
 

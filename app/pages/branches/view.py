@@ -8,8 +8,8 @@ from typing import Any
 
 from ...parts.figures.figure_part import FigurePart, page_and_small
 from ...parts.toolkit.component import text
-from ...pictures.branches import SPECIAL, branches
-from ...pictures.theme import Theme
+from ...plots.branches import SPECIAL, branches
+from ...plots.theme import Theme
 from ...scripts import module
 
 #: Longest period that can be asked for here, in drive periods.

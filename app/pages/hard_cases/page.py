@@ -32,7 +32,7 @@ class HardCasesPage(Page):
         self._task = Task(host, MEASUREMENTS, self._end, "The case")
         host.on_close(self._give_up)
         self._shown: dict[str, dict[str, Any]] = {}
-        self._asked = 0
+        self._requested = 0
         self.rows: dict[str, list[Check]] = {}
         self.waiting: list[str] = []
         self.actions: Actions = {
@@ -71,11 +71,11 @@ class HardCasesPage(Page):
     def _run(self, cases: tuple[Case, ...]) -> None:
         idle = not self.waiting
         if idle:
-            self._asked = 0
+            self._requested = 0
         for case in cases:
             if case.name not in self.waiting:
                 self.waiting.append(case.name)
-                self._asked += 1
+                self._requested += 1
                 self._put(case.name, **WORDS.of("waiting"))
         if idle:
             self._begin_next()
@@ -104,9 +104,9 @@ class HardCasesPage(Page):
         self.rows[name] = rows
         self._change(name, **WORDS.of("drawing"), **described_results(name, rows))
 
-    def _draw(self, name: str, picture: Picture | None) -> None:
-        if picture is not None:
-            self._view.draw(name, picture)
+    def _draw(self, name: str, data: Picture | None) -> None:
+        if data is not None:
+            self._view.draw(name, data)
 
     def _end(self, status: Status, sentence: str) -> None:
         """The first waiting case has ended or failed: begin the next one."""
@@ -127,4 +127,4 @@ class HardCasesPage(Page):
 
     def _show(self) -> None:
         self._view.update_state(results=self._shown, summary=summary(self.rows), running=bool(self.waiting),
-                                done=1.0 - len(self.waiting) / max(1, self._asked))
+                                done=1.0 - len(self.waiting) / max(1, self._requested))

@@ -12,7 +12,7 @@ from granchain_core.hard_cases import CASES, Check, Picture
 from ...format import duration
 from ...parts.figures.result_figure import ResultFigure
 from ...parts.toolkit.component import text
-from ...pictures.check import check
+from ...plots.check import check
 from ...scripts import module
 
 ABOUT = ("Cases in which solvers of granular chains go wrong without warning. Each is compared with a known result and "
@@ -28,10 +28,10 @@ class HardCases(ResultFigure):
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)
 
-    def draw(self, name: str, picture: Picture) -> None:
+    def draw(self, name: str, data: Picture) -> None:
         """Show the picture of a case in place of an earlier one."""
-        labels = "; ".join(trace.label for trace in picture.traces)
-        self.show_figure(partial(check, picture), f"{picture.y_label} over {picture.x_label}: {labels}", place=name)
+        labels = "; ".join(trace.label for trace in data.traces)
+        self.show_figure(partial(check, data), f"{data.y_label} over {data.x_label}: {labels}", place=name)
 
 
 def described_cases() -> list[dict[str, Any]]:

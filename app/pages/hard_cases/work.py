@@ -30,18 +30,18 @@ def case_of(name: object) -> Case | None:
     return next((case for case in CASES if case.name == name), None)
 
 
-def serve_cases(asked: Connection) -> None:
+def serve_cases(connection: Connection) -> None:
     """Run in the process: answer each name with the rows of the quick form, then with the picture or None."""
     end_with_parent(os.getppid())
     if hasattr(os, "nice"):
         os.nice(_NICENESS)
     while True:
-        name = asked.recv()
+        name = connection.recv()
         case = case_of(name)
         if case is None:
             raise LookupError(name)
-        asked.send(run_case(case, quick=True))
-        asked.send(None if case.picture is None else case.picture())
+        connection.send(run_case(case, quick=True))
+        connection.send(None if case.picture is None else case.picture())
 
 
 class CaseProcess:
@@ -49,23 +49,23 @@ class CaseProcess:
 
     def __init__(self) -> None:
         self._process: BaseProcess | None = None
-        self._asked: Connection | None = None
+        self._connection: Connection | None = None
 
     def measure(self, case: Case, stop: Stop) -> Iterator[list[Check] | Picture | None]:
         """The rows, then the picture or None. Raises `Cancelled` for the flag, `Ended` if the process has ended."""
         if stop:
             raise Cancelled
-        asked = self._asked or self._begin()
+        connection = self._connection or self._begin()
         try:
-            asked.send(case.name)
+            connection.send(case.name)
             for _ in range(2):
-                while not asked.poll(_STOP_CHECK_INTERVAL):
+                while not connection.poll(_STOP_CHECK_INTERVAL):
                     if stop:
                         raise Cancelled
-                yield asked.recv()
+                yield connection.recv()
         except (EOFError, OSError) as gone:
             self.close()
-            self._asked = None
+            self._connection = None
             raise (Cancelled() if stop else Ended()) from gone
         finally:
             if stop:
@@ -78,9 +78,9 @@ class CaseProcess:
 
     def _begin(self) -> Connection:
         context = get_context("spawn")
-        self._asked, theirs = context.Pipe()
+        self._connection, theirs = context.Pipe()
         self._process = context.Process(target=serve_cases, args=(theirs,), name="hard cases", daemon=True)
         with starting():
             self._process.start()
         theirs.close()  # with only their end in the process, its death ends recv() here
-        return self._asked
+        return self._connection

@@ -17,8 +17,8 @@ from granchain_core.parameter_map.cells import cell_of, empty_cells
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 
 from ...parts.toolkit.component import Component
-from ...pictures.diagram import now_row
-from ...pictures.theme import THEMES, Theme
+from ...plots.diagram import now_row
+from ...plots.theme import THEMES, Theme
 from ...serve.compiling.compiler import PICTURE_PIECES
 from ...serve.computing.queues import LONG
 from ...session.debounce import Debounce

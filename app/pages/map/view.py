@@ -12,10 +12,10 @@ from granchain_core.parameter_map import Grid
 from granchain_core.results.regime import exponent_words, modulus_words
 
 from ...format import figures_of, in_words, short_error
-from ...pictures.diagram import cell_rows, diagram, nothing, scale_models, shown_models
-from ...pictures.item import figure_item
-from ...pictures.regimes import REGIME_MARKS, regime_key
-from ...pictures.theme import Theme
+from ...plots.diagram import cell_rows, diagram, nothing, scale_models, shown_models
+from ...plots.item import figure_item
+from ...plots.regimes import REGIME_MARKS, regime_key
+from ...plots.theme import Theme
 
 
 def head_message(grid: Grid, theme: Theme) -> dict[str, Any]:

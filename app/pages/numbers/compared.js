@@ -20,8 +20,8 @@ function head(model, { name, sign, words, known }, number) {
   const act = (words, action, title) =>
     button(words, () => model.send_msg({ do: action, number }), { title, ariaLabel: title });
   const shown = element("b", { textContent: `${name} ${sign}` });
-  const place = element("th", { scope: "col" }, shown, ` ${words}`, known ? "" : " – computing … ");
-  place.append(
+  const title = element("th", { scope: "col" }, shown, ` ${words}`, known ? "" : " – computing … ");
+  title.append(
     element(
       "span",
       { className: "pin-buttons" },
@@ -29,14 +29,14 @@ function head(model, { name, sign, words, known }, number) {
       act("✕", "unpin", `Remove pin ${name}`),
     ),
   );
-  return place;
+  return title;
 }
 
 // A pinned value and, below it, the present value minus and over the pinned one.
 function pinned([value, ...differences]) {
-  const place = cell(value);
-  for (const textContent of differences) if (textContent) place.append(element("small", { textContent }));
-  return place;
+  const made = cell(value);
+  for (const textContent of differences) if (textContent) made.append(element("small", { textContent }));
+  return made;
 }
 
 // A quantity: a row with its name, and below it a row with the present and the pinned values.

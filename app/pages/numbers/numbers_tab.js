@@ -46,17 +46,17 @@ export function numbersTab(model) {
   which.append(...Object.entries(TABLES).map(([name, [title]]) => new Option(title, name)));
   which.value = chosen;
   const words = paragraph();
-  const place = element("div", { className: "numbers" });
+  const shown = element("div", { className: "numbers" });
   const show = () => {
     pins.show();
     words.replaceChildren(...unbroken(numbers.summary || "The first picture is being computed."));
     const [title, titles] = TABLES[chosen];
-    place.replaceChildren(table(titles, rowsOf(chosen), { ariaLabel: title }));
+    shown.replaceChildren(table(titles, rowsOf(chosen), { ariaLabel: title }));
   };
   which.addEventListener("change", () => {
     chosen = which.value;
     show();
   });
   show();
-  return { content: [words, pins.pin, pins.body, element("div", { className: "row" }, which), place], show };
+  return { content: [words, pins.pin, pins.body, element("div", { className: "row" }, which), shown], show };
 }

@@ -19,16 +19,16 @@ class NumbersPage(Page):
         self._visible = False
         self.actions: Actions = {}
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Describe the new motion."""
-        if picture.final:
-            run = picture.run
+        if settled.final:
+            run = settled.run
             tables = {"forces": forces_over_time(run), "beads": beads(run)} if self._visible else {}
             self._view.send(type="numbers", summary=summary(run), **tables)
 
     def visibility_changed(self, visible: bool) -> None:
         """Compute the tables only while somebody looks."""
         self._visible = visible
-        picture = self._host.session.settled
-        if visible and picture is not None:
-            self.picture_ready(picture)
+        settled = self._host.session.settled
+        if visible and settled is not None:
+            self.picture_ready(settled)

@@ -20,20 +20,20 @@ class PushedChain extends WholeChain {
     this.hasLeftBody = false;
   }
 
-  bodies(place, pitch, radius, y, beads) {
-    const wall = place(beads + 1);
+  bodies(xOf, pitch, radius, y, beads) {
+    const wall = xOf(beads + 1);
     const { context: g } = this;
     g.save();
     g.beginPath();
     g.rect(wall - radius - 6, 0, this.width, this.height);
     g.clip();
-    super.bodies((i) => (i === 0 ? -1e4 : place(i)), pitch, radius, y, beads);
+    super.bodies((i) => (i === 0 ? -1e4 : xOf(i)), pitch, radius, y, beads);
     g.restore();
   }
 
-  contact(c, force, frames, place, radius, y) {
-    if (c > 0) super.contact(c, force, frames, place, radius, y);
-    else this.arrow(force, place(1) - radius, y, this.left);
+  contact(c, force, frames, xOf, radius, y) {
+    if (c > 0) super.contact(c, force, frames, xOf, radius, y);
+    else this.arrow(force, xOf(1) - radius, y, this.left);
   }
 
   // Its tip is at x = `tip`. The arrow of the largest force is `room` px long, but at least 30 px.

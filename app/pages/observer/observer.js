@@ -92,11 +92,11 @@ class ObserverPage {
   // Draws the distance on the page and, if it is on the screen, in the tab.
   showDistance() {
     const { figures, state } = this.model;
-    const page = window.granchain;
+    const { granchain } = window;
     const prediction = this.replay.now?.message.prediction ?? [];
     this.known = { history: this.history, prediction, sentence: state.failure || state.sentence, small: figures.small };
-    page.publish("observer", this.known);
-    if (page.overlay === "observer") showDistance(this.figure, figures.page, this.known);
+    granchain.publish("observer", this.known);
+    if (granchain.overlay === "observer") showDistance(this.figure, figures.page, this.known);
   }
 
   // The replay of a period begins. A lower number than before means another run, whose history is empty.

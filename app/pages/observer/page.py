@@ -70,11 +70,11 @@ class ObserverPage(Page):
         elif self._asked:
             self._more()
 
-    def _next_in_thread(self, scene: Scene, picture: Settled | None, run: ObserverRun | None, wishes: list[str],
+    def _next_in_thread(self, scene: Scene, settled: Settled | None, run: ObserverRun | None, wishes: list[str],
                         job: Job) -> None:
         """In a worker thread: compute one more period of this scene's run; `run` is the one so far."""
         job.compile(scene, ADAPTIVE_KERNELS, OBSERVER_KERNELS)
-        mine = picture if picture is not None and picture.run.scene.digest == scene.digest else None
+        mine = settled if settled is not None and settled.run.scene.digest == scene.digest else None
         began = False
         if run is None or run.scene.digest != scene.digest or "again" in wishes:
             run, began = ObserverRun(scene, mine, job.stop, None if "again" in wishes else run), True

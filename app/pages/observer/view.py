@@ -15,9 +15,9 @@ from ...frames import chain_series
 from ...parts.chain.chain import drawn_chain
 from ...parts.figures.figure_part import FigurePart, page_and_small
 from ...parts.toolkit.component import text
-from ...pictures.energies import ENERGY_COLOURS
-from ...pictures.observer import observer, prediction
-from ...pictures.theme import Theme
+from ...plots.energies import ENERGY_COLOURS
+from ...plots.observer import observer, prediction
+from ...plots.theme import Theme
 from ...scripts import module
 from .work import NUDGE, ObserverStep
 

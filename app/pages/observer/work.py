@@ -52,9 +52,9 @@ class ObserverStep:
 
 
 class ObserverRun:
-    """One chain with one observer; it starts from the states of `went_on`, a run before a knob was turned."""
+    """One chain with one observer; it starts from the states of `previous`, the run before a knob was turned."""
 
-    def __init__(self, scene: Scene, picture: Settled | None, stop: Stop, went_on: ObserverRun | None) -> None:
+    def __init__(self, scene: Scene, settled: Settled | None, stop: Stop, previous: ObserverRun | None) -> None:
         self.scene = scene
         self.orbit: Orbit | None = None
         self.drifts = False
@@ -63,11 +63,11 @@ class ObserverRun:
         self.pair = Pair(scene, self.samples, stop)
         self.number, self.since = 0, 0
         self._largest_input = 0.0  # of all periods so far: an orbit may push in one of three only
-        if went_on is not None and went_on.scene.N == scene.N:
-            self.number = went_on.number
-            self._begin(*went_on.pair.states)
+        if previous is not None and previous.scene.N == scene.N:
+            self.number = previous.number
+            self._begin(*previous.pair.states)
         else:
-            start = picture.state if picture is not None else rest(scene)
+            start = settled.state if settled is not None else rest(scene)
             self._begin(start, observer_start(scene, start, NUDGE))
 
     def _begin(self, chain: State, observer: State) -> None:
@@ -87,10 +87,10 @@ class ObserverRun:
         """Let the observer begin at rest, knowing nothing of the chain."""
         self._begin(self.pair.states[0], rest(self.scene))
 
-    def predict(self, picture: Settled) -> None:
+    def predict(self, settled: Settled) -> None:
         """Find the orbit of a settled picture of this very chain, and the observer's multipliers on it."""
         try:
-            self.orbit = periodic_orbit(self.scene, picture.regime.period, picture.state, observer=True,
+            self.orbit = periodic_orbit(self.scene, settled.regime.period, settled.state, observer=True,
                                         stop=self.pair.engine.stop)
             self.drifts = observer_drift(self.orbit) is not None
         except (NumbersFailed, BadInput) as problem:  # the latter where tension is cut

@@ -10,7 +10,7 @@ from granchain_core.paper import FIGURES, PaperFigure, Result, statements
 
 from ...parts.figures.result_figure import ResultFigure
 from ...parts.toolkit.component import text
-from ...pictures.paper import paper_figure, size_of
+from ...plots.paper import paper_figure, size_of
 from ...scripts import module
 
 

@@ -22,9 +22,9 @@ class ProbePage(Page):
         self._visible = False
         self.actions: Actions = {"probe-bead": self._choose}
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Draw the bead of the new motion."""
-        self._draw(picture)
+        self._draw(settled)
 
     def visibility_changed(self, visible: bool) -> None:
         """Draw the present motion when somebody begins to look."""
@@ -35,7 +35,7 @@ class ProbePage(Page):
         self._bead = whole("bead", message.get("bead"), 1, self._host.session.scene.N)
         self._draw(self._host.session.settled)
 
-    def _draw(self, picture: Settled | None) -> None:
-        if self._visible and picture is not None:
-            self._bead = min(self._bead, picture.run.scene.N)
-            self._view.fill(picture.run, self._bead)
+    def _draw(self, settled: Settled | None) -> None:
+        if self._visible and settled is not None:
+            self._bead = min(self._bead, settled.run.scene.N)
+            self._view.fill(settled.run, self._bead)

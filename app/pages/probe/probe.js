@@ -19,8 +19,8 @@ class ProbePage {
     this.title = pageHead("One bead", ...this.steps());
     this.line = paragraph("", "say");
     this.figures = new Map();
-    const places = Object.entries(TITLES).map(([name, words]) => this.place(name, words));
-    this.root = element("div", { className: "part sheet" }, this.title, this.line, ...places);
+    const panels = Object.entries(TITLES).map(([name, words]) => this.panel(name, words));
+    this.root = element("div", { className: "part sheet" }, this.title, this.line, ...panels);
   }
 
   steps() {
@@ -37,7 +37,7 @@ class ProbePage {
     window.granchain.emit("bead", bead);
   }
 
-  place(name, words) {
+  panel(name, words) {
     const host = element("div", { className: "picture" });
     this.figures.set(name, new BokehFigure(host, (one) => fillModels(one, this.drawn?.[name])));
     return element(
@@ -65,10 +65,10 @@ class ProbePage {
 }
 
 export function render({ model }) {
-  const page = window.granchain;
+  const { granchain } = window;
   const probe = new ProbePage(model);
-  page.on("overlay", () => probe.show());
-  page.on("bead", (bead) => model.send_msg({ do: "probe-bead", bead }));
+  granchain.on("overlay", () => probe.show());
+  granchain.on("bead", (bead) => model.send_msg({ do: "probe-bead", bead }));
   model.on("state", () => probe.show());
   model.on("figures", () => probe.show());
   model.on("msg:custom", (message) => {

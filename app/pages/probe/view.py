@@ -11,17 +11,17 @@ from granchain_core import Run
 from ...format import in_words
 from ...parts.figures.figure_part import FigurePart
 from ...parts.toolkit.component import text
-from ...pictures.item import figure_item
-from ...pictures.probe import PICTURES, closed_spells, probe_state, without_points
-from ...pictures.theme import Theme
+from ...plots.item import figure_item
+from ...plots.probe import FIGURES, closed_spells, probe_state, without_points
+from ...plots.theme import Theme
 from ...scripts import module
 
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
     """All pictures, and the small one of the tab."""
-    made = {name: figure_item(without_points(name, theme)) for name in PICTURES}
-    return {**made, "small": figure_item(without_points("phase", theme, compact=True))}
+    full_size = {name: figure_item(without_points(name, theme)) for name in FIGURES}
+    return {**full_size, "small": figure_item(without_points("phase", theme, compact=True))}
 
 
 class Probe(FigurePart):

@@ -25,10 +25,10 @@ class DisturbedChain extends ChainDrawing {
     return Math.min(0.8 * radius, 0.3 * this.height);
   }
 
-  bead(i, place, y, sizes, share) {
+  bead(i, xOf, y, sizes, share) {
     const { context: g, ink } = this;
     g.beginPath();
-    g.arc(place(i), y, this.size(sizes[i - 1]), 0, 2 * Math.PI);
+    g.arc(xOf(i), y, this.size(sizes[i - 1]), 0, 2 * Math.PI);
     g.fillStyle = ink.steel;
     g.globalAlpha = 0.35 + 0.65 * Math.min(1, share);
     g.fill();

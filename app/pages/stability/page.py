@@ -11,7 +11,7 @@ from granchain_core.precompile.pieces import ORBIT_KERNELS
 from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
-from ...pictures.multipliers import plane_state
+from ...plots.multipliers import plane_state
 from ...serve.computing.queues import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce
@@ -52,7 +52,7 @@ class StabilityPage(Page):
         self._visible = False
         self._observer = False
         self._rank, self._bead, self._phase = 0, 1, 0
-        self._picture: Settled | None = None
+        self._settled: Settled | None = None
         self._start: State | None = None
         self._analysed: State | None = None
         self._target: OrbitTarget | None = None
@@ -82,18 +82,18 @@ class StabilityPage(Page):
     def picture_requested(self) -> None:
         """Another picture is being computed: cancel the analysis, and grey what is shown."""
         self._give_up()
-        self._picture = None
+        self._settled = None
         if self._visible and self._host.session.mode == "live":
             self._clear(_LIVE)
         elif self._visible:
             self._view.update_state(stale=True)
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """A picture has arrived: if it is the final one for these knobs, analyse it if it stays."""
-        if not picture.final:
+        if not settled.final:
             return
-        again = self._picture is not None and picture.state is self._picture.state  # with its energy account
-        self._picture = picture
+        again = self._settled is not None and settled.state is self._settled.state  # with its energy account
+        self._settled = settled
         if not again:
             self._start, self._rank = self._host.session.started_from, 0
             self._quiet.start(self._begin)
@@ -117,18 +117,18 @@ class StabilityPage(Page):
 
     def _begin(self) -> None:
         """Analyse the picture, unless there is none, that was done, or nobody looks."""
-        picture = self._picture
-        if not self._visible or picture is None or self._analysed is picture.state:
+        settled = self._settled
+        if not self._visible or settled is None or self._analysed is settled.state:
             return
-        self._analysed, self._analysis, self._section = picture.state, None, None
-        self._bead = min(self._bead, picture.run.scene.N)
-        self._view.update_state(stale=True, beads=picture.run.scene.N)
-        if picture.regime.name == "periodic" and picture.regime.period is not None:
-            self._follow(OrbitTarget(picture.run.scene, picture.regime.period, picture.state, followed=True))
+        self._analysed, self._analysis, self._section = settled.state, None, None
+        self._bead = min(self._bead, settled.run.scene.N)
+        self._view.update_state(stale=True, beads=settled.run.scene.N)
+        if settled.regime.name == "periodic" and settled.regime.period is not None:
+            self._follow(OrbitTarget(settled.run.scene, settled.regime.period, settled.state, followed=True))
         else:
             self._target = None
-            self._clear(no_multipliers(picture))
-        self._sections.start(partial(self._make_section, picture, self._start))
+            self._clear(no_multipliers(settled))
+        self._sections.start(partial(self._make_section, settled, self._start))
 
     def _follow(self, target: OrbitTarget) -> None:
         self._target = target
@@ -141,13 +141,13 @@ class StabilityPage(Page):
         self._compile(target.scene, job)
         job.next_tick(self._arrived, analyse(target, observer, rank, job.stop))
 
-    def _make_section(self, picture: Settled, start: State | None, job: Job) -> None:
-        for section in section_of(picture, start, job.stop):
+    def _make_section(self, settled: Settled, start: State | None, job: Job) -> None:
+        for section in section_of(settled, start, job.stop):
             job.next_tick(self._arrived, section)
 
-    def _find(self, picture: Settled, section: Section | None, period: int, job: Job) -> None:
-        self._compile(picture.run.scene, job)
-        job.next_tick(self._arrived, search(picture, section, period, job.stop))
+    def _find(self, settled: Settled, section: Section | None, period: int, job: Job) -> None:
+        self._compile(settled.run.scene, job)
+        job.next_tick(self._arrived, search(settled, section, period, job.stop))
 
     @staticmethod
     def _compile(scene: Scene, job: Job) -> None:
@@ -157,7 +157,7 @@ class StabilityPage(Page):
     # What comes back
 
     def _arrived(self, found: OrbitAnalysis | OrbitTarget | Section) -> None:
-        if self._picture is None:
+        if self._settled is None:
             return
         if isinstance(found, OrbitAnalysis):
             self._show(found)
@@ -196,18 +196,18 @@ class StabilityPage(Page):
         self._show_section()
 
     def _show_section(self) -> None:
-        if self._section is None or self._picture is None:
+        if self._section is None or self._settled is None:
             return
         own = None if self._analysis is None else self._analysis.points
-        regime = self._picture.regime
+        regime = self._settled.regime
         self._view.section(section_points(
-            self._section, transient(self._picture, self._section), own, self._bead, self._phase,
+            self._section, transient(self._settled, self._section), own, self._bead, self._phase,
             regime.period or 1 if regime.name == "periodic" else 0,
             unstable=self._analysis is not None and not self._analysis.target.followed))
 
     def _show_evidence(self) -> None:
-        if self._picture is not None:
-            self._view.update_state(evidence=evidence(self._picture, self._analysis, self._section))
+        if self._settled is not None:
+            self._view.update_state(evidence=evidence(self._settled, self._analysis, self._section))
 
     def _clear(self, sentence: str) -> None:
         """Show no multipliers, and a sentence that says why."""
@@ -241,7 +241,7 @@ class StabilityPage(Page):
 
     def _again(self) -> None:
         """Analyse the same orbit with what the visitor chose."""
-        if self._visible and self._target is not None and self._picture is not None:
+        if self._visible and self._target is not None and self._settled is not None:
             self._follow(self._target)
 
     def _choose_section(self, message: dict[str, Any]) -> None:
@@ -251,11 +251,11 @@ class StabilityPage(Page):
 
     def _search(self, message: dict[str, Any]) -> None:
         period = whole("period", message.get("value"), 1, LONGEST_LOCKED_PERIOD)
-        picture, section = self._picture, self._section
-        if not self._visible or picture is None:
+        settled, section = self._settled, self._section
+        if not self._visible or settled is None:
             raise BadInput("There is no settled picture to search from yet; wait for it.")
         self._say("searching")
-        self._orbits.start(partial(self._find, picture, section, period))
+        self._orbits.start(partial(self._find, settled, section, period))
 
     def _back(self, _: dict[str, Any]) -> None:
         """Go back from a search, or from the orbit it found, to the settled motion."""

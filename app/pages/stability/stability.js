@@ -61,13 +61,13 @@ class StabilityPage {
 
   redraw() {
     const { state, figures } = this.model;
-    const page = window.granchain;
-    if (page.overlay === "stability") {
+    const { granchain } = window;
+    if (granchain.overlay === "stability") {
       this.plane.draw();
       this.section.draw(state, figures.section);
       this.mode.measure();
     }
-    page.publish("stability", { state, small: figures.small });
+    granchain.publish("stability", { state, small: figures.small });
   }
 
   receive(message) {

@@ -21,10 +21,10 @@ from ...format import UNSURE_FIGURES, duration, figures_of, prefixed, short_erro
 from ...parts.chain.chain import drawn_chain
 from ...parts.figures.figure_part import FigurePart
 from ...parts.toolkit.component import text
-from ...pictures.item import figure_item
-from ...pictures.multipliers import multiplier_words, plane, plane_state
-from ...pictures.section import SectionPoints, close_up, section, section_state
-from ...pictures.theme import Theme
+from ...plots.item import figure_item
+from ...plots.multipliers import multiplier_words, plane, plane_state
+from ...plots.section import SectionPoints, close_up, section, section_state
+from ...plots.theme import Theme
 from ...scripts import module
 from .work import PHASES, OrbitAnalysis
 
@@ -99,9 +99,9 @@ def _leaves(leading: complex) -> str:
     return "changes sides in each orbit: a multiplier below −1, as beyond a period doubling"
 
 
-def no_multipliers(picture: Settled) -> str:
+def no_multipliers(settled: Settled) -> str:
     """Why a motion that does not repeat has no multipliers."""
-    regime = picture.regime
+    regime = settled.regime
     if not regime.driven:
         return "No multipliers: nothing drives the chain, and only a motion that repeats has them."
     if regime.lyapunov is None or regime.name == "unsettled":
@@ -120,15 +120,15 @@ def multiplier_sentence(orbit: Orbit, rank: int) -> str:
     return f"ringed: μ = {value}, |μ| {modulus}"
 
 
-def evidence(picture: Settled, analysis: OrbitAnalysis | None, section: Section | None) -> list[dict[str, str]]:
+def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section | None) -> list[dict[str, str]]:
     """Name, value and meaning of everything on which the verdict rests; what was not computed has no row."""
-    regime, rows = picture.regime, []
+    regime, rows = settled.regime, []
 
     def row(name: str, value: str, meaning: str) -> None:
         rows.append({"name": name, "value": value, "meaning": meaning})
 
     kind = regime.name + (f", period {regime.period}" if regime.period else "")
-    row("regime", f"{kind}, {regime.periods_run} period{'s' * (regime.periods_run != 1)} run from {picture.start}",
+    row("regime", f"{kind}, {regime.periods_run} period{'s' * (regime.periods_run != 1)} run from {settled.start}",
         "The regime, and the number of drive periods after which it was decided.")
     if regime.distance is not None:
         row("distance to the orbit", f"≤ {short_error(regime.distance)}, same method",
@@ -147,8 +147,8 @@ def evidence(picture: Settled, analysis: OrbitAnalysis | None, section: Section 
             "Smallest and largest ratio of the largest change in 100 periods to that in the 100 before, over all "
             "periods tried: 1 where nothing shrinks or grows.")
     if analysis is not None:
-        _orbit_rows(row, picture, analysis)
-    cost = picture.run.cost
+        _orbit_rows(row, settled, analysis)
+    cost = settled.run.cost
     row("settled by", f"{cost.method}, {cost.steps} steps, {duration(cost.wall_s)}",
         "Method, steps and computing time of the settled picture.")
     if section is not None:
@@ -157,10 +157,10 @@ def evidence(picture: Settled, analysis: OrbitAnalysis | None, section: Section 
     return rows
 
 
-def _orbit_rows(row: Any, picture: Settled, analysis: OrbitAnalysis) -> None:
+def _orbit_rows(row: Any, settled: Settled, analysis: OrbitAnalysis) -> None:
     orbit = analysis.orbit
     size = abs(orbit.multipliers[0])
-    seen = picture.regime.decay
+    seen = settled.regime.decay
     decay = f"; {modulus_words(seen)} per orbit seen while it settled" if analysis.target.followed and seen else ""
     row("|μ| largest", _size_words(float(size), orbit) + decay,
         "The largest multiplier with its error (the change to a map of ten times the tolerance, by the multiplier's "

@@ -82,33 +82,33 @@ def _apart(one: State, other: State) -> float:
                for a, b in ((one.displacement, other.displacement), (one.velocity, other.velocity)))
 
 
-def section_of(picture: Settled, start: State | None, stop: Stop) -> Iterator[Section]:
+def section_of(settled: Settled, start: State | None, stop: Stop) -> Iterator[Section]:
     """The section from the start of the picture's chain: a transient and, if it is not periodic, a cloud."""
-    regime = picture.regime
+    regime = settled.regime
     periods = max(regime.periods_run, _FEWEST_PERIODS if regime.name == "periodic" else _CLOUD_PERIODS)
-    yield from iter_section(picture.run.scene, start, periods, PHASES, stop=stop)
+    yield from iter_section(settled.run.scene, start, periods, PHASES, stop=stop)
 
 
-def transient(picture: Settled, section: Section) -> int:
+def transient(settled: Settled, section: Section) -> int:
     """How many of its first periods are a transient: all, if the motion is periodic or has not settled."""
-    if picture.regime.name in ("periodic", "unsettled"):
+    if settled.regime.name in ("periodic", "unsettled"):
         return section.periods
     return min(EXAMINED_AFTER, section.periods)
 
 
-def search(picture: Settled, section: Section | None, period: int, stop: Stop) -> OrbitTarget:
+def search(settled: Settled, section: Section | None, period: int, stop: Stop) -> OrbitTarget:
     """An orbit near the motion shown, which it does not follow.
 
     Raises what `search_orbit` raises, and `NumbersFailed` where the search ends on the orbit that is followed.
     """
-    scene = picture.run.scene
+    scene = settled.run.scene
     strobes = np.zeros((0, 2, scene.N))
     if section is not None:
-        strobes = section.strobes()[min(transient(picture, section), section.periods // 2) :]
-    found = search_orbit(scene, period, picture.state, strobes, stop)
-    run = picture.run
+        strobes = section.strobes()[min(transient(settled, section), section.periods // 2) :]
+    found = search_orbit(scene, period, settled.state, strobes, stop)
+    run = settled.run
     here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
-    if picture.regime.name == "periodic" and min(_apart(found.state, one) for one in here) < _SAME_ORBIT_DISTANCE:
+    if settled.regime.name == "periodic" and min(_apart(found.state, one) for one in here) < _SAME_ORBIT_DISTANCE:
         raise NumbersFailed(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
                             f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
     return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)

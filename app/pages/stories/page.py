@@ -54,9 +54,9 @@ class StoriesPage(Page):
         """The knobs have moved: a step that is still being settled will not be shown."""
         self._task.cancel()
 
-    def picture_ready(self, picture: Settled) -> None:
+    def picture_ready(self, settled: Settled) -> None:
         """Settle the step of a link that names it alone, if its motion is reached through others (`StoryStep.via`)."""
-        if picture.final and self._host.session.story_to_settle:
+        if settled.final and self._host.session.story_to_settle:
             self._host.session.story_to_settle = False
             self._task.start(partial(self._through, story_step(self._host.session.story, self._host.overlays)))
 

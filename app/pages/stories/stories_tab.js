@@ -31,15 +31,15 @@ function shownStory(model, story) {
   const { name, title, step, steps, say, ask, answer, page } = story;
   const go = (to) => model.send_msg({ do: "story-open", name, step: to });
   const answered = paragraph(answer, "answer");
-  const place = `${name} ${step}`;
+  const shown = `${name} ${step}`;
   const reveal = button("answer", () => {
-    revealed = place;
+    revealed = shown;
     show();
     answered.scrollIntoView({ block: "nearest" });
   });
   const show = () => {
-    answered.hidden = revealed !== place;
-    reveal.hidden = !answer || revealed === place;
+    answered.hidden = revealed !== shown;
+    reveal.hidden = !answer || revealed === shown;
   };
   show();
   const before = button("◀ back", () => go(step - 1), { disabled: step === 1 });

@@ -94,14 +94,14 @@ class Chain {
   }
 
   chooseScale(value) {
-    window.granchain.requested("scale", value);
+    window.granchain.address.requested("scale", value);
     this.model.send_msg({ do: "scale", value });
   }
 
   showScale({ fit, driven, energy_labels, peaks }) {
     document.getElementById("stage").dataset.scale = fit ? "fit" : "same";
-    this.energies.forEach((place, i) => {
-      place.textContent = energy_labels[i];
+    this.energies.forEach((label, i) => {
+      label.textContent = energy_labels[i];
     });
     for (const one of this.scales) one.ariaPressed = String((one.value === "fit") === fit);
     // Longer words where there is room, only for the chosen scale.
@@ -109,14 +109,14 @@ class Chain {
     this.leftTitle.textContent = driven ? "driver" : "left end";
     this.scales[0].replaceChildren(...more("same scale", fit || !driven ? "" : " for all f"));
     this.scales[1].replaceChildren(...(fit ? more("fitted", " to each picture") : ["fit"]));
-    this.peaks.forEach((place, i) => {
+    this.peaks.forEach((label, i) => {
       const [most, least] = peaks[i];
-      place.replaceChildren(most, ...(least ? [element("span", { className: "roomy", textContent: least })] : []));
+      label.replaceChildren(most, ...(least ? [element("span", { className: "roomy", textContent: least })] : []));
     });
   }
 
   receive(message) {
-    window.granchain.answerReceived(); // any message answers a ping; “pong” says nothing more
+    window.granchain.connection.answerReceived(); // any message answers a ping; “pong” says nothing more
     if (message.type === "frames") this.load(message);
   }
 
@@ -153,7 +153,7 @@ class Chain {
 
   load(frames) {
     Object.assign(frames, unpack(frames).series);
-    document.getElementById("page").classList.remove("starting");
+    document.getElementById("dashboard").classList.remove("starting");
     this.showScale(frames);
     this.crosshair.roll();
     if (this.sound.on) this.sound.play(frames);
@@ -196,42 +196,42 @@ class Chain {
 
   // Draws one animation frame.
   tick(now) {
-    const page = window.granchain;
-    this.clock.tick(now, page.lost);
+    const { granchain } = window;
+    this.clock.tick(now, granchain.connection.lost);
     const { frames, playing, row } = this.clock;
-    const moving = playing && !frames?.live && !page.lost;
-    if (frames && !page.overlay && (this.dirty || moving)) {
+    const moving = playing && !frames?.live && !granchain.connection.lost;
+    if (frames && !granchain.overlay && (this.dirty || moving)) {
       this.drawing.draw(frames, row);
       this.cursor.place();
       this.dirty = false;
     }
-    page.phase = frames && !frames.live ? row / frames.samples : 0; // in drive periods
+    granchain.phase = frames && !frames.live ? row / frames.samples : 0; // in drive periods
     if (moving) this.wake();
   }
 
   // Tells the server that the page is complete and the first picture may come.
   begin() {
     this.compact = this.isCompact();
-    this.model.send_msg({ do: "ready", theme: window.granchain.theme(), compact: this.compact });
-    window.granchain.connect(() => this.model.send_msg({ do: "ping" }));
+    this.model.send_msg({ do: "ready", theme: window.granchain.theme.name, compact: this.compact });
+    window.granchain.connection.connect(() => this.model.send_msg({ do: "ping" }));
   }
 }
 
 function listen(chain) {
-  const page = window.granchain;
+  const { granchain } = window;
   const { clock } = chain;
-  page.on("play", (playing) => {
+  granchain.on("play", (playing) => {
     clock.play(playing);
     chain.wake();
   });
-  page.on("lost", () => chain.wake());
-  page.on("speed", (speed) => {
+  granchain.on("lost", () => chain.wake());
+  granchain.on("speed", (speed) => {
     clock.speed = speed;
   });
-  page.on("period", () => chain.nextPeriod());
-  page.on("sound", (on) => chain.sound.set(on, clock.frames));
-  page.on("overlay", () => chain.mark());
-  page.on("theme", () => chain.measure());
+  granchain.on("period", () => chain.nextPeriod());
+  granchain.on("sound", (on) => chain.sound.set(on, clock.frames));
+  granchain.on("overlay", () => chain.mark());
+  granchain.on("theme", () => chain.measure());
 }
 
 export function render({ model }) {

@@ -126,14 +126,15 @@ export class ChainDrawing {
     const radius = 0.5 * pitch;
     const y = this.middle();
     const at = sampler(frames, row);
-    const place = (i) => this.home(i) + at.u(i) * this.exaggeration * pitch;
-    this.ground(frames, radius, y, place);
+    // The centre of body i on the screen.
+    const xOf = (i) => this.home(i) + at.u(i) * this.exaggeration * pitch;
+    this.ground(frames, radius, y, xOf);
     this.driven = frames.driven ?? true;
     const sizes = frames.radii.map((one) => radius * (one / this.largest));
-    for (let i = 1; i <= beads; i++) this.halo(place(i), y, sizes[i - 1], at.energy(i) / frames.energy_high);
-    this.bodies(place, pitch, radius, y, beads);
-    for (let i = 1; i <= beads; i++) this.bead(i, place, y, sizes, at.energy(i) / frames.energy_high);
-    for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, place, radius, y);
+    for (let i = 1; i <= beads; i++) this.halo(xOf(i), y, sizes[i - 1], at.energy(i) / frames.energy_high);
+    this.bodies(xOf, pitch, radius, y, beads);
+    for (let i = 1; i <= beads; i++) this.bead(i, xOf, y, sizes, at.energy(i) / frames.energy_high);
+    for (let c = 0; c <= beads; c++) this.contact(c, at.force(c), frames, xOf, radius, y);
     this.words();
   }
 
@@ -142,12 +143,12 @@ export class ChainDrawing {
   }
 
   // A closed contact is a bar where the bodies are flattened; its height shows the force. An open contact is a gap.
-  contact(c, force, frames, place, radius, y) {
+  contact(c, force, frames, xOf, radius, y) {
     const { context: g, ink } = this;
     const share = Math.min(1, Math.abs(force) / this.force);
     if (share < 1e-6) return;
     const { beads } = frames;
-    const x = c === 0 ? place(0) + radius : c === beads ? place(beads + 1) - radius : 0.5 * (place(c) + place(c + 1));
+    const x = c === 0 ? xOf(0) + radius : c === beads ? xOf(beads + 1) - radius : 0.5 * (xOf(c) + xOf(c + 1));
     const half = radius * (0.16 + 0.84 * Math.sqrt(share));
     g.strokeStyle = c === 0 ? ink.input : c === beads ? ink.output : ink.strong;
     g.lineWidth = Math.max(2, 0.09 * radius + 0.16 * radius * share);
@@ -166,17 +167,17 @@ export class ChainDrawing {
     const made = this.steel.halo(radius, share, this.ratio);
     if (!made) return;
     const half = made.reach * radius;
-    this.context.drawImage(made.picture, x - half, y - half, 2 * half, 2 * half);
+    this.context.drawImage(made.image, x - half, y - half, 2 * half, 2 * half);
   }
 
   // A bead. Where it presses on a neighbour, each of the two is cut by half of the overlap.
-  bead(i, place, y, sizes, share) {
+  bead(i, xOf, y, sizes, share) {
     const { context: g, ink } = this;
-    const x = place(i),
+    const x = xOf(i),
       radius = sizes[i - 1],
       beads = sizes.length;
-    const end = (n, side) => place(n) + side * (n === 0 || n > beads ? 0.5 * this.pitch : sizes[n - 1]);
-    const { picture, reach } = this.steel.bead(radius, share, this.ratio, ink);
+    const end = (n, side) => xOf(n) + side * (n === 0 || n > beads ? 0.5 * this.pitch : sizes[n - 1]);
+    const { image, reach } = this.steel.bead(radius, share, this.ratio, ink);
     const half = reach * radius;
     const meets = (n, side) => {
       const far = end(n, -side), // the neighbour's end that faces this bead
@@ -186,10 +187,10 @@ export class ChainDrawing {
     };
     const from = Math.max(-half, meets(i - 1, -1)),
       to = Math.min(half, meets(i + 1, 1)),
-      scale = picture.width / (2 * half);
+      scale = image.width / (2 * half);
     if (to > from) {
-      const part = [(from + half) * scale, 0, (to - from) * scale, picture.height];
-      g.drawImage(picture, ...part, x + from, y - half, to - from, 2 * half);
+      const part = [(from + half) * scale, 0, (to - from) * scale, image.height];
+      g.drawImage(image, ...part, x + from, y - half, to - from, 2 * half);
     }
     if (i === this.chosen || i === this.pointed) this.ring(x, y, radius);
     if (radius >= NUMBERED) this.number(i, x, y, radius, share);
@@ -213,17 +214,17 @@ export class ChainDrawing {
     g.fillText(String(i), x, y);
   }
 
-  bodies(place, pitch, radius, y, beads) {
+  bodies(xOf, pitch, radius, y, beads) {
     const { context: g, ink } = this;
     const under = y - 5 - 1.25 * parseFloat(ink.small); // the words over the chain stay free
     const tall = Math.max(radius, Math.min(1.5 * radius, under)),
       deep = Math.min(26, 0.8 * pitch + 6);
-    const driver = place(0) + radius;
+    const driver = xOf(0) + radius;
     g.fillStyle = this.driven ? ink.drive : ink.steel; // only a driver has a rod; a plate is at rest
     g.fillRect(driver - deep, y - tall, deep, 2 * tall);
     if (this.driven)
       g.fillRect(driver - deep - Math.min(60, driver), y - 0.18 * radius, Math.min(60, driver), 0.36 * radius);
-    const wall = place(beads + 1) - radius;
+    const wall = xOf(beads + 1) - radius;
     g.fillStyle = ink.steel;
     g.fillRect(wall, y - tall, 5, 2 * tall);
     g.strokeStyle = ink.steel;
@@ -236,7 +237,7 @@ export class ChainDrawing {
     g.stroke();
   }
 
-  ground(frames, radius, y, place) {
+  ground(frames, radius, y, xOf) {
     if (!frames.foundation) return;
     const { context: g, ink } = this;
     const floor = Math.min(y + 1.9 * radius, this.height - 3);
@@ -245,7 +246,7 @@ export class ChainDrawing {
     g.beginPath();
     for (let i = 1; i <= frames.beads; i++) {
       const foot = this.home(i),
-        x = place(i),
+        x = xOf(i),
         top = y + 0.9 * radius;
       g.moveTo(x, top);
       for (let n = 1; n < 8; n++) {

@@ -56,9 +56,9 @@ export class Sound {
     const heard = buffer.getChannelData(0);
     const full = LOUDEST / Math.max(scale?.force ?? largest, 1e-30);
     for (let i = 0; i < length; i++) {
-      const place = ((i * repeats * last) / length) % last;
-      const row = Math.floor(place),
-        part = place - row;
+      const position = ((i * repeats * last) / length) % last;
+      const row = Math.floor(position),
+        part = position - row;
       heard[i] = full * (at(row) * (1 - part) + at(row + 1) * part - mean);
     }
     return buffer;

@@ -3,7 +3,7 @@
 const STEPS = 48; // steps of energy, enough that one cannot see them
 const GLOWS = 0.3; // √(energy over the top of the scale) above which a bead has a halo
 
-// The colour of an energy, given over the top of the scale; app/pictures/energies.py makes the list.
+// The colour of an energy, given over the top of the scale; app/plots/energies.py makes the list.
 export const colourOf = (palette, share) => palette[Math.round((palette.length - 1) * Math.max(0, Math.min(1, share)))];
 
 const channels = (colour) => [1, 3, 5].map((at) => Number.parseInt(colour.slice(at, at + 2), 16));
@@ -23,7 +23,7 @@ export class Steel {
     this.made = new Map();
   }
 
-  // A square picture of a bead, and half its side in radii of the bead.
+  // A square image of a bead, and half its side in radii of the bead.
   bead(radius, share, ratio, ink) {
     return this.madeOnce("bead", 1.05, radius, share, ratio, (...of) => this.body(...of, ink));
   }
@@ -41,12 +41,12 @@ export class Steel {
     if (!this.made.has(key)) {
       const half = reach * radius;
       const side = Math.max(2, Math.ceil(2 * half * ratio));
-      const picture = Object.assign(document.createElement("canvas"), { width: side, height: side });
-      const g = picture.getContext("2d");
+      const image = Object.assign(document.createElement("canvas"), { width: side, height: side });
+      const g = image.getContext("2d");
       g.scale(side / (2 * half), side / (2 * half));
       g.translate(half, half);
       draw(g, radius, step / STEPS);
-      this.made.set(key, { picture, reach });
+      this.made.set(key, { image, reach });
     }
     return this.made.get(key);
   }

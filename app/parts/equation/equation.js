@@ -23,9 +23,9 @@ export function render({ model }) {
       const line = element("div");
       // Two short equations share a line where there is room.
       for (const equation of text.split(/,\s*\\quad/)) {
-        const place = element("span");
-        window.katex.render(equation.trim(), place, { output: "mathml", throwOnError: false });
-        line.append(place);
+        const span = element("span");
+        window.katex.render(equation.trim(), span, { output: "mathml", throwOnError: false });
+        line.append(span);
       }
       root.append(line);
     }

@@ -21,7 +21,7 @@ export function onLayout({ x_range, y_range, properties }, act) {
   for (const signal of [y_range.change, x_range.change, properties.inner_width.change]) signal.connect(act);
 }
 
-// Types of the figures of the main page, and of those that functions of app/pictures return.
+// Types of the figures of the main page, and of those that functions of app/plots return.
 const FIGURES = new Set(["Plot", "Figure", "Row", "Column", "GridPlot"]);
 const holds = (host, node) => {
   for (let at = node; at; at = at.parentNode ?? at.host) if (at === host) return true;

@@ -1,4 +1,4 @@
-// A Bokeh figure in an element. A function of app/pictures makes it on the server; here it gets its data.
+// A Bokeh figure in an element. A function of app/plots makes it on the server; here it gets its data.
 
 import { documentOf, drawDocument, forgetDocument, frameOf } from "./bokeh.js";
 

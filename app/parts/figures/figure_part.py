@@ -1,4 +1,4 @@
-"""Base class of components that contain figures of app/pictures."""
+"""Base class of components that contain figures of app/plots."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import Any, ClassVar
 import param
 from bokeh.models import LayoutDOM
 
-from ...pictures.item import figure_item
-from ...pictures.theme import THEMES, Theme
+from ...plots.item import figure_item
+from ...plots.theme import THEMES, Theme
 from ..toolkit.component import Component
 
 

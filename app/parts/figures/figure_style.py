@@ -32,14 +32,14 @@ def quiet_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str
         outline_line_color=None, min_border_left=borders[0], min_border_right=borders[1], min_border_top=TOP,
         min_border_bottom=BOTTOM, output_backend="canvas", **options,
     )
-    for dimension, (place, count) in enumerate(zip(axes, ticks, strict=True)):
+    for dimension, (side, count) in enumerate(zip(axes, ticks, strict=True)):
         ticker = BasicTicker(desired_num_ticks=count, num_minor_ticks=0)
         if dimension in grids:
             plot.add_layout(Grid(dimension=dimension, ticker=ticker, grid_line_alpha=1.0))
-        if place is not None:
+        if side is not None:
             axis = LinearAxis(ticker=ticker)
             quiet_axis(axis)
-            plot.add_layout(axis, place)
+            plot.add_layout(axis, side)
     return plot
 
 

@@ -8,8 +8,8 @@ from typing import Any
 
 from bokeh.models import LayoutDOM
 
-from ...pictures.item import figure_item
-from ...pictures.theme import THEMES, Theme
+from ...plots.item import figure_item
+from ...plots.theme import THEMES, Theme
 from ..toolkit.component import Component
 
 

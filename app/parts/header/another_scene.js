@@ -2,7 +2,9 @@
 export function markAnotherScene(model) {
   const mark = () => {
     const { shown } = window.granchain;
-    document.getElementById("page").classList.toggle("another", Boolean(shown) && shown.scene !== model.state.scene);
+    document
+      .getElementById("dashboard")
+      .classList.toggle("another", Boolean(shown) && shown.scene !== model.state.scene);
   };
   model.on("state", mark);
   window.granchain.on("shown", mark);

@@ -143,8 +143,8 @@ function svg(title, found) {
     root.append(textOf(MARGIN, MARGIN + 1.25 * line * number, words, style("--ink"), `${line}px`, 600));
   for (const [number, part] of found.parts.entries()) {
     const drawn = renamed(document.importNode(part.svg(), true), `p${number}-`);
-    const place = { x: x(part), y: y(part), width: part.box.width, height: part.box.height };
-    for (const [name, value] of Object.entries(place)) drawn.setAttribute(name, value);
+    const box = { x: x(part), y: y(part), width: part.box.width, height: part.box.height };
+    for (const [name, value] of Object.entries(box)) drawn.setAttribute(name, value);
     root.append(drawn);
   }
   for (const [number, bar] of found.bars.entries()) root.append(...barOf(bar, x(bar), y(bar), `energy-${number}`));

@@ -3,7 +3,7 @@
 
 import { button, element } from "../toolkit/dom.js";
 
-const picture = (src) => element("img", { src, alt: "", loading: "lazy", width: 160, height: 100 });
+const thumbnail = (src) => element("img", { src, alt: "", loading: "lazy", width: 160, height: 100 });
 
 export class Gallery {
   // `ask` asks the server for the cards, `choose` opens a scene.
@@ -40,7 +40,7 @@ export class Gallery {
       this.choose(name);
     };
     const card = button("", act, { className: "card", value: name });
-    card.append(picture(src), ...words);
+    card.append(thumbnail(src), ...words);
     return card;
   }
 

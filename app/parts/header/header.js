@@ -2,7 +2,7 @@
 
 import { markAnotherScene } from "./another_scene.js";
 import { button, chooser, download, element, onWidth } from "../toolkit/dom.js";
-import { wholePage } from "./iframe_link.js";
+import { dashboardLink } from "./iframe_link.js";
 import { icon, iconButton } from "./icons.js";
 import { keyPressed } from "./keys.js";
 import { curveButton, knobsButton } from "./phone_buttons.js";
@@ -23,7 +23,7 @@ class Header {
     this.name = element("h1", { textContent: "granchain" });
     this.mode = element("span", { className: "segments", role: "group" }, ...this.modes);
     this.popovers.menu.ariaLabel = "more controls";
-    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), wholePage(this.name)];
+    const small = [this.play, this.step, this.name, element("span", { className: "grow" }), dashboardLink(this.name)];
     const all = [
       knobsButton(),
       this.name,
@@ -57,15 +57,15 @@ class Header {
     const send = (name) => () => this.send(name);
     this.reset = iconButton(icon("reset"), "Reset: back to rest", send("reset"));
     this.step = iconButton(icon("step", "period"), "Forward one drive period", () => this.nextPeriod());
-    this.undo = iconButton(icon("undo"), "Undo (Ctrl-Z)", () => window.granchain.undo());
-    this.redo = iconButton(icon("redo"), "Redo (Ctrl-Shift-Z)", () => window.granchain.redo());
+    this.undo = iconButton(icon("undo"), "Undo (Ctrl-Z)", () => window.granchain.steps.undo());
+    this.redo = iconButton(icon("redo"), "Redo (Ctrl-Shift-Z)", () => window.granchain.steps.redo());
     this.pin = iconButton(icon("pin"), "Pin this picture and compare", () => this.pinPicture());
     this.share = iconButton(icon("share", "link"), "Link to this picture", send("share"));
     const words = "Export: pictures, tables, a program";
     this.exports = iconButton(icon("export", "export"), words, () => this.popovers.toggle("exports"), "export");
     this.help = iconButton(icon("help"), "Help and keys (?)", () => this.popovers.toggleHelp());
-    const themes = `Theme: ${window.granchain.themes.join(", ")}`;
-    this.theme = iconButton(icon("theme"), themes, () => window.granchain.nextTheme());
+    const themes = `Theme: ${window.granchain.theme.names.join(", ")}`;
+    this.theme = iconButton(icon("theme"), themes, () => window.granchain.theme.next());
     this.sound = iconButton(icon("sound", "hear"), "Hear the force at the wall", () => this.toggleSound());
     this.sound.ariaPressed = "false";
     this.more = iconButton(icon("more"), "More controls", () => this.popovers.toggle("menu"), "more");
@@ -136,7 +136,7 @@ class Header {
 
   // Sends a choice that is part of the share link; the address has it before the server answers.
   request(name, value, message) {
-    window.granchain.requested(name, value);
+    window.granchain.address.requested(name, value);
     this.send(name, message);
   }
 
@@ -149,7 +149,7 @@ class Header {
     if (value === this.playing) return;
     this.playing = value;
     this.drawPlay();
-    window.granchain.kept = { ...window.granchain.kept, playing: value };
+    window.granchain.connection.keep({ playing: value });
     window.granchain.emit("play", value);
     this.send("playing", { value });
   }
@@ -182,14 +182,14 @@ class Header {
     this.showChoices(state);
     this.showPlaying(state);
     if (!state.query) return;
-    window.granchain.linkReceived(state.query, ["scene", ...state.view_fields], state.view_fields);
+    window.granchain.address.linkReceived(state.query, ["scene", ...state.view_fields], state.view_fields);
     if (!this.begun) this.begin();
     this.begun = true;
   }
 
   // The replay runs or pauses as before a lost connection. If the browser is set to less motion, it begins paused.
   begin() {
-    const { again } = window.granchain;
+    const { again } = window.granchain.connection;
     if (again) this.restore(again);
     else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
@@ -198,7 +198,7 @@ class Header {
   takeTheme(theme) {
     if (this.themed || !theme) return;
     this.themed = true;
-    window.granchain.setTheme(theme, false); // "auto" is not a theme and changes nothing
+    window.granchain.theme.set(theme, false); // "auto" is not a theme and changes nothing
   }
 
   showChoices(state) {
@@ -227,20 +227,20 @@ class Header {
       window.granchain.emit("play", playing);
     }
     this.drawPlay();
-    window.granchain.kept = { ...window.granchain.kept, playing };
+    window.granchain.connection.keep({ playing });
   }
 
   // After a lost connection: sends what the share link does not contain.
   restore(again) {
-    window.granchain.again = null;
+    window.granchain.connection.again = null;
     const { playing = true, uploaded = false } = again;
     this.send("reconnected", { playing, uploaded });
   }
 
   receive(message) {
-    if (message.type === "link" || message.type === "address") window.granchain.linkRefined(message.query);
+    if (message.type === "link" || message.type === "address") window.granchain.address.linkRefined(message.query);
     if (message.type === "gallery") this.scenes.gallery.receive(message.cards);
-    if (message.type === "address-applied") window.granchain.addressApplied(message.query);
+    if (message.type === "address-applied") window.granchain.address.applied(message.query);
     if (message.type === "link") this.popovers.showLink();
     if (message.type === "file") download(message.name, new Blob([message.content]));
   }
@@ -252,7 +252,7 @@ export function render({ model }) {
   header.popovers.offer("show the tour again", () => tour.show(0));
   let toured = false;
   window.granchain.on("painted", () => {
-    if (!toured && !window.granchain.lost) tour.begin();
+    if (!toured && !window.granchain.connection.lost) tour.begin();
     toured = true;
   });
   window.granchain.go = (query) => header.send("go", { query });

@@ -2,13 +2,13 @@
 
 import { element } from "../toolkit/dom.js";
 
-export function wholePage(title) {
-  const page = window.granchain;
+export function dashboardLink(title) {
+  const { granchain } = window;
   const link = element("a", { textContent: "open in granchain ↗", target: "_blank", rel: "noopener" });
-  page.on("shown", ({ scene, f }) => {
-    if (!page.embedded) return;
+  granchain.on("shown", ({ scene, f }) => {
+    if (!granchain.embedded) return;
     title.textContent = `${scene}, ${f} Hz`;
-    const url = page.address();
+    const url = granchain.address.url();
     url.searchParams.delete("embed");
     link.href = url.href;
   });

@@ -10,12 +10,12 @@ function takeStep(event) {
   if (event.composedPath().some((node) => node.dataset?.typing)) return;
   if (key !== "z" && key !== "y") return;
   event.preventDefault();
-  if (key === "y" || event.shiftKey) window.granchain.redo();
-  else window.granchain.undo();
+  if (key === "y" || event.shiftKey) window.granchain.steps.redo();
+  else window.granchain.steps.undo();
 }
 
 export function keyPressed(event, header) {
-  if (event.key === " " && !inField(event) && !window.granchain.lost) {
+  if (event.key === " " && !inField(event) && !window.granchain.connection.lost) {
     event.preventDefault();
     header.setPlaying(!header.playing);
   }

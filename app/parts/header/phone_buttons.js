@@ -2,7 +2,7 @@
 
 import { icon, iconButton } from "./icons.js";
 
-const has = (name) => document.getElementById("page").classList.contains(name);
+const has = (name) => document.getElementById("dashboard").classList.contains(name);
 
 export const knobsButton = () =>
   iconButton(icon("knobs"), "Show or hide the other knobs", () => window.granchain.drawer(!has("drawer")), "of-phone");

@@ -80,7 +80,7 @@ export class Popovers {
 
   // Shows the page's address and copies it to the clipboard.
   showLink() {
-    const { href } = window.granchain.address();
+    const { href } = window.granchain.address.url();
     history.replaceState(history.state, "", href);
     this.field.value = href;
     this.copied.textContent = "";

@@ -42,8 +42,8 @@ export class Tour {
 
   // Begins at a first visit once there is a picture; not in an embedded page, nor over a page that a link opens.
   begin() {
-    const page = window.granchain;
-    if (remembered() || page.embedded || page.place.page || page.place.tab) return;
+    const { granchain } = window;
+    if (remembered() || granchain.embedded || granchain.address.place.page || granchain.address.place.tab) return;
     this.show(0);
   }
 

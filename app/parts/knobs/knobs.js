@@ -18,7 +18,7 @@ class Sender {
   send(message, now) {
     this.waiting.set(message.name, message);
     const value = message.do === "set" ? message.value : this.model.state.preset[message.name];
-    window.granchain.requested(message.name, value);
+    window.granchain.address.requested(message.name, value);
     if (this.resting || now) this.flush();
   }
 
@@ -81,7 +81,7 @@ class Knobs {
     if (message.type !== "values") return;
     const { sent } = this.sender;
     const newest = this.sender.isNewest(message.seq ?? -1);
-    window.granchain.linkReceived(message.query, newest ? [...this.knobs.keys()] : []);
+    window.granchain.address.linkReceived(message.query, newest ? [...this.knobs.keys()] : []);
     // An answer to an older movement must not pull the knob from under the hand.
     if (this.sender.isNewest(message.seq ?? sent)) this.show(message);
   }

@@ -7,7 +7,7 @@ from bokeh.models import ColumnDataSource, HoverTool, Image, Plot, Range1d, Sing
 
 from ...format import prefixed
 from ...frames import Frames
-from ...pictures.energies import bead_interval, energy_hover, energy_mapper
+from ...plots.energies import bead_interval, energy_hover, energy_mapper
 from ...serve.document.changes import set_properties
 from ..figures.figure_style import GAP, quiet_plot
 

@@ -54,18 +54,18 @@ class MeasuredTrains:
         inside = np.zeros(0, dtype=np.int64)
         if self._shown is not None and shown > 0.0:
             inside = np.flatnonzero((self._shown.time >= 0.0) & (self._shown.time <= shown))[:MOST_POINTS]
-        for place, unit in ((0, push), (1, out), (_DRIVE, drive)):
-            measured = self._measured(place)
+        for series, unit in ((0, push), (1, out), (_DRIVE, drive)):
+            measured = self._measured(series)
             values = NO_TRAIN
             if self._shown is not None and measured is not None:
                 values = {"time": (self._shown.time[inside] * scale).astype(np.float32),
                           "force": (measured[inside] / unit).astype(np.float32)}
-            self._draw(place, values)
+            self._draw(series, values)
 
-    def _measured(self, place: int) -> np.ndarray | None:
+    def _measured(self, series: int) -> np.ndarray | None:
         if self._shown is None:
             return None
-        return self._shown.displacement if place == _DRIVE else self._shown.forces.get(_FORCES[place])
+        return self._shown.displacement if series == _DRIVE else self._shown.forces.get(_FORCES[series])
 
     def ink(self, colour: str) -> None:
         """The colour of the theme."""
@@ -73,13 +73,13 @@ class MeasuredTrains:
         for line in self._lines.values():
             line.glyph.line_color = colour
 
-    def _draw(self, place: int, values: dict[str, np.ndarray]) -> None:
-        line = self._lines.get(place)
+    def _draw(self, series: int, values: dict[str, np.ndarray]) -> None:
+        line = self._lines.get(series)
         if line is None:
             if len(values["time"]):
                 glyph = Line(x="force", y="time", line_color=self._ink, line_width=1.3, line_dash=[4, 3])
-                where = {"x_range_name": "drive"} if place == _DRIVE else {}
-                plot = self._plots[place % _DRIVE]  # the drive is on the left, over the input force
-                self._lines[place] = plot.add_glyph(ColumnDataSource(values), glyph, level="overlay", **where)
+                where = {"x_range_name": "drive"} if series == _DRIVE else {}
+                plot = self._plots[series % _DRIVE]  # the drive is on the left, over the input force
+                self._lines[series] = plot.add_glyph(ColumnDataSource(values), glyph, level="overlay", **where)
         elif len(values["time"]) or len(line.data_source.data["time"]):
             line.data_source.data = dict(values)

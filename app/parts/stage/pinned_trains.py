@@ -11,7 +11,7 @@ from bokeh.models import ColumnDataSource, Line, Plot
 from granchain_core import Run
 
 from ...frames import jumps_of, with_jumps
-from ...pictures.theme import GREY
+from ...plots.theme import GREY
 
 #: Dashes of the pins, in their order.
 DASHES = ([7, 3], [2, 3], [9, 3, 2, 3])
@@ -59,15 +59,15 @@ class PinnedTrains:
         self._drawn: tuple[object, ...] = ()
         self._last: tuple[float, float, float, float] = (0.0, 1.0, 1.0, 1.0)
 
-    def _draw(self, line: int, place: int, values: dict[str, np.ndarray]) -> None:
-        """Draw the train of a place, 0 at the driver or 1 at the wall."""
-        source = self._sources.get((line, place))
+    def _draw(self, line: int, pin: int, values: dict[str, np.ndarray]) -> None:
+        """Draw the train of a pin: `line` is 0 at the driver, 1 at the wall."""
+        source = self._sources.get((line, pin))
         if source is not None:
             source.data = values
         elif len(values["time"]):
-            source = self._sources[line, place] = ColumnDataSource(values)
+            source = self._sources[line, pin] = ColumnDataSource(values)
             self._plots[line].add_glyph(source, Line(x="force", y="time", line_color=GREY, line_width=1.8,
-                                                     line_dash=DASHES[place]), level="underlay")
+                                                     line_dash=DASHES[pin]), level="underlay")
 
     @property
     def largest(self) -> tuple[float, float]:
@@ -93,13 +93,13 @@ class PinnedTrains:
             return
         self._drawn = (copies, scale, push, out)
         for line, unit in ((0, push), (1, out)):
-            for place in range(len(DASHES)):
-                train = self._trains[place] if place < len(self._trains) else None
-                if train is None or not copies[place]:
-                    self._draw(line, place, dict(NO_TRAIN))
+            for pin in range(len(DASHES)):
+                train = self._trains[pin] if pin < len(self._trains) else None
+                if train is None or not copies[pin]:
+                    self._draw(line, pin, dict(NO_TRAIN))
                     continue
-                time, force = train.over(copies[place], line)
-                self._draw(line, place, {"time": (time * scale).astype(np.float32),
+                time, force = train.over(copies[pin], line)
+                self._draw(line, pin, {"time": (time * scale).astype(np.float32),
                                          "force": (force / unit).astype(np.float32)})
 
 

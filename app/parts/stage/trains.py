@@ -1,6 +1,6 @@
 """The force trains beside the map: drive and input force on the left, output force on the right.
 
-Figures that are made once and follow every knob; app/pictures/motion.py draws the same for files and notebooks.
+Figures that are made once and follow every knob; app/plots/motion.py draws the same for files and notebooks.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from granchain_core import Run
 
 from ...format import figures_of, prefixed, with_decimals, with_figures
 from ...frames import Extremes, Frames, round_up
-from ...pictures.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
-from ...pictures.theme import GREY
+from ...plots.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
+from ...plots.theme import GREY
 from ...serve.document.changes import set_properties
 from ..figures.figure_style import GAP, LEFT, quiet_axis, quiet_plot
 from .measured_trains import MeasuredTrains

@@ -147,8 +147,8 @@ let timer = 0;
 function announce(words) {
   clearTimeout(timer);
   timer = setTimeout(() => {
-    const place = document.getElementById("announced");
-    if (place.textContent !== words && !words.startsWith("live")) place.textContent = words;
+    const region = document.getElementById("announced");
+    if (region.textContent !== words && !words.startsWith("live")) region.textContent = words;
   }, STANDS);
 }
 

@@ -46,27 +46,27 @@ class StatusLine(Component):
     _stylesheets = [text("controls.css"), text("status_line.css")]  # noqa: RUF012
 
 
-def settled_entries(picture: Settled, place: Place | None, force: str) -> dict[str, Any]:
+def settled_entries(settled: Settled, place: Place | None, force: str) -> dict[str, Any]:
     """The line for a settled picture.
 
     `place` is where it lies on the curve from rest, None while that is computed; `force` is the largest output force in
     words.
     """
-    regime, pushed = picture.regime.sentence, pushes(picture.run)
+    regime, pushed = settled.regime.sentence, pushes(settled.run)
     name = regime.split(",")[0]  # without the evidence
     return {
-        "regime": regime_words(picture, pushed, place, regime),
-        "regime_shorter": [regime_words(picture, pushed, place, name), regime_words(picture, pushed, Place(""), name)],
-        "regime_hint": regime_hint(picture.regime, pushed, place),
-        "start": "from its initial velocities" if picture.run.scene.moves_at_start and picture.start == "rest" else
-                 f"from {picture.start}",
-        **run_entries(picture.run, force),
+        "regime": regime_words(settled, pushed, place, regime),
+        "regime_shorter": [regime_words(settled, pushed, place, name), regime_words(settled, pushed, Place(""), name)],
+        "regime_hint": regime_hint(settled.regime, pushed, place),
+        "start": "from its initial velocities" if settled.run.scene.moves_at_start and settled.start == "rest" else
+                 f"from {settled.start}",
+        **run_entries(settled.run, force),
     }
 
 
-def regime_words(picture: Settled, pushed: tuple[int, int] | None, place: Place | None, regime: str) -> str:
+def regime_words(settled: Settled, pushed: tuple[int, int] | None, place: Place | None, regime: str) -> str:
     """The motion in words: strong pushes of the driver in how many periods, what the curve has here, and its regime."""
-    ready = "" if picture.final else "preview, "
+    ready = "" if settled.final else "preview, "
     counted = place_words(pushed, place)
     return ready + (f"{counted}, " if counted else "") + regime
 

@@ -29,7 +29,7 @@ export class Crosshair {
       picture.addEventListener("pointermove", (event) => this.moved(event));
       picture.addEventListener("pointerleave", () => this.hide());
     }
-    layout.map.addEventListener("pointerdown", (event) => event.shiftKey && this.measure(event), true);
+    layout.energyMap.addEventListener("pointerdown", (event) => event.shiftKey && this.measure(event), true);
     document.addEventListener("keydown", ({ key }) => key === "Escape" && this.roll());
   }
 
@@ -63,14 +63,14 @@ export class Crosshair {
     if (!frames || frames.rows < 2 || time < 0 || time > 1) return this.hide();
     const row = Math.round(time * (frames.rows - 1));
     const force = (contact) => frames.force[row * (frames.beads + 1) + contact];
-    const { left, map, right } = this.words;
+    const { left, map: energy, right } = this.words;
     left.textContent = `u₀ ${quantity(frames.drive[row], "m")}\nF ${quantity(force(0), "N")}`;
     right.textContent = `F ${quantity(force(frames.beads), "N")}`;
     const periods = row / frames.samples;
-    map.textContent = frames.live ? "" : quantity(periods / frames.f, "s");
+    energy.textContent = frames.live ? "" : quantity(periods / frames.f, "s");
     const bead = Math.floor(beads * frames.beads);
     const inside = bead >= 0 && bead < frames.beads;
-    if (inside) map.textContent += ` · bead ${bead + 1}: ${quantity(frames.energy[row * frames.beads + bead], "J")}`;
+    if (inside) energy.textContent += ` · bead ${bead + 1}: ${quantity(frames.energy[row * frames.beads + bead], "J")}`;
     this.line.hidden = false;
     this.line.style.top = `${y}px`;
     this.line.classList.toggle("low", time > 0.85);
@@ -104,15 +104,15 @@ export class Crosshair {
     event.stopImmediatePropagation();
     event.preventDefault();
     const from = this.at(event);
-    const { map } = this.layout;
-    map.setPointerCapture(event.pointerId);
+    const { energyMap } = this.layout;
+    energyMap.setPointerCapture(event.pointerId);
     const move = (next) => this.drawTape(from, this.at(next));
     const done = () => {
-      map.removeEventListener("pointermove", move);
-      map.removeEventListener("pointerup", done);
+      energyMap.removeEventListener("pointermove", move);
+      energyMap.removeEventListener("pointerup", done);
     };
-    map.addEventListener("pointermove", move);
-    map.addEventListener("pointerup", done);
+    energyMap.addEventListener("pointermove", move);
+    energyMap.addEventListener("pointerup", done);
     this.drawTape(from, from);
   }
 

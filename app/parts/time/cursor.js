@@ -45,8 +45,8 @@ export class Cursor {
 
   // A click in the map chooses the bead of the column under it.
   clicked(from, to, element) {
-    const { stage, map, columns } = this.layout;
-    if (element !== map || to.type !== "pointerup") return;
+    const { stage, energyMap, columns } = this.layout;
+    if (element !== energyMap || to.type !== "pointerup") return;
     if (Math.hypot(to.clientX - from.clientX, to.clientY - from.clientY) > STILL) return;
     const share = (to.clientX - stage.getBoundingClientRect().left - columns.left) / columns.width;
     if (share >= 0 && share < 1) this.onClick(share);

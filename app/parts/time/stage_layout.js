@@ -4,7 +4,7 @@
 export class StageLayout {
   constructor() {
     this.stage = document.getElementById("stage");
-    this.map = document.getElementById("map");
+    this.energyMap = document.getElementById("map");
     const style = getComputedStyle(this.stage);
     this.top = parseFloat(style.getPropertyValue("--frame-top"));
     this.left = parseFloat(style.getPropertyValue("--frame-left"));
@@ -14,10 +14,10 @@ export class StageLayout {
 
   measure() {
     const stage = this.stage.getBoundingClientRect();
-    const map = this.map.getBoundingClientRect();
+    const energyMap = this.energyMap.getBoundingClientRect();
     const [left, right] = ["left", "right"].map((id) => document.getElementById(id).getBoundingClientRect());
-    this.columns = { left: map.left - stage.left + this.gap, width: map.width - 2 * this.gap };
-    this.area = { y: map.top - stage.top + this.top, height: map.height - this.top - this.bottom };
+    this.columns = { left: energyMap.left - stage.left + this.gap, width: energyMap.width - 2 * this.gap };
+    this.area = { y: energyMap.top - stage.top + this.top, height: energyMap.height - this.top - this.bottom };
     const put = (element, box, from, to, style) =>
       Object.assign(element.style, {
         left: `${box.left - stage.left + from}px`,
@@ -28,15 +28,15 @@ export class StageLayout {
     const titles = [...this.stage.querySelectorAll(".title")];
     for (const title of titles) {
       const name = title.dataset.over;
-      const box = { left, map, right }[name];
+      const box = { left, map: energyMap, right }[name];
       put(title, box, name === "left" ? this.left : this.gap, this.gap, { top: top(box) });
       title.classList.remove("short");
     }
     const line = parseFloat(getComputedStyle(titles[0]).lineHeight);
     const short = titles.some((title) => title.offsetHeight > 1.5 * line);
     for (const title of titles) title.classList.toggle("short", short);
-    put(document.getElementById("scale"), map, this.gap, this.gap, {
-      top: `${map.bottom - stage.top - this.bottom + 4}px`,
+    put(document.getElementById("scale"), energyMap, this.gap, this.gap, {
+      top: `${energyMap.bottom - stage.top - this.bottom + 4}px`,
     });
     for (const peak of this.stage.querySelectorAll(".peak")) {
       const name = peak.dataset.under;

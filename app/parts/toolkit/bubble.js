@@ -6,8 +6,8 @@ import { element } from "./dom.js";
 const bubble = element("div", { id: "term", className: "bubble", role: "tooltip", hidden: true });
 document.body.append(bubble);
 
-let explained = null; // the explained element, and where it was
-let place = null;
+let explained = null; // the explained element
+let box = null; // where it was when the bubble was shown
 
 export const hideMeaning = () => {
   bubble.hidden = true;
@@ -15,7 +15,7 @@ export const hideMeaning = () => {
 
 function hideIfMoved() {
   const now = explained?.getBoundingClientRect();
-  if (now && (now.top !== place.top || now.left !== place.left)) hideMeaning();
+  if (now && (now.top !== box.top || now.left !== box.left)) hideMeaning();
 }
 
 // Shows `words` below `anchor`, or above it if there is more room, with `controls` under the words.
@@ -23,8 +23,8 @@ export function showMeaning(anchor, words, ...controls) {
   bubble.replaceChildren(words, ...controls);
   bubble.hidden = false;
   explained = anchor;
-  place = anchor.getBoundingClientRect();
-  const { left, top, bottom } = place;
+  box = anchor.getBoundingClientRect();
+  const { left, top, bottom } = box;
   const { offsetWidth: wide, offsetHeight: tall } = bubble;
   bubble.style.left = `${Math.max(8, Math.min(left, innerWidth - wide - 8))}px`;
   bubble.style.top = `${bottom + tall + 12 < innerHeight ? bottom + 6 : Math.max(8, top - tall - 6)}px`;

@@ -8,7 +8,7 @@ from typing import Any
 import param
 from panel.custom import JSComponent
 
-from ...pictures.theme import Theme
+from ...plots.theme import Theme
 from ...scripts import FILES, files_by_name
 from ...serve.opening.panel_shortcuts import (
     WithCommonProperties,

@@ -60,7 +60,7 @@ class Compiler:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self._asked: dict[tuple[str, str], Future[None]] = {}
+        self._compilations: dict[tuple[str, str], Future[None]] = {}
         self._known: set[tuple[str, str]] = set()
         self._loaded: set[tuple[str, str]] = set()
 
@@ -76,10 +76,10 @@ class Compiler:
         """Begin to compile in another process, unless that is under way or done; what failed is tried again."""
         key = structure(scene), piece
         with self._lock:
-            asked = self._asked.get(key)
-            if asked is None or (asked.done() and asked.exception() is not None):
-                asked = self._asked[key] = COMPILATIONS.submit(_compile, scene, piece)
-            return asked
+            compilation = self._compilations.get(key)
+            if compilation is None or (compilation.done() and compilation.exception() is not None):
+                compilation = self._compilations[key] = COMPILATIONS.submit(_compile, scene, piece)
+            return compilation
 
     def await_piece(self, scene: Scene, piece: str, stop: Stop) -> bool:
         """Wait for these kernels; False when the stop flag went up first. Call it from a worker thread."""
@@ -121,14 +121,16 @@ class Requests:
 
     def __init__(self, compiler: Compiler) -> None:
         self._compiler = compiler
-        self._asked: dict[tuple[str, str], Future[None]] = {}
+        self._compilations: dict[tuple[str, str], Future[None]] = {}
 
     def failure(self, scene: Scene, *pieces: str) -> Exception | None:
         """Ask for these kernels; returns why one of them could not be compiled, None as long as that is not known."""
         for piece in pieces:
             key = structure(scene), piece
-            asked = self._asked.get(key) or self._asked.setdefault(key, self._compiler.ask(scene, piece))
-            error = asked.exception() if asked.done() else None
+            if key not in self._compilations:
+                self._compilations[key] = self._compiler.ask(scene, piece)
+            compilation = self._compilations[key]
+            error = compilation.exception() if compilation.done() else None
             if isinstance(error, Exception):
                 return error
         return None

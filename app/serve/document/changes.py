@@ -267,9 +267,9 @@ def set_properties(model: Model, **values: Any) -> None:
 
 def _keep_last(events: list[Any], event: Any) -> None:
     """Keep an event; it replaces an earlier one of the same property, which is out of date."""
-    for place, kept in enumerate(events):
+    for number, kept in enumerate(events):
         if type(kept) is type(event) and kept.model is event.model and kept.attr == event.attr:
-            events[place] = event
+            events[number] = event
             return
     events.append(event)
 

@@ -67,9 +67,9 @@ class Metrics:
 
     def answered(self, seconds: float) -> None:
         """Count a first picture that came `seconds` after the knob moved."""
-        place = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
+        bucket = next((i for i, bound in enumerate(BUCKETS) if seconds <= bound), len(BUCKETS))
         with self._lock:
-            self.answers[place] += 1
+            self.answers[bucket] += 1
             self.answers_total += seconds
 
     def lagged(self, seconds: float) -> None:
@@ -155,7 +155,7 @@ class Liveness(RequestHandler):
 _UNKNOWN = "0.0.0.0"
 
 
-class MetricsPage(RequestHandler):
+class MetricsHandler(RequestHandler):
     """`/metrics`."""
 
     def get(self) -> None:

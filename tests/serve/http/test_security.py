@@ -27,7 +27,7 @@ from app.serve.computing.queues import LONG
 from app.serve.http import guard
 from app.serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from app.serve.http.message_rules import LARGEST_PLAIN_CONTENT
-from app.serve.monitoring.metrics import MetricsPage
+from app.serve.monitoring.metrics import MetricsHandler
 from app.server import Access
 from app.session import starts
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
@@ -234,10 +234,10 @@ def test_metrics_are_for_known_private_addresses(remote_ip: str | None, allowed:
     """Tornado says 0.0.0.0 where it does not know the address."""
     asked = SimpleNamespace(request=SimpleNamespace(remote_ip=remote_ip), set_header=lambda *_: None, write=lambda _: None)
     if allowed:
-        MetricsPage.get(asked)  # type: ignore[arg-type]
+        MetricsHandler.get(asked)  # type: ignore[arg-type]
     else:
         with pytest.raises(HTTPError, match="403"):
-            MetricsPage.get(asked)  # type: ignore[arg-type]
+            MetricsHandler.get(asked)  # type: ignore[arg-type]
 
 
 def test_too_large_a_body_is_refused(dashboard: Listening) -> None:

@@ -44,7 +44,7 @@ def plain(monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def test_a_page_with_every_shortcut_is_the_same(plain: str) -> None:
-    """What `remember_resources` shortens is outside of the document: tests/serve/opening/test_panel_pages.py."""
+    """What `remember_resources` shortens is outside of the document: tests/serve/opening/test_panel_resources.py."""
     assert len(json.loads(plain)) > 15
     assert any(panel_shortcuts._COMMON.values()) and panel_shortcuts._CHILDLESS
     assert content() == plain  # with remembered properties, and without checks of values

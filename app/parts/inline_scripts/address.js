@@ -1,0 +1,231 @@
+// The address of the page: the share link, the open tab and page, and the browser's history, which is undo and redo.
+(() => {
+  const { granchain } = window;
+
+  // What only the browser knows of an address; "look" is the theme.
+  const BROWSER_FIELDS = ["tab", "page", "look", "embed"];
+  const FOLLOW_AFTER = 400; // ms; a browser limits how many changes it takes a second
+  const NEWEST = "granchain-newest";
+
+  // The part of an address that the server knows.
+  const linkOf = (search) => {
+    const query = new URLSearchParams(search);
+    for (const name of BROWSER_FIELDS) query.delete(name);
+    return query.toString();
+  };
+
+  /** The page's place in the browser's history, whose steps are those of undo and redo. */
+  class Steps {
+    #at = 0;
+    #newest = 0;
+    #returning = false;
+
+    /** The present step. */
+    get at() {
+      return this.#at;
+    }
+
+    /** The last step that “forward” can reach. */
+    get newest() {
+      return this.#newest;
+    }
+
+    /** Whether the visitor has gone back or forward and the server has not applied the address there yet. */
+    get returning() {
+      return this.#returning;
+    }
+
+    /** Finds the place. The browser forgets it at a reload after a lost connection; `again` has it then. */
+    begin(again) {
+      this.#at = history.state?.at ?? again?.at ?? 0;
+      this.#newest = history.state || again ? Math.max(this.#at, Steps.#kept()) : this.#at;
+      this.tell();
+    }
+
+    /** Makes an address the next step. */
+    push(there) {
+      this.#at += 1;
+      this.#newest = this.#at;
+      history.pushState({ at: this.#at }, "", there);
+      Steps.#keep(this.#newest);
+      this.tell();
+    }
+
+    /** Gives the present step another address. */
+    replace(there) {
+      history.replaceState({ ...history.state, at: this.#at }, "", there);
+    }
+
+    /** The browser has gone to another step, that of this `history.state`. */
+    moved(state) {
+      this.#at = state?.at ?? 0;
+      this.#returning = !granchain.connection.lost;
+      this.tell();
+    }
+
+    /** The server has applied the address of the step. */
+    arrived() {
+      this.#returning = false;
+    }
+
+    undo() {
+      if (this.#at > 0 && !granchain.connection.lost) history.back();
+    }
+
+    redo() {
+      if (this.#at < this.#newest && !granchain.connection.lost) history.forward();
+    }
+
+    /** Announces as the event "steps" whether there are steps back and forward. */
+    tell() {
+      granchain.emit("steps", { back: this.#at > 0, forward: this.#at < this.#newest });
+    }
+
+    static #keep(newest) {
+      try {
+        sessionStorage.setItem(NEWEST, String(newest));
+      } catch {
+        /* redo is forgotten at a reload */
+      }
+    }
+
+    static #kept() {
+      try {
+        return Number(sessionStorage.getItem(NEWEST)) || 0;
+      } catch {
+        return 0;
+      }
+    }
+  }
+
+  /**
+   * Keeps the address so that it describes what is on the screen: reload, back and a bookmark restore it. A change by the
+   * visitor that is followed by a rest is a step of the browser's history, so back is undo and forward is redo.
+   */
+  class Address {
+    #steps;
+    #link = linkOf(location.search); // the last share link from the server
+    #known = false; // whether the server has sent one
+    #unanswered = new Map(); // the requests that are not in it yet
+    #viewFields = []; // the fields of a link that belong to no scene
+    #place;
+    #timer = 0;
+    #acted = false; // whether the visitor has done something since the last step
+
+    constructor(steps) {
+      this.#steps = steps;
+      const query = new URLSearchParams(location.search);
+      this.#place = { tab: query.get("tab") ?? "", page: query.get("page") ?? "" };
+      if (granchain.embedded) this.#place.embed = "1";
+      granchain.on("theme", () => this.#follow(this.#known));
+      addEventListener("popstate", ({ state }) => this.#known && this.#moved(state));
+    }
+
+    /** Where the visitor is: the tab below the curve and the page over the pictures, empty for the first tab and none. */
+    get place() {
+      return this.#place;
+    }
+
+    /** Changes the tab or the page of the place. */
+    setPlace(where) {
+      const acted = this.#known && Object.entries(where).some(([name, value]) => this.#place[name] !== value);
+      Object.assign(this.#place, where);
+      this.#follow(acted);
+    }
+
+    /** A request is on its way to the server. */
+    requested(name, value) {
+      if (name === "scene") this.#unanswered.clear();
+      this.#unanswered.delete(name);
+      this.#unanswered.set(name, value);
+    }
+
+    /** The server has sent a share link, which answers the requests of these names. */
+    linkReceived(query, answered, viewFields = this.#viewFields) {
+      // A link that answers a request is a step of the history, even if it is the first one or has come in parts.
+      const acted = answered.some((name) => this.#unanswered.has(name)) || (this.#known && query !== this.#link);
+      this.#link = query;
+      this.#viewFields = viewFields;
+      for (const name of answered) this.#unanswered.delete(name);
+      this.#known = true;
+      this.#follow(acted);
+    }
+
+    /** The server has sent a link that only makes the present address more precise. It is not a step of its own. */
+    linkRefined(query) {
+      this.#link = query;
+      this.#known = true;
+      this.#follow(false);
+    }
+
+    /** The server has applied an address of the history. */
+    applied(query) {
+      this.linkRefined(query);
+      this.#steps.arrived();
+    }
+
+    /** The address of what the visitor has asked for. */
+    url() {
+      const url = new URL(location.href);
+      const query = new URLSearchParams(this.#link);
+      // Knobs of the scene before do not belong to the new one.
+      if (this.#unanswered.has("scene"))
+        for (const name of [...query.keys()]) if (!["v", ...this.#viewFields].includes(name)) query.delete(name);
+      for (const [name, value] of this.#unanswered) {
+        query.set(name, value);
+        if (name === "k") query.delete("kappa");
+        if (name === "kappa") query.delete("k");
+      }
+      const { theme } = granchain;
+      if (theme.chosen || url.searchParams.get("look") === theme.name) query.set("look", theme.name);
+      for (const [name, value] of Object.entries(this.#place)) if (value) query.set(name, value);
+      url.search = query;
+      return url;
+    }
+
+    /** Whether the picture on the screen is the final one of these knobs. A live run has no final picture. */
+    isSettled() {
+      const { knobs, final } = granchain.shown ?? {};
+      if (!this.#known || this.#unanswered.size || !final) return false;
+      return new URLSearchParams(knobs).toString() === this.#knobsAsked();
+    }
+
+    // Scene and knobs of the address, including requests that the server has not answered yet.
+    #knobsAsked() {
+      const query = this.url().searchParams;
+      const asked = ["v", "scene", ...granchain.knobNames];
+      for (const name of [...query.keys()]) if (!asked.includes(name)) query.delete(name);
+      return query.toString();
+    }
+
+    // Gives the browser the address after a rest, as a step of its own if the visitor has acted.
+    #follow(acted) {
+      this.#acted ||= acted && !this.#steps.returning;
+      clearTimeout(this.#timer);
+      this.#timer = setTimeout(() => {
+        if (!this.#known || granchain.connection.leaving) return;
+        const there = this.url();
+        if (this.#acted && there.href !== location.href) this.#steps.push(there);
+        else this.#steps.replace(there);
+        this.#acted = false;
+      }, FOLLOW_AFTER);
+    }
+
+    // The visitor has gone back or forward: has the server show the address that the browser has now.
+    #moved(state) {
+      clearTimeout(this.#timer);
+      this.#acted = false;
+      this.#steps.moved(state);
+      const query = new URLSearchParams(location.search);
+      granchain.theme.restore(query.get("look"));
+      this.#unanswered.clear();
+      if (!granchain.connection.lost) granchain.go?.(location.search.slice(1));
+      Object.assign(this.#place, { tab: query.get("tab") ?? "", page: query.get("page") ?? "" });
+      granchain.emit("place", this.#place);
+      this.#link = linkOf(location.search);
+    }
+  }
+
+  granchain.steps = new Steps();
+  granchain.address = new Address(granchain.steps);
+})();

@@ -1,0 +1,206 @@
+// Watches the connection. While the server does not answer, pictures and knobs may not belong together. So the pictures
+// are grey, the knobs are disabled, and a banner says so. Once the server is back, the page reloads from its link.
+(() => {
+  const { granchain } = window;
+  // All in milliseconds; PING_EVERY + PING_TIMEOUT stays below 2 s.
+  const TICK = 100, // how often the state is checked
+    PING_EVERY = 300, // from an answer to the next ping
+    PING_TIMEOUT = 1300, // silence after a ping that counts as a lost connection
+    RETRY_EVERY = 400, // between attempts to reach a lost server
+    SILENT_SOCKET = 3000; // how long the socket may stay silent once the server answers HTTP again
+  const LOST = "Connection lost – trying again … The pictures may be out of date.";
+  const BACK = "Connected again – restoring your settings …";
+  const AGAIN = "granchain-again";
+  const PARTS = ["bar", "side", "stage", "curves", "overlay", "foot"];
+
+  const showBanner = (sentence) => {
+    const banner = document.getElementById("lost");
+    banner.textContent = sentence;
+    banner.hidden = !sentence;
+  };
+
+  /** The last pictures as one image, which a reloaded page shows in grey until it has its own. */
+  class LastPictures {
+    #image;
+
+    constructor(src) {
+      this.#image = Object.assign(new Image(), { id: "last-pictures", alt: "", src });
+    }
+
+    show() {
+      document.body.append(this.#image);
+    }
+
+    remove() {
+      this.#image.remove();
+    }
+
+    /** The pictures that are on the screen, as the address of an image. */
+    static taken() {
+      const canvas = Object.assign(document.createElement("canvas"), { width: innerWidth, height: innerHeight });
+      if (!granchain.overlay)
+        for (const one of ["stage", "curve"].flatMap((id) => LastPictures.#canvases(document.getElementById(id)))) {
+          const { x, y, width, height } = one.getBoundingClientRect();
+          if (width && height && one.width && one.height) canvas.getContext("2d").drawImage(one, x, y, width, height);
+        }
+      return canvas.toDataURL("image/webp", 0.7);
+    }
+
+    static #canvases(node) {
+      return [...node.querySelectorAll("*")].flatMap((element) => [
+        ...(element.tagName === "CANVAS" ? [element] : []),
+        ...(element.shadowRoot ? LastPictures.#canvases(element.shadowRoot) : []),
+      ]);
+    }
+  }
+
+  /** Asks the server again and again whether it answers; shows that it does not, and reloads the page once it does. */
+  class Connection {
+    /** What the page before the reload kept; null if it is no reload. */
+    again = Connection.#taken();
+    #kept = {};
+    #lost = false;
+    #leaving = false;
+    #ping = null;
+    #closed = false; // whether the socket is
+    #lastTick = performance.now();
+    // Times in milliseconds.
+    #sincePing = null; // since the ping that is unanswered; null if there is none
+    #sinceAnswer = 0; // since the last answer
+    #sinceTry = RETRY_EVERY; // since the last attempt to reach a lost server
+    #sinceReached = null; // since a lost server answered HTTP again; null while it does not
+
+    constructor() {
+      if (this.again) this.#showLastPictures();
+      setInterval(() => this.#tick(), TICK);
+    }
+
+    /** Whether the server does not answer. */
+    get lost() {
+      return this.#lost;
+    }
+
+    /** Whether the page is being reloaded after a lost connection. */
+    get leaving() {
+      return this.#leaving;
+    }
+
+    /** What the page needs besides its link when it is reloaded. */
+    get kept() {
+      return this.#kept;
+    }
+
+    keep(values) {
+      this.#kept = { ...this.#kept, ...values };
+    }
+
+    /** Begins to watch; `send` sends a ping. */
+    connect(send) {
+      this.#ping = send;
+      for (const one of window.Bokeh.documents)
+        one.on_event("connection_lost", () => {
+          this.#closed = true;
+          this.#tick();
+        });
+    }
+
+    /** The server has answered. If its socket was only silent, the page goes on: the server has read all that was sent. */
+    answerReceived() {
+      this.#sincePing = null;
+      this.#sinceAnswer = 0;
+      this.#sinceReached = null;
+      if (this.#lost && !this.#closed) this.#setLost(false);
+    }
+
+    // A late tick counts as four at most: the server is not to blame if the computer slept or the page is busy.
+    #tick() {
+      const now = performance.now(),
+        passed = Math.min(now - this.#lastTick, 4 * TICK);
+      this.#lastTick = now;
+      if (this.#leaving || !this.#ping || (document.hidden && !this.#closed)) return;
+      this.#countSilence(passed);
+      if (!this.#lost && (this.#closed || this.#sincePing > PING_TIMEOUT)) this.#setLost(true);
+      if (!this.#lost) return;
+      if (this.#sinceReached !== null) this.#sinceReached += passed;
+      this.#sinceTry += passed;
+      if (this.#sinceTry >= RETRY_EVERY) this.#tryAgain();
+    }
+
+    // Sends the next ping, or counts how long the last one has been unanswered.
+    #countSilence(passed) {
+      const resting = !this.#closed && this.#sincePing === null;
+      if (resting) this.#sinceAnswer += passed;
+      if (resting && this.#sinceAnswer >= PING_EVERY) {
+        this.#sincePing = 0;
+        this.#ping();
+      } else if (this.#sincePing !== null) this.#sincePing += passed;
+    }
+
+    #setLost(lost) {
+      this.#lost = lost;
+      document.getElementById("dashboard").classList.toggle("lost", lost);
+      for (const part of PARTS) document.getElementById(part).inert = lost;
+      showBanner(lost ? LOST : "");
+      granchain.emit("lost", lost);
+    }
+
+    async #tryAgain() {
+      this.#sinceTry = -Infinity; // no second attempt while this one is under way
+      const alive = await Connection.#reach();
+      this.#sinceTry = 0;
+      if (!alive) this.#sinceReached = null;
+      else if (this.#closed || this.#sinceReached > SILENT_SOCKET) this.#reload();
+      else this.#sinceReached ??= 0;
+    }
+
+    #reload() {
+      this.#leaving = true;
+      try {
+        const { at } = granchain.steps;
+        sessionStorage.setItem(AGAIN, JSON.stringify({ ...this.#kept, at, snapshot: LastPictures.taken() }));
+      } catch {
+        /* no room to keep them: the sentence and the last pictures are missing for a moment */
+      }
+      location.replace(granchain.address.url());
+    }
+
+    #showLastPictures() {
+      const pictures = new LastPictures(this.again.snapshot ?? "");
+      document.addEventListener("DOMContentLoaded", () => {
+        showBanner(BACK);
+        pictures.show();
+      });
+      granchain.on("painted", () => {
+        pictures.remove();
+        if (!this.#lost) showBanner("");
+      });
+    }
+
+    static async #reach() {
+      try {
+        const { status } = await fetch(new URL("liveness", location.href), {
+          cache: "no-store",
+          signal: AbortSignal.timeout(2 * PING_TIMEOUT),
+        });
+        // A server without health checks answers 404, which will do; a proxy whose server is down answers 502.
+        return status < 500;
+      } catch {
+        return false;
+      }
+    }
+
+    // What the page before kept, which is taken once.
+    static #taken() {
+      try {
+        const kept = JSON.parse(sessionStorage.getItem(AGAIN));
+        sessionStorage.removeItem(AGAIN);
+        return kept;
+      } catch {
+        return null;
+      }
+    }
+  }
+
+  granchain.connection = new Connection();
+  granchain.steps.begin(granchain.connection.again);
+})();

@@ -1,0 +1,177 @@
+// The browser imports modules itself. Panel loads a shim for browsers without import maps, which this page does not
+// need. The shim would fetch and rewrite every module: 0.2 s of each opening.
+window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); // the maps that Panel adds are empty
+
+window.granchain = (() => {
+  const KEPT_AS = "granchain-look"; // the theme, in the browser from visit to visit
+  const THEMES = ["light", "dark", "projector"];
+
+  /** Tells scripts what happens in others: a script listens to an event by its name, and any script can cause it. */
+  class Events {
+    #listeners = new Map();
+
+    /** Calls `listener` with the detail of every event of this name. */
+    on(name, listener) {
+      if (!this.#listeners.has(name)) this.#listeners.set(name, new Set());
+      this.#listeners.get(name).add(listener);
+    }
+
+    /** Calls all who listen to this name. */
+    emit(name, detail) {
+      for (const listener of this.#listeners.get(name) ?? []) listener(detail);
+    }
+  }
+
+  /** The theme: what the visitor has chosen, now or at an earlier visit, else that of the system. */
+  class Theme {
+    names = THEMES;
+    #events;
+    #chosen = false;
+    #first;
+
+    constructor(events) {
+      this.#events = events;
+      const kept = Theme.#kept();
+      this.set(THEMES.includes(kept) ? kept : Theme.#ofSystem(), false);
+      this.#first = this.name;
+      matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+        if (!Theme.#kept()) this.set(Theme.#ofSystem(), false);
+      });
+    }
+
+    get name() {
+      return document.documentElement.dataset.theme;
+    }
+
+    /** Whether the visitor has chosen the theme on this page, or the address has it. */
+    get chosen() {
+      return this.#chosen;
+    }
+
+    /** Changes the theme and announces it as the event "theme"; a name that no theme has changes nothing. */
+    set(name, keep) {
+      if (!THEMES.includes(name)) return;
+      document.documentElement.dataset.theme = name;
+      this.#chosen ||= keep;
+      if (keep)
+        try {
+          localStorage.setItem(KEPT_AS, name);
+        } catch {
+          /* private browsing keeps nothing */
+        }
+      this.#events.emit("theme", name);
+    }
+
+    /** After a step back or forward: takes the theme of the address or, if it has none, the one before any choice. */
+    restore(name) {
+      this.#chosen = THEMES.includes(name);
+      this.set(this.#chosen ? name : this.#first, false);
+    }
+
+    /** Chooses the next in the list. */
+    next() {
+      this.set(THEMES[(THEMES.indexOf(this.name) + 1) % THEMES.length], true);
+    }
+
+    static #kept() {
+      try {
+        return localStorage.getItem(KEPT_AS);
+      } catch {
+        return null;
+      }
+    }
+
+    static #ofSystem() {
+      return matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+    }
+  }
+
+  /**
+   * What the parts of the dashboard share in the browser: events, what pages publish, the page over the pictures, the
+   * panels of a phone, and one object for each of theme, address, history and connection.
+   */
+  class Dashboard extends Events {
+    #overlay = null; // the name of the page over the pictures
+    pages = new Map(); // what pages have published, by page
+    embedded = new URLSearchParams(location.search).get("embed") === "1"; // the pictures alone, for a slide
+    theme = new Theme(this);
+
+    // Below are the members that other scripts set; a comment names the script.
+    // visibility.js: the names of what somebody looks at
+    visible = new Set();
+    // dashboard.html: the glossary's terms with their definitions
+    terms = {};
+    // address.js: the share link and where the visitor is; the browser's history
+    address = null;
+    steps = null;
+    // connection.js
+    connection = null;
+    // header.js: has the server show what an address says
+    go = null;
+    // chain.js: its drawing, the picture on the screen, and where its replay is in drive periods
+    chain = null;
+    shown = null;
+    phase = 0;
+    // knobs.js and status_line.js: the knobs of the scene, and the regime in words
+    knobNames = [];
+    regime = "";
+
+    constructor() {
+      super();
+      document.documentElement.classList.toggle("embed", this.embedded);
+      document.addEventListener("keydown", (event) => {
+        if (event.key === "Escape" && this.overlay) this.closePage();
+      });
+    }
+
+    /**
+     * Keeps what a page publishes for other parts, such as its tab. It is announced as the event "page:NAME", which
+     * cannot be confused with an event that has the name of a page.
+     */
+    publish(name, data) {
+      this.pages.set(name, data);
+      this.emit(`page:${name}`, data);
+    }
+
+    /** The name of the page over the pictures, or null. An open page stops the curve unless it needs the curve. */
+    get overlay() {
+      return this.#overlay;
+    }
+
+    /** Opens the page of this name over the pictures. A name that no such page has opens none. */
+    openPage(asked) {
+      const sheets = [...document.querySelectorAll("[data-overlay]")];
+      const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
+      if (name === this.#overlay) return;
+      this.#overlay = name;
+      document.getElementById("dashboard").classList.toggle("overlaid", name !== null);
+      for (const one of sheets) one.hidden = one.dataset.overlay !== name;
+      // The main landmark is the part that is on the screen; a web page may have only one.
+      document.getElementById("overlay").setAttribute("role", name === null ? "none" : "main");
+      this.emit("overlay", name);
+    }
+
+    closePage() {
+      this.openPage(null);
+    }
+
+    /** On a phone: shows all knobs in the lower half of the screen, or only the first. */
+    drawer(open) {
+      if (open) scrollTo({ top: 0 });
+      document.getElementById("dashboard").classList.toggle("drawer", open);
+      if (open) this.showCurve(false);
+    }
+
+    /** On a phone: shows the resonance curve together with the pictures on one screen, or below them. */
+    showCurve(shown) {
+      const { classList } = document.getElementById("dashboard");
+      if (classList.contains("curved") === shown) return;
+      classList.toggle("curved", shown);
+      if (shown) this.drawer(false);
+      scrollTo({ top: 0 });
+      this.emit("curved", shown);
+    }
+  }
+
+  return Object.seal(new Dashboard()); // no script can add a member
+})();

@@ -1,8 +1,0 @@
-"""Every picture as a function from a result and a theme to a Bokeh figure: for the page, a file and a notebook.
-
-One module for each picture, with a function of its name; the figures of the paper are in paper/. `theme.THEMES` has
-the themes; `file.page_of` makes a page that needs no server and no network. What a page adds to a figure as a
-computation goes on comes from functions beside it: `branches.BranchRows`, `diagram.cell_rows`. The dashboard draws two
-pictures itself, because they follow every knob and are updated in place: the main one (app/parts/stage; `motion` for
-files) and the resonance curve (app/curve/view.py; `curve` for files).
-"""

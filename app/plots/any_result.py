@@ -1,0 +1,164 @@
+"""The figure of any result, which `granchain.figure` returns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from bokeh.layouts import column
+from bokeh.models import LayoutDOM
+
+from granchain_core import (
+    Attractors,
+    BadInput,
+    Basins,
+    BifurcationCurve,
+    Branch,
+    Curve,
+    Diagram,
+    Driven,
+    Fit,
+    LyapunovSpectrum,
+    Observation,
+    Orbit,
+    Pulse,
+    RotationNumber,
+    Run,
+    Settled,
+    Spectrum,
+    StrobeDiagram,
+    Transfer,
+    WorkPrecision,
+)
+from granchain_core.experiment import Measured
+from granchain_core.inputs.checks import unknown_name
+from granchain_core.paper import (
+    EnergyMaps,
+    Observers,
+    Rig,
+    RigResponse,
+    ShakerAmplitude,
+    Trains,
+    Transmission,
+)
+
+from .accuracy import Annotations, accuracy
+from .attractors import attractors
+from .basins import basins
+from .branches import branches
+from .curve import curve
+from .diagram import diagram
+from .fit import fit
+from .lyapunov import lyapunov
+from .motion import motion
+from .multipliers import multipliers
+from .observation import observation
+from .paper import paper_figure, size_of
+from .rotation import rotation
+from .spectrum import spectrum
+from .strobe_diagram import strobe_diagram
+from .theme import THEMES, Theme
+from .transfer import transfer
+
+#: Width of a figure for which none is given [px]: that of a notebook's cell.
+WIDTH = 900
+#: Height of such a figure [px].
+HEIGHT = 420
+
+
+def _settled(found: Settled, theme: Theme) -> LayoutDOM:
+    return motion(found.run, theme)
+
+
+def _pulse(found: Pulse, theme: Theme) -> LayoutDOM:
+    return motion(found.run, theme)
+
+
+def _curve(found: Curve, theme: Theme, elastic: bool = False, measured: Measured | None = None) -> LayoutDOM:
+    if measured is not None and not isinstance(measured, Measured):
+        raise BadInput("A measured curve is what granchain_core.experiment.read_experiment returns for a table of "
+                       f"frequency and force, not a value of type {type(measured).__name__}.")
+    return curve([found], theme, elastic, measured)
+
+
+def _branch(found: Branch, theme: Theme, now: float | None = None) -> LayoutDOM:
+    return branches([found], theme, now)
+
+
+def both_maps(found: Diagram, theme: Theme, shown: str = "both",
+              curves: Sequence[BifurcationCurve] = ()) -> LayoutDOM:
+    """The map of forces above the map of regimes; `shown` is "force" or "regime" for one of them."""
+    if shown != "both":
+        return diagram(found, theme, shown, curves=curves)
+    both = (diagram(found, theme, one, curves=curves) for one in ("force", "regime"))
+    return column(*both, sizing_mode="stretch_both")
+
+
+def measured_accuracy(found: WorkPrecision, theme: Theme, asked: float | None = None) -> LayoutDOM:
+    """Error against time, with the cheapest way to the accuracy that the scene or `asked` wants."""
+    wanted = found.scene.accuracy if asked is None else asked
+    best = found.cheapest(wanted)
+    agreement = found.agreement if math.isfinite(found.agreement) else None
+    return accuracy(found.rows, Annotations(wanted, agreement, None if best is None else (best.wall_s, best.error)),
+                    theme)
+
+
+def _strobes(found: StrobeDiagram, theme: Theme, bead: int | None = None) -> LayoutDOM:
+    return strobe_diagram(found, found.scene.N if bead is None else bead, theme)
+
+
+#: The function that draws each class of results.
+DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
+    Run: motion, Settled: _settled, Driven: motion, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
+    Diagram: both_maps, Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum,
+    Transfer: transfer, LyapunovSpectrum: lyapunov, RotationNumber: rotation, StrobeDiagram: _strobes,
+    Basins: basins, Attractors: attractors,
+}
+_PAPER = (EnergyMaps, Observers, Rig, RigResponse, ShakerAmplitude, Trains, Transmission)
+#: Lists of results that are drawn over each other.
+_TOGETHER: dict[type, Callable[..., LayoutDOM]] = {Curve: curve, Branch: branches}
+
+
+def figure_of(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
+              **options: Any) -> LayoutDOM:
+    """The figure of a result with a size of its own; what `granchain.figure` says of it holds."""
+    drawn, size = _drawn(result, theme, options)
+    drawn.update(sizing_mode="fixed", width=width or size[0], height=height or size[1])
+    return drawn
+
+
+def stretched(result: Any, theme: str = "light", **options: Any) -> LayoutDOM:
+    """The figure of a result that fills its page."""
+    return _drawn(result, theme, options)[0]
+
+
+def _drawn(result: Any, theme: str, options: Mapping[str, Any]) -> tuple[LayoutDOM, tuple[int, int]]:
+    """The figure of a result, and the size in which it reads well."""
+    if theme not in THEMES:
+        raise unknown_name("theme", theme, THEMES)
+    draw, size = _drawing(result)
+    try:
+        drawn = draw(result, THEMES[theme], **options)
+    except TypeError as problem:
+        unknown = [name for name in options if repr(name) in str(problem)]
+        if not unknown:
+            raise
+        raise BadInput(f"The picture of a {type(result).__name__} has no option {unknown[0]!r}.") from None
+    return drawn, size
+
+
+def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
+    """The function that draws a result, and the size in which it reads well."""
+    if isinstance(result, _PAPER):
+        return paper_figure, size_of(result)
+    for kind, draw in DRAWERS.items():
+        if isinstance(result, kind):
+            return draw, (WIDTH, 2 * HEIGHT if kind is Diagram else HEIGHT)
+    if isinstance(result, Sequence) and not isinstance(result, str) and result:
+        for kind, draw in _TOGETHER.items():
+            if all(isinstance(one, kind) for one in result):
+                return draw, (WIDTH, HEIGHT)
+    raise BadInput(f"There is no picture of a {type(result).__name__}; there are those of "
+                   f"{', '.join(kind.__name__ for kind in DRAWERS)}, of lists of curves or branches, and of the "
+                   "results of granchain_core.paper.compute.")

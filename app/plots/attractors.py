@@ -1,0 +1,51 @@
+"""The steady states of one setting: largest output force over the share of random states that lead to each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from bokeh.models import ColumnDataSource, HoverTool, Range1d
+from bokeh.plotting import figure
+
+from granchain_core import Attractor
+
+from ..format import figures_of, in_words
+from .axes import force_scale
+from .regimes import REGIME_MARKS, regime_key
+from .theme import Theme
+from .themed import apply_theme, empty_figure, themed
+
+
+def attractors(found: Sequence[Attractor], theme: Theme) -> figure:
+    """A mark for each, by its regime; the bar is the standard error of its share.
+
+    Without random states the marks stand over their fraction of all starts.
+    """
+    drawn = any(one.share is not None for one in found)
+    starts = "random states" if drawn else "starts"
+    count = sum(len(one.origins) for one in found)
+    scale = force_scale("largest output force", max(one.max_output_force for one in found))
+    plot = empty_figure(name="attractors", min_border=4, x_range=Range1d(-4, 104),
+                        y_range=Range1d(0.0, 1.15 * max(one.max_output_force for one in found) / scale.factor))
+    for one in found:
+        key = regime_key(one.regime.name, one.regime.period)
+        marker, colour, size = REGIME_MARKS[key]
+        share = 100.0 * (len(one.origins) / count if one.share is None else one.share)
+        error = 100.0 * (one.share_error or 0.0)
+        words = one.share_words if drawn else f"{share:.0f} %"
+        source = ColumnDataSource({
+            "share": [share], "low": [share - error], "high": [share + error],
+            "force": [one.max_output_force / scale.factor], "motion": [one.regime.sentence],
+            "value": [in_words(one.max_output_force, "N", figures_of(one.force_errors.output))],
+            "starts": [", ".join(origin.name for origin in one.origins[:4])]}, name=key)
+        themed(plot.segment("low", "force", "high", "force", source=source), line_color="soft", line_width=1.2)
+        marks = plot.scatter("share", "force", source=source, marker=marker, size=size + 5, fill_color=colour,
+                             line_color=colour, line_width=1.5, legend_label=key)
+        plot.add_tools(HoverTool(renderers=[marks], tooltips=[
+            ("motion", "@motion"), ("largest output force", "@value"),
+            (starts if drawn else "of all starts", words), ("starts", "@starts")]))
+    plot.xaxis.axis_label, plot.yaxis.axis_label = f"{starts} that lead there (%)", scale.label
+    for legend in plot.legend:
+        legend.update(orientation="horizontal", padding=0, margin=2)
+    plot.add_layout(plot.legend[0], "below")
+    return apply_theme(plot, theme)

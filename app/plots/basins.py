@@ -1,0 +1,55 @@
+"""Basins of attraction in a plane of starts, coloured by steady state."""
+
+from __future__ import annotations
+
+import numpy as np
+from bokeh.models import ColumnDataSource, HoverTool
+from bokeh.palettes import Colorblind
+from bokeh.plotting import figure
+
+from granchain_core import Basins
+
+from ..format import in_words, prefixed
+from .axes import Scale
+from .theme import GREY, Theme
+from .themed import apply_theme, empty_figure
+
+#: Patterns beside the colours, so that the colours need not be told apart.
+_HATCHES = (" ", "/", "\\", ".", "+", "x", "o", "-")
+_FAILED = "the numbers failed, or it was stopped"
+
+
+def basins(found: Basins, theme: Theme) -> figure:
+    """The plane of starts; grey where the numbers failed or the computation was stopped."""
+    x, y, colours = _axis(*found.x), _axis(*found.y), Colorblind[8]
+    columns, rows = np.meshgrid(found.x[1] / x.factor, found.y[1] / y.factor)
+    number = found.number.ravel()
+    words = [f"{one.regime.sentence}; largest output force {in_words(one.max_output_force, 'N')}; "
+             f"{100.0 * share:.0f} % of the plane" for one, share in zip(found.attractors, found.shares, strict=True)]
+    plot = empty_figure(name="basins", min_border=4)
+    plot.grid.visible = False
+    width, height = _spacing(found.x[1] / x.factor), _spacing(found.y[1] / y.factor)
+    for i in sorted(set(number.tolist())):
+        there = number == i
+        source = ColumnDataSource(name=f"basin {i + 1}", data={"x": columns.ravel()[there], "y": rows.ravel()[there]})
+        colour, hatch, meaning = (colours[i % 8], _HATCHES[i % 8], words[i]) if i >= 0 else (GREY, "x", _FAILED)
+        cells = plot.rect("x", "y", width, height, source=source, line_color=None, fill_color=colour,
+                          hatch_pattern=hatch, hatch_alpha=0.5, legend_label=meaning)
+        plot.add_tools(HoverTool(renderers=[cells], tooltips=[("leads to", meaning)]))
+    plot.xaxis.axis_label, plot.yaxis.axis_label = x.label, y.label
+    for legend in plot.legend:
+        legend.update(padding=0, margin=2)
+    plot.add_layout(plot.legend[0], "below")
+    return apply_theme(plot, theme)
+
+
+def _axis(coordinate: str, values: np.ndarray) -> Scale:
+    """The axis of a coordinate at the start."""
+    factor, letter = prefixed(float(np.abs(values).max(initial=0.0)) or 1.0)
+    kind, unit = ("displacement", "m") if coordinate[0] == "u" else ("velocity", "m/s")
+    return Scale(f"{kind} of bead {coordinate[1:]} at the start", factor, letter + unit)
+
+
+def _spacing(values: np.ndarray) -> float:
+    """The width of a cell."""
+    return float(np.diff(values).mean()) if len(values) > 1 else 1.0

@@ -1,0 +1,132 @@
+"""A figure as PNG or SVG, drawn by BokehJS in headless Chromium.
+
+Bokeh's `export_png` and `export_svg` need Selenium and a driver beside the browser. Chromium alone is enough: it takes
+a picture of a page (`--screenshot`) and prints the final DOM of a page (`--dump-dom`), here with what BokehJS's
+`export("svg")` has put into it.
+"""
+
+from __future__ import annotations
+
+import html
+import os
+import re
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from textwrap import wrap
+
+from bokeh.models import GridPlot, LayoutDOM, Plot
+from PIL import Image
+
+from granchain_core import BadInput
+
+from .file import caption_height, captioned_html, html_of
+from .theme import Theme
+
+_PROGRAMS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome", "google-chrome-stable",
+             "chrome")
+_OPTIONS = ["--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--no-first-run", "--disable-sync",
+            "--disable-background-networking", "--virtual-time-budget=20000"]
+#: Size of the window minus that of the page [px]. The frame of the window takes some of it; the rest is cut off.
+_FRAME_ROOM = 200
+#: Longest time for one figure [s].
+_LONGEST_TIME = 120
+#: Put into the page: once everything is drawn, its SVG stands in an element of its own.
+_EXPORT = """<script>
+const wait = setInterval(() => {
+  const drawn = window.Bokeh?.documents?.[0];
+  if (!drawn?.is_idle || !Bokeh.index.roots?.length) return;
+  clearInterval(wait);
+  const { ctx } = Bokeh.index.roots[0].export("svg", true);
+  const pre = document.createElement("pre");
+  pre.id = "exported";
+  pre.textContent = ctx.get_serialized_svg(true);
+  document.body.append(pre);
+}, 50);
+</script></body>"""
+
+
+def browser() -> str:
+    """The browser that draws; `BadInput` in one sentence where there is none."""
+    found = next((path for name in _PROGRAMS if (path := shutil.which(name))), None)
+    if found is None:
+        raise BadInput("A PNG or SVG is drawn by Chromium or Chrome and none is on the PATH; install one (on Debian: "
+                       "apt install chromium), or write an HTML file, whose own menu saves a picture.")
+    return found
+
+
+def png_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int],
+           scale: float = 1.5) -> bytes:
+    """The figure in `size` [px] with its caption, `scale` times as many pixels as that."""
+    _without_tools(figure)
+    width, height = size[0], size[1] + caption_height(title, caption, size[0])
+    with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
+        image = Path(folder) / "picture.png"
+        # The page's body is as high as the image, whatever the window's own frame takes.
+        page = captioned_html(figure, title, caption, theme).replace(
+            "html, body { height: 100%;", f"html {{ height: 100%; }} body {{ width: {width}px; height: {height}px;")
+        _run(folder, page, f"--screenshot={image}", f"--force-device-scale-factor={scale}",
+             f"--window-size={width + _FRAME_ROOM},{height + _FRAME_ROOM}")
+        if not image.exists():
+            raise BadInput(f"{browser()} wrote no picture; write an HTML file instead.")
+        with Image.open(image) as whole:
+            whole.crop((0, 0, round(scale * width), round(scale * height))).convert("RGB").quantize(256).save(
+                image, optimize=True)
+        return image.read_bytes()
+
+
+def svg_of(figure: LayoutDOM, title: str, caption: str, theme: Theme, size: tuple[int, int]) -> str:
+    """A figure with its title and caption as the text of an SVG image of `size` [px]."""
+    _without_tools(figure)
+    for plot in _plots(figure):
+        plot.output_backend = "svg"
+    page = html_of(figure, title).replace("</body>", _EXPORT)
+    with tempfile.TemporaryDirectory(prefix="granchain-") as folder:
+        dom = _run(folder, page, "--dump-dom", f"--window-size={size[0]},{size[1]}")
+    found = re.search(r'<pre id="exported">(.*?)</pre>', dom, re.DOTALL)
+    if found is None:
+        raise BadInput(f"{browser()} drew no SVG; write an HTML file instead.")
+    return _with_caption(html.unescape(found[1]), title, caption, theme)
+
+
+def _plots(figure: LayoutDOM) -> list[Plot]:
+    return [*figure.select({"type": Plot}), *([figure] if isinstance(figure, Plot) else [])]
+
+
+def _without_tools(figure: LayoutDOM) -> None:
+    """An image has no buttons."""
+    for plot in _plots(figure):
+        plot.toolbar_location = None
+    for panels in [*figure.select({"type": GridPlot}), *([figure] if isinstance(figure, GridPlot) else [])]:
+        panels.toolbar_location = None
+
+
+def _with_caption(drawn: str, title: str, caption: str, theme: Theme) -> str:
+    """An SVG around the drawn one, with the caption's lines below."""
+    sizes = re.search(r'<svg[^>]* width="([\d.]+)" height="([\d.]+)"', drawn)
+    if sizes is None:
+        raise BadInput("The browser's SVG has no size; write an HTML file instead.")
+    width, height = float(sizes[1]), float(sizes[2])
+    lines = wrap(f"{title}. {caption}", int(width / 7.6))
+    text = "".join(f'<text x="16" y="{height + 22 + 20 * i:g}">{html.escape(line)}</text>'
+                   for i, line in enumerate(lines))
+    whole = height + 30 + 20 * len(lines)
+    return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}" height="{whole:g}" '
+            f'viewBox="0 0 {width:g} {whole:g}">'
+            f'<title>{html.escape(title)}</title><rect width="100%" height="100%" fill="{theme.card}"/>{drawn}'
+            f'<g font-family="system-ui, DejaVu Sans, sans-serif" font-size="14" fill="{theme.ink}">{text}</g></svg>\n')
+
+
+def _run(folder: str, page: str, *options: str) -> str:
+    """Open a page in the browser; returns what it prints."""
+    file = Path(folder) / "page.html"
+    file.write_text(page, encoding="utf-8")
+    try:
+        done = subprocess.run([browser(), *_OPTIONS, f"--user-data-dir={folder}/profile", *options, file.as_uri()],
+                              capture_output=True, text=True, timeout=_LONGEST_TIME, check=False,
+                              env={**os.environ, "HOME": folder})
+    except subprocess.TimeoutExpired:
+        raise BadInput(f"{browser()} did not finish the picture within {_LONGEST_TIME} s; "
+                       "write an HTML file.") from None
+    return done.stdout

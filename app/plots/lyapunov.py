@@ -1,0 +1,31 @@
+"""Lyapunov exponents by size with their standard errors; those that are not resolved are hollow."""
+
+from __future__ import annotations
+
+import numpy as np
+from bokeh.models import ColumnDataSource, HoverTool, Span
+from bokeh.plotting import figure
+
+from granchain_core import LyapunovSpectrum
+
+from .theme import Theme
+from .themed import apply_theme, empty_figure, themed
+
+
+def lyapunov(found: LyapunovSpectrum, theme: Theme) -> figure:
+    """The exponents per drive period; above the line neighbours separate."""
+    rank = np.arange(1, len(found.exponents) + 1)  # as the command numbers them
+    source = ColumnDataSource({"rank": rank, "exponent": found.exponents, "error": found.errors,
+                               "low": found.exponents - found.errors, "high": found.exponents + found.errors,
+                               "fill": np.where(rank <= found.resolved, 1.0, 0.0)}, name="exponents")
+    plot = empty_figure(name="lyapunov", min_border=4)
+    plot.add_layout(themed(Span(location=0.0, dimension="width"), line_color="soft", line_width=1.0))
+    themed(plot.segment("rank", "low", "rank", "high", source=source), line_color="accent", line_width=1.4)
+    dots = plot.scatter("rank", "exponent", source=source, size=8, fill_alpha="fill")
+    themed(dots, fill_color="accent", line_color="accent")
+    plot.add_tools(HoverTool(renderers=[dots], tooltips=[
+        ("rank", "@rank"), ("exponent per drive period", "@exponent{0.0000} ± @error{0.0000}")]))
+    plot.xaxis.axis_label, plot.yaxis.axis_label = "rank", "Lyapunov exponent per drive period"
+    dimension = found.dimension_words()
+    plot.title.text = f"Kaplan–Yorke dimension {dimension}; hollow: upper bounds"
+    return apply_theme(plot, theme)

@@ -1,0 +1,42 @@
+"""An observation: the measured input force, the computed output force, and the measured one if there is one."""
+
+from __future__ import annotations
+
+import numpy as np
+from bokeh.models import ColumnDataSource, HoverTool
+from bokeh.plotting import figure
+
+from granchain_core.observe import Observation
+
+from ..format import prefixed
+from .axes import force_scale
+from .theme import Theme
+from .themed import apply_theme, empty_figure, themed
+
+
+def observation(found: Observation, theme: Theme) -> figure:
+    """Input force, computed output force and, where it was measured, the measured one over time."""
+    measured = found.record.output
+    forces = [found.input_force, found.output_force, *([] if measured is None else [measured])]
+    scale = force_scale("force", max(float(np.nanmax(np.abs(one))) for one in forces))
+    second, letter = prefixed(float(np.abs(found.time).max()))
+    plot = empty_figure(name="observation", min_border=4)
+    columns = {"time": found.time / second, "input": forces[0] / scale.factor, "output": forces[1] / scale.factor}
+    lines: list[tuple[str, str, str, float, list[int]]] = [
+        ("input", "input force, given", "input", 1.8, []), ("output", "output force, computed", "output", 2.4, [])]
+    if measured is not None:
+        columns["measured"] = measured / scale.factor
+        lines.append(("measured", "output force, measured", "ink", 1.8, [5, 4]))
+    source = ColumnDataSource(columns, name="forces")
+    for name, words, role, width, dash in lines:
+        line = plot.line("time", name, source=source, line_dash=dash or "solid", legend_label=words)
+        themed(line, line_color=role, line_width=width)
+        plot.add_tools(HoverTool(renderers=[line], mode="vline", tooltips=[
+            ("time", f"@time{{0.0000}} {letter}s"), (words, f"@{name}{{0.0000}} {scale.unit}")]))
+    plot.title.text = (f"relative error {found.integration_error:.0e} of integration, "
+                       f"{found.interpolation_error:.0e} between samples")
+    plot.x_range.range_padding = 0.0
+    plot.xaxis.axis_label, plot.yaxis.axis_label = f"time ({letter}s)", scale.label
+    plot.legend.update(orientation="horizontal", padding=1, margin=2, click_policy="hide")
+    plot.add_layout(plot.legend[0], "above")
+    return apply_theme(plot, theme)

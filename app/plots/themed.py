@@ -1,0 +1,68 @@
+"""Figures in a theme: an empty one, what of it follows the theme, and how a theme is applied."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from bokeh.models import Model, Range1d
+from bokeh.plotting import figure
+
+from .theme import Theme
+
+TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
+
+
+def empty_figure(tools: str = TOOLS, **options: Any) -> figure:
+    """An empty figure with the tools that every figure has; `apply_theme` gives it its colours."""
+    plot = figure(tools=tools, output_backend="canvas", outline_line_color=None,
+                  **{"sizing_mode": "stretch_both", "toolbar_location": "right", **options})
+    plot.toolbar.logo = None
+    plot.toolbar.autohide = True
+    plot.title.text_font_style = "normal"
+    plot.title.standoff = 4
+    for axis in (*plot.xaxis, *plot.yaxis):
+        axis.axis_line_color = axis.major_tick_line_color = axis.minor_tick_line_color = None
+        axis.axis_label_text_font_style = "normal"
+        axis.axis_label_standoff = 4
+        axis.major_label_standoff = 3
+    return plot
+
+
+def themed(model: Any, **roles: str | float) -> Any:
+    """Mark what follows the theme: a string is a colour's role, a number a line width in pixels. Returns `model`."""
+    model.tags = [*model.tags, {"theme": roles}]
+    return model
+
+
+def apply_theme(plot: figure, theme: Theme) -> figure:
+    """Give a figure, and all in it that `themed` has named, the colours and widths of a theme. Returns `plot`."""
+    plot.background_fill_color = plot.border_fill_color = theme.card
+    plot.grid.grid_line_color = theme.faint
+    small = f"{theme.small}px"
+    plot.title.update(text_color=theme.soft, text_font_size=small)
+    for axis in (*plot.xaxis, *plot.yaxis):
+        axis.update(axis_label_text_color=theme.soft, major_label_text_color=theme.ink,
+                    axis_label_text_font_size=small, major_label_text_font_size=small)
+    for legend in plot.legend:
+        legend.update(label_text_color=theme.ink, label_text_font_size=small, background_fill_color=theme.card,
+                      border_line_color=None)
+    for model, roles in _followers(plot):
+        model.update(**{name: getattr(theme, role) if isinstance(role, str) else role * theme.line
+                        for name, role in roles.items()})
+    return plot
+
+
+def _followers(plot: figure) -> Iterator[tuple[Model, dict[str, str | float]]]:
+    for model in (*plot.renderers, *plot.center):
+        for tag in model.tags:
+            if isinstance(tag, dict) and "theme" in tag:
+                yield getattr(model, "glyph", model), tag["theme"]
+
+
+def span_of(low: float, high: float, room: float = 0.07) -> Range1d:
+    """A range with some room on both sides; one that is empty is widened."""
+    if not high > low:
+        wide = 0.1 * abs(high) or 1.0
+        low, high = low - wide, high + wide
+    return Range1d(low - room * (high - low), high + room * (high - low))

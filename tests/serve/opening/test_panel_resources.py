@@ -1,0 +1,42 @@
+"""A page of the server has the scripts and style sheets that Panel would give it."""
+
+from __future__ import annotations
+
+import re
+
+import panel.io.resources as resources
+import panel.io.server as pages
+import pytest
+from listening import Listening
+
+from app.serve.opening.panel_resources import remember_resources
+from app.server import Access
+
+
+@pytest.fixture
+def own_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Panel's own functions are there, whatever server another test has started, and what was there is afterwards."""
+    for name in ("bundle_resources", "patch_model_css"):
+        monkeypatch.setattr(pages, name, getattr(resources, name))
+
+
+def page_of(one: Listening) -> str:
+    """The page as it is served, without what is every visitor's own."""
+    status, _, text = one.ask()
+    assert status == 200
+    text = re.sub(r'"token":"[^"]+"', "", text)
+    numbers: dict[str, int] = {}
+    return re.sub(r"\bp\d+\b|[0-9a-f-]{36}", lambda found: f"p{numbers.setdefault(found[0], len(numbers))}", text)
+
+
+@pytest.mark.usefixtures("own_way")
+def test_remembered_resources_give_panels_page() -> None:
+    one = Listening(Access())
+    try:
+        panels = page_of(one)
+        remember_resources()
+        assert pages.bundle_resources.known == {}
+        assert [page_of(one) for _ in range(3)] == [panels] * 3
+        assert len(pages.bundle_resources.known) == 1
+    finally:
+        one.stop()
