@@ -119,7 +119,7 @@ class Twin:
 
     @property
     def in_step(self) -> bool:
-        """Whether the observer began apart from its chain and is in step with it, within rounding, for a whole period."""
+        """Whether the observer began apart from its chain and has been in step with it, to rounding, for a period."""
         samples = round(self.scene.period / (self.time[1] - self.time[0]))
         rounding = SYNCHRONISED * np.sqrt(2.0 * self.scene.N)  # that of one number, in a distance of 2N of them
         return bool(self.distance[0] > LEAST_DISTANCE and self.distance[-samples:].max() < rounding)

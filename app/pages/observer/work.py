@@ -15,8 +15,8 @@ from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import (
     SYNCHRONISED,
     linear_window,
+    multipliers_of,
     observer_start,
-    rates,
 )
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.scene.state import rest
