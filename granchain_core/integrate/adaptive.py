@@ -109,4 +109,4 @@ class Dop853Stepper:
         """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
         row = self.scaled.bodies
         first = next((bead for bead in (first_not_finite(slope, row) for slope in self.work.k) if bead), 0)
-        return first or max(1, first_not_finite(y, row)), None
+        return first or first_not_finite(y, row), None

@@ -93,10 +93,11 @@ class ChainInPieces:
         if status == CANCELLED:
             raise Cancelled
         if status == NOT_FINITE:
-            bead = max(1, first_not_finite(y, row))
-            raise NumbersFailed(f"The motion of bead {bead} stopped being a finite number at about "
+            bead = first_not_finite(y, row)
+            whose = f" of bead {bead}" if bead else ""
+            raise NumbersFailed(f"The motion{whose} stopped being a finite number at about "
                                 f"{self._time[done - 1]:.6g} s; look at the force there, or lower the damping.",
-                                "not-finite")
+                                "not-finite", bead or None)
         return samples
 
 

@@ -34,8 +34,9 @@ class Failure:
         when = f"at about {time:.6g} s ({self.periods:.6g} drive periods)"
         if self.status == NOT_FINITE:
             where = "" if self.step is None else f" in step {self.step} of its period"
-            return NumbersFailed(f"The motion of bead {self.bead} stopped being a finite number {when}{where}; "
-                                 f"lower the damping or ask for a higher accuracy.", "not-finite", self.bead,
+            whose = f" of bead {self.bead}" if self.bead else ""
+            return NumbersFailed(f"The motion{whose} stopped being a finite number {when}{where}; "
+                                 f"lower the damping or ask for a higher accuracy.", "not-finite", self.bead or None,
                                  time, self.step, self.cost)
         if self.status == STEP_TOO_SMALL:
             return NumbersFailed(f"The step of {self.method} became too small {when}; ask for less accuracy than "

@@ -2,7 +2,7 @@
 
 The kernels test for numbers that are not finite once a sample or a period, because the test costs as much as a bead.
 When one is found, the period is repeated from its start and bisected until the step is known; in that step the failure
-has not spread yet, and its earliest stage identifies the bead where it began.
+has not spread yet, and its earliest stage identifies the bead where it began. 0 stands for a bead that is not known.
 
 A period of a long chain, or of a slow drive, may take minutes. It is computed in parts, so that it can be cancelled at
 any instant and other computations may go first (parts.py).
@@ -157,7 +157,7 @@ class FixedStep:
         """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it."""
         n, row = self.grid, self.scaled.bodies
         if start is None:
-            return max(1, first_not_finite(y, row)), None
+            return first_not_finite(y, row), None
         here, slope, first = start
         low = first + round(done * n)
         here, slopes = self._again(here, slope, first, low, vectors=True)
@@ -170,10 +170,27 @@ class FixedStep:
                 high = middle
             else:
                 low, here, slope = middle, there, slopes[0]
-        _, slopes = self._again(here, slope, low, high)
-        end, _ = self._again(here, slope, low, high, vectors=True)
         # each stage spreads to the next beads only: the earliest stage names the bead
-        return next((b for b in (first_not_finite(k, row) for k in (*slopes[1:], end)) if b), 1), low % n
+        stages = self._stages(here, slope, low % n)
+        if not any(first_not_finite(k, row) for k in stages):  # what failed is not in the equations, as in a table
+            _, slopes = self._again(here, slope, low, high)
+            end, _ = self._again(here, slope, low, high, vectors=True)
+            stages = [*slopes[1:], end]
+        return next((b for b in (first_not_finite(k, row) for k in stages) if b), 0), low % n
+
+    def _stages(self, y: np.ndarray, slope: np.ndarray, step: int) -> list[np.ndarray]:
+        """Slopes of the later three stages of a step that is not split.
+
+        A method that splits its step at events writes the stages of each part over those of the part before.
+        """
+        slots, forces, found, before = self.scaled.slots, self.work.forces, [], slope
+        for part in (0.5, 0.5, 1.0):
+            stage, now = y + part * self.h * before, np.zeros_like(slope)
+            _EVALUATE_AT_PHASE(self._structure, slots, 2.0 * np.pi * (step + part) / self.grid, stage, now, forces,
+                               False)
+            found.append(now)
+            before = now
+        return found
 
     def _again(self, y: np.ndarray, slope: np.ndarray, first: int, last: int,
                vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:

@@ -6,38 +6,75 @@ import numpy as np
 import pytest
 
 from granchain_core import NumbersFailed, run, scene
-from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate import METHODS, Engine, Setting
 from granchain_core.integrate.failure import Failure
 from granchain_core.kernels.flow import run as flow
 from granchain_core.kernels.flow.attempt import FlowProblem
-from granchain_core.kernels.status import CHATTER, DONE, TOO_MANY_STEPS
+from granchain_core.kernels.status import CHATTER, DONE, NOT_FINITE, TOO_MANY_STEPS
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
+#: Methods whose failures are located.
+LOCATED = ["rk4", "rk4-split", "dop853", "dop853-root"]
 
-@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853", "dop853-root"])
+
+@pytest.mark.parametrize("method", LOCATED)
 @pytest.mark.parametrize("row", ["displacement", "w"])
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 @pytest.mark.parametrize("bead", [1, 6, 11])
-def test_an_injected_nan_or_infinity_ends_the_run_with_its_sentence(method, row, value, bead):
-    """Whatever bead and variable it is put into, the next record says that the numbers failed."""
+def test_no_call_begins_from_a_number_that_is_not_finite(method, row, value, bead):
+    """Whatever bead and variable it is put into, the next call names the bead before a kernel runs."""
     engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 8)
     engine.record(12)
     engine.y[bead + (13 if row == "w" else 0)] = value
+    for call in (lambda: engine.record(8), lambda: engine.periods(1)):
+        with pytest.raises(NumbersFailed, match=f"bead {bead} ") as caught:
+            call()
+        assert caught.value.status == "not-finite" and "s (" in caught.value.sentence
+
+
+def break_contact(engine: Engine, contact: int) -> None:
+    """A contact whose stiffness is no number: what fails then, fails in the kernel."""
+    stepper = engine.stepper
+    stepper.scaled.slots.chain.stiffness[contact] = np.nan
+    if METHODS[engine.setting.method].adaptive:
+        stepper.use(stepper.scaled)
+    else:
+        stepper.work = stepper.work._replace(simd=stepper.new_simd_workspace())
+
+
+@pytest.mark.parametrize("method", LOCATED)
+@pytest.mark.parametrize(("samples", "f"), [(0, 1130.0), (5, 1130.0), (31, 340.0)])
+@pytest.mark.parametrize("contact", [0, 4, 8, 11])
+def test_the_bead_beside_a_broken_contact_is_named(method, samples, f, contact):
+    """The first step from rest, and the one after 31 samples at 340 Hz, are split at contact events."""
+    engine = Engine(scene("sec2").evolve(f=f), Setting(method, tolerance=1e-6), 8)
+    if samples:
+        engine.record(samples)
+    break_contact(engine, contact)
     with pytest.raises(NumbersFailed) as caught:
         engine.record(8)
-    assert caught.value.status == "not-finite"
-    assert "bead" in caught.value.sentence
-    assert "s (" in caught.value.sentence
+    assert caught.value.bead in {max(1, contact), min(11, contact + 1)}
+    assert f"bead {caught.value.bead} stopped being a finite number" in caught.value.sentence
 
 
-@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853", "dop853-root"])
-def test_the_sentence_names_the_bead_that_failed(method):
-    """Not the first one by default: exit status 3 promises which bead, when and why."""
+@pytest.mark.parametrize("method", LOCATED)
+def test_the_kernel_of_whole_periods_looks_as_well(method):
+    engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 1)
+    engine.periods(2)
+    break_contact(engine, 4)
+    with pytest.raises(NumbersFailed, match=r"bead [45] stopped being a finite number"):
+        engine.periods(1)
+
+
+@pytest.mark.parametrize("method", LOCATED)
+def test_a_bead_that_is_not_found_is_not_named(method):
+    """Where every number is finite, none is called the first that failed."""
     engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 8)
-    engine.record(12)
-    engine.y[9] = np.nan
-    with pytest.raises(NumbersFailed, match="bead 9 "):
-        engine.record(8)
+    engine.record(8)
+    assert engine.stepper.locate_failure(engine.y, None, 0.0)[0] == 0
+    problem = Failure(NOT_FINITE, 1.0, 0, None, {}, scene("sec2"), method).error
+    assert isinstance(problem, NumbersFailed)
+    assert problem.bead is None and problem.sentence.startswith("The motion stopped being a finite number at about")
 
 
 def test_the_sentence_names_the_time_since_the_start():
@@ -47,16 +84,6 @@ def test_the_sentence_names_the_time_since_the_start():
     engine.y[1:12] = np.nan
     with pytest.raises(NumbersFailed, match=r"\(2\d(\.\d+)? drive periods\)"):
         engine.periods(2)
-
-
-@pytest.mark.parametrize("method", ["rk4", "rk4-split", "dop853", "dop853-root"])
-def test_a_nan_in_the_periods_kernel_is_caught_too(method):
-    """The kernel for settling looks as well as the one for recording."""
-    engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 1)
-    engine.periods(2)
-    engine.y[4] = np.nan
-    with pytest.raises(NumbersFailed, match="bead 4 stopped being a finite number"):
-        engine.periods(1)
 
 
 @pytest.mark.parametrize("accuracy", [1e-3, 1e-5, 1e-8])

@@ -28,7 +28,7 @@ def checked(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 def advance(method: str, changes: dict, account: bool = False) -> None:
     chain = scene("sec2").evolve(f=2000.0, **changes)
-    engine = Engine(chain, Setting(method), 4, account)
+    engine = Engine(chain, Setting(method, tolerance=1e-6), 4, account)
     engine.start(State(np.zeros(chain.N), np.full(chain.N, 0.01)))
     engine.record(6)
     engine.record(2)
@@ -36,7 +36,7 @@ def advance(method: str, changes: dict, account: bool = False) -> None:
     assert np.isfinite(engine.maxima).all()
 
 
-@pytest.mark.parametrize("method", [name for name, method in METHODS.items() if not method.adaptive])
+@pytest.mark.parametrize("method", METHODS)
 def test_every_method(method: str) -> None:
     advance(method, {})
 
