@@ -16,7 +16,7 @@ from ..kernels.dop853_root.chain import STATE_ROWS, Dop853RootWorkspace, Stages
 from ..kernels.dop853_root.run import run_dop853_root
 from ..kernels.forces.largest import new_log
 from ..kernels.samples import KernelIO, Samples
-from ..kernels.simd.vector import VECTOR_WIDTH, aligned
+from ..kernels.simd.vector import BLOCK_WIDTH, aligned
 from .adaptive import Dop853Stepper
 from .fixed import SHORT_CHAIN, chain_width, short_chain_workspace
 from .scaling import ScaledChain
@@ -73,7 +73,7 @@ def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:
                        f"one.{named}")
 
     def rows(count: int) -> Stages:
-        return Stages(aligned(count, width), aligned(count, width), *(aligned(count, VECTOR_WIDTH) for _ in range(2)))
+        return Stages(aligned(count, width), aligned(count, width), *(aligned(count, BLOCK_WIDTH) for _ in range(2)))
 
     return Dop853RootWorkspace(short_chain_workspace(scaled, width), rows(ALL_STAGES), rows(7), rows(1),
                            aligned(STATE_ROWS, width), aligned(1, width), np.zeros(8))

@@ -28,7 +28,7 @@ from ..kernels.rk4.run import RunRecord, run_steps
 from ..kernels.rk4.short_chain import CHAIN_WIDTHS, STATE_ROWS, STEPS_IN_BLOCK, ShortChain
 from ..kernels.rk4.step import DriveTable, Rk4Workspace
 from ..kernels.samples import KernelIO, Samples, first_not_finite
-from ..kernels.simd.vector import VECTOR_WIDTH, aligned
+from ..kernels.simd.vector import BLOCK_WIDTH, aligned
 from ..kernels.step_ends import END_ROWS
 from .parts import periods_in_parts, samples_in_parts, steps_in_part
 from .scaling import ScaledChain
@@ -248,13 +248,13 @@ def short_chain_workspace(scaled: ScaledChain, width: int) -> ShortChain:
 
 def _long_chain(scaled: ScaledChain) -> LongChain:
     """The workspace of a chain in blocks of eight bodies."""
-    slots, blocks = scaled.slots, -(-scaled.bodies // VECTOR_WIDTH)
+    slots, blocks = scaled.slots, -(-scaled.bodies // BLOCK_WIDTH)
 
     def padded(values: np.ndarray) -> np.ndarray:
-        return np.pad(values, (0, blocks * VECTOR_WIDTH - len(values))).reshape(blocks, VECTOR_WIDTH)
+        return np.pad(values, (0, blocks * BLOCK_WIDTH - len(values))).reshape(blocks, BLOCK_WIDTH)
 
     def empty(rows: int) -> np.ndarray:
-        return np.zeros((rows, VECTOR_WIDTH))
+        return np.zeros((rows, BLOCK_WIDTH))
 
     preload = None if slots.preload is None else type(slots.preload)(padded(slots.preload.static))
     return LongChain(padded(slots.chain.inverse_mass), padded(slots.chain.stiffness), preload,

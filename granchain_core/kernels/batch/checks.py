@@ -48,6 +48,8 @@ _MOST_EXTRAPOLATIONS = 6
 _DISTURBANCE = 1e-4
 #: [period n] A batch: orbits in the test of that disturbance.
 _TEST_ORBITS = 16
+#: [no threshold] Orbits from the second quarter of that test to the last, which are compared.
+_ORBITS_BETWEEN_QUARTERS = _TEST_ORBITS // 2
 #: [period n] A batch: largest part of the disturbance that may be left at the end of the test, relative to its first
 #: quarter.
 _PART_LEFT = 0.97
@@ -173,7 +175,7 @@ def judge_disturbance(state, member):
         last = there
     if last <= _PART_LEFT * first:
         move_member(state, member, state.state_before[member])
-        decay = (late / middle) ** (1.0 / _TEST_ORBITS) if middle > 0.0 else 0.0  # squares, half of the orbits apart
+        decay = (late / middle) ** (0.5 / _ORBITS_BETWEEN_QUARTERS) if middle > 0.0 else 0.0  # of squares
         decay = min(decay, _SLOWEST_REPORTED_DECAY)
         state.last_check[member, CHECK_DECAY] = max(state.last_check[member, CHECK_DECAY], decay)
         return True
@@ -213,7 +215,7 @@ def check_fine(state, member):
         fine[FINE_EXTRAPOLATIONS] = _MOST_EXTRAPOLATIONS
         return False
     moved = 0.0
-    for q in range(1, 3):
+    for q in range(1, 3):  # the forces on the wall, the last to come to rest
         largest = largest_force(state, member, n, q)
         moved = max(moved, abs(largest - fine[FINE_FORCES + q]) / largest if largest > 0.0 else 0.0)
     close = last_check[CHECK_DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)

@@ -17,12 +17,16 @@ from ..equations.body_forces import force_on_bead
 from ..forces.crossings import Approach, brief_touch, closing_rate
 from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, update_batch_peak
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
-from ..simd.vector import VECTOR_WIDTH, blank, load_batch, positive_mask, store
+from ..simd.vector import blank, load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
 
 
 class Values(NamedTuple):
-    """Values of the members' scenes. What is one number per scene is a vector in a register."""
+    """Values of the members' scenes; what is one number per scene is a vector in a register.
+
+    `wall` is the stiffness of the wall's contact, `slots` the effects with a vector for each number, `unequal` masses
+    and stiffnesses (`Unequal`) or None, `last` the number of the last contact.
+    """
 
     wall: Any
     slots: Any
@@ -53,7 +57,7 @@ def by_multipliers(d):
 
 
 #: How the last of three roots is taken. The shares that measured best: docs/benchmarks.md, "The step of a batch".
-third_root = by_multipliers if BATCH_SIZE == VECTOR_WIDTH else by_divider
+third_root = by_multipliers if BATCH_SIZE == 8 else by_divider
 
 
 @inline_llvm

@@ -1,4 +1,4 @@
-"""The decorators of kernels and the options they are compiled with; cache.py decides where compiled code is kept.
+"""The decorators of kernels and the options they are compiled with; cache.py keeps what is compiled.
 
 * `nogil`, so that threads really run kernels side by side; not for brief kernels (`brief_kernel`).
 * No `nnan`/`ninf`: a NaN must stay visible. With the flags of `FAST_MATH` sums are vectorised and `x + 0.0`
@@ -23,8 +23,8 @@ from .link_only import compiler_options
 
 #: What the compiler may do with floating-point numbers: not assume that none is NaN or infinite.
 FAST_MATH = ("nsz", "arcp", "contract", "reassoc")
-#: Kernels allocate nothing, so reference counting is off; they are never passed as function pointers, so they need no C
-#: entry. Both leave less code to compile and to run.
+#: Kernels allocate nothing, so reference counting is off. Nothing calls them by C's convention, not even a kernel that
+#: calls another by its address, so they need no C entry. Both leave less code to compile and to run.
 _OPTIONS: Any = {"fastmath": set(FAST_MATH), "error_model": "numpy", "_nrt": False,
                  "no_cfunc_wrapper": True}
 #: A function that only kernels call needs no entry for Python either, nor machine code of its own.

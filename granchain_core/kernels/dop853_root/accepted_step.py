@@ -27,8 +27,8 @@ _OVERFLOW_STEP = 1e-9
 ATTEMPTS = 60
 
 
-class RunConstants(NamedTuple):
-    """What stays the same throughout a run: chain, method, workspace and counters; p of the time transform.
+class RunContext(NamedTuple):
+    """What the steps of a run share: chain, method, workspace and counters; p of the time transform.
 
     `last` is the number of the last contact, and of beads. Points of the grid are `spacing` apart, and one that is
     missed by at most `near` is passed; each `every`-th is recorded, none where it is 0.
@@ -83,75 +83,78 @@ def is_too_small(dt, t, beta):
 
 
 @inline_numba
-def new_units(constants, point, scale):
+def new_units(context, point, scale):
     """Raise the scale of the tolerance to the largest values at a point; returns the `Units` of the errors."""
     for q in range(2):
         largest = largest_of(abs(with_first(point.u if q == 0 else point.w, 0.0)))
         scale[q] = max(scale[q], largest)
-    tolerance = constants.method.tolerance
-    return Units(1.0 / (tolerance * scale[0]), 1.0 / (tolerance * scale[1]), 2.0 * constants.last)
+    tolerance = context.method.tolerance
+    return Units(1.0 / (tolerance * scale[0]), 1.0 / (tolerance * scale[1]), 2.0 * context.last)
 
 
 @inline_numba
-def accepted_attempt(constants, begin, chosen, dt, units):
+def accepted_attempt(context, begin, chosen, dt, units):
     """Shrink a step until its error is tolerable, in the time next to the event of contact `chosen`, or in t (−1).
 
-    Returns (status, step, its size in time as it was tried).
+    Returns (status, step, dt). dt is nominal: the next step is planned from it, and it shrinks by the same factor as
+    the step in ξ, though next to an event their ratio is not constant.
     """
-    counts = constants.out.counts
-    transform, q, h, limited, pace = transform_at(constants.values, begin.closed, chosen), 0.0, dt, False, 1.0
+    counts = context.out.counts
+    transform, q, h, limited, pace = transform_at(context.values, begin.closed, chosen), 0.0, dt, False, 1.0
     if chosen >= 0:
-        q = nonnegative_root(at(begin.rates.overlap, chosen), constants.power)
-        pace, _, _ = powers(constants.power, q)
-        h, limited = size_in_xi(constants.power, q, at(begin.rates.rate, chosen), dt)
+        q = nonnegative_root(at(begin.rates.overlap, chosen), context.power)
+        pace, _, _ = powers(context.power, q)
+        h, limited = size_in_xi(context.power, q, at(begin.rates.rate, chosen), dt)
     start, status = Point(begin.point.u, begin.point.w, splat8(q), splat8(begin.t)), DONE
     while True:
-        error, end, end_rates = attempt(constants.values, constants.driver, constants.work, transform, start,
-                                        begin.rates, h, units)
+        square, end, end_rates = attempt(context.values, context.driver, context.work, transform, start,
+                                         begin.rates, h, units)
         counts[EVALUATIONS] += STAGES
-        if error <= 1.0:
+        if square <= 1.0:
             break
         counts[REJECTED] += 1
-        factor, limited = _SHRINK, True  # an overflow: ξ covers far more time than it should
-        if isfinite(error):
-            factor = max(_SHRINK, _SAFETY_AGAIN * inverse_sixteenth_root(error))
+        limited = True
+        if isfinite(square):
+            factor = max(_SHRINK, _SAFETY_AGAIN * inverse_sixteenth_root(square))
         elif dt < _OVERFLOW_STEP:
             status = NOT_FINITE
             break
+        else:
+            factor = _SHRINK  # an overflow: ξ covers far more time than it should
         h, dt = h * factor, dt * factor
-        if is_too_small(dt, begin.t, constants.beta):
+        if is_too_small(dt, begin.t, context.beta):
             status = STEP_TOO_SMALL
             break
     end_pace = 1.0
     if chosen >= 0:
-        end_pace, _, _ = powers(constants.power, at(end.q, 0))
-    return status, StepInXi(transform, h, start, begin.rates, pace, end, end_rates, end_pace, error, limited), dt
+        end_pace, _, _ = powers(context.power, at(end.q, 0))
+    return status, StepInXi(transform, h, start, begin.rates, pace, end, end_rates, end_pace, square, limited), dt
 
 
 @inline_numba
-def accepted_step(constants, begin, chosen, dt, units, g):
+def accepted_step(context, begin, chosen, dt, units, g):
     """An accepted step past point g of the grid, in which no contact opens but the one its time transform is made for.
 
-    A release that the step did not aim at is aimed at in another attempt. Returns (status, `CheckedStep`, size in time
-    as it was tried).
+    A release that the step did not aim at is aimed at in another attempt. Returns (status, `CheckedStep`, dt), with dt
+    as in `accepted_attempt`.
     """
-    slots, work, values, counts = constants.slots, constants.work, constants.values, constants.out.counts
+    slots, work, values, counts = context.slots, context.work, context.values, context.out.counts
     attempts = 1
     while True:
-        status, step, dt = accepted_attempt(constants, begin, chosen, dt, units)
+        status, step, dt = accepted_attempt(context, begin, chosen, dt, units)
         forces, contact, x, prepared, exceeds = begin.forces, -1, 2.0, False, False
         if status == DONE:
-            crossed, turned = changes_in(step, begin.bits, constants.last + 1)
-            turned = may_change(step, constants.power, begin.bits, turned)
+            crossed, turned = changes_in(step, begin.bits, context.last + 1)
+            turned = may_change(step, context.power, begin.bits, turned)
             changes = crossed | turned != 0
-            prepared = changes or (g + 1) * constants.spacing <= at(step.end.t, 0) + constants.near
-            if constants.every > 0:
-                forces = end_forces(values, constants.driver, step.end, step.end_rates, constants.last)
+            prepared = changes or (g + 1) * context.spacing <= at(step.end.t, 0) + context.near
+            if context.every > 0:
+                forces = end_forces(values, context.driver, step.end, step.end_rates, context.last)
                 if not prepared:
                     exceeds = may_exceed(in_xi(begin.forces, step.pace), in_xi(forces, step.end_pace), step.h,
-                                         constants.out.log.peaks)
+                                         context.out.log.peaks)
             if prepared or exceeds:
-                prepare_dense_rows(values, constants.driver, work, step.transform, step.start, step.end, step.h)
+                prepare_dense_rows(values, context.driver, work, step.transform, step.start, step.end, step.h)
                 counts[EVALUATIONS] += DENSE_EVALUATIONS
             if changes:
                 contact, x = first_event(slots, work, step, begin.bits, crossed, turned)
@@ -163,7 +166,7 @@ def accepted_step(constants, begin, chosen, dt, units, g):
         if attempts > 2:
             dt *= 0.5
         attempts += 1
-        if attempts > ATTEMPTS or is_too_small(dt, begin.t, constants.beta):
+        if attempts > ATTEMPTS or is_too_small(dt, begin.t, context.beta):
             status = STEP_TOO_SMALL
             break
     return status, CheckedStep(step, forces, contact, min(x, 1.0), prepared, exceeds), dt

@@ -5,10 +5,10 @@ Taylor series in t there; the same holds before a release. It has one in ξ, wit
 
     q = δ_c^{1/p},    dt/dξ = q^{p−1},    dq/dξ = δ̇_c/p
 
-and p as in flow/event_time.py. q and t are integrated along with the chain, and the forces of contact c are powers of
-q. At a release q passes through zero with everything else smooth, so that a step may go beyond the release, which is
-then a root on the step's dense output: nothing is repeated. Contacts that are open stay so within a step, for the same
-reason. Far from events ξ is the time.
+and p as in flow/event_time.py. (Sundman transformed time so in celestial mechanics.) q and t are integrated along with
+the chain, and the forces of contact c are powers of q. At a release q passes through zero with everything else smooth,
+so that an attempt may go beyond the release, which is then a root on its dense output: it need not be repeated.
+Contacts that are open stay so within an attempt, for the same reason. Far from events ξ is the time.
 
 Lane 0 is the driver, which moves as an oscillator: no stage needs a sine. q and t have vectors of their own, with the
 same number in all lanes: a number that is taken out of a vector and put into another one makes the next stage wait.

@@ -1,7 +1,8 @@
-"""Runs along a short chain: steps with error control that go past contact events, which are roots inside them.
+"""Runs along a short chain: attempts with error control that may go past contact events, which are roots inside them.
 
-A step is attempted from `StepBegin` until it is accepted (accepted_step.py). It ends at the first change of a contact
-inside it, or at the last point of the grid (`end_of_step`). The next step begins there.
+An attempt is made from `StepBegin` until one is accepted (accepted_step.py). The step is the part of it up to the first
+change of a contact, or up to the last point of the grid (`end_of_step`), where the state is that of the dense output.
+The next step begins there.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from ..status import (
     STEP_TOO_SMALL,
     STEPS,
 )
-from .accepted_step import ATTEMPTS, RunConstants, StepBegin, accepted_step, is_too_small, new_units
+from .accepted_step import ATTEMPTS, RunContext, StepBegin, accepted_step, is_too_small, new_units
 from .chain import (
     DISPLACEMENT,
     ELASTIC,
@@ -70,88 +71,88 @@ class StepEnd(NamedTuple):
 
 
 @inline_llvm
-def with_contact_toggled(constants, begin, contact):
+def with_contact_toggled(context, begin, contact):
     """`StepBegin` once a contact has opened or closed."""
-    work = constants.work
+    work = context.work
     work.closed[0, contact] = 1.0 - work.closed[0, contact]
     closed = load_row(work.chain.width, work.closed, 0)
     return StepBegin(begin.t, begin.point, begin.rates, begin.forces, begin.bits ^ (1 << contact), closed)
 
 
 @inline_numba
-def begin_of_run(constants, t, y, bodies):
+def begin_of_run(context, t, y, bodies):
     """`StepBegin` at the start of a run, from its state; contacts are closed where they overlap."""
-    work, values = constants.work, constants.values
+    work, values = context.work, context.values
     for i in range(bodies):
         work.state[DISPLACEMENT, i], work.state[W, i] = y[i], y[bodies + i]
     width = work.chain.width
     point = Point(load_row(width, work.state, DISPLACEMENT), load_row(width, work.state, W), splat8(0.0), splat8(t))
-    rates = rates_at(values, constants.driver, no_transform(values, 1.0 + blank(point.u)), point)
+    rates = rates_at(values, context.driver, no_transform(values, 1.0 + blank(point.u)), point)
     bits = positive_mask(rates.overlap) & ((1 << (bodies - 1)) - 1)
     for c in range(bodies - 1):
         work.closed[0, c] = 1.0 if (bits >> c) & 1 != 0 else 0.0
-    forces = end_forces(values, constants.driver, point, rates, constants.last)
+    forces = end_forces(values, context.driver, point, rates, context.last)
     return StepBegin(t, point, rates, forces, bits, load_row(width, work.closed, 0))
 
 
 @inline_numba
-def with_driver_in_place(constants, begin):
+def with_driver_in_place(context, begin):
     """`StepBegin` with the driver where its phase has it, and the rates there."""
-    driver, values, theta = constants.driver, constants.values, constants.beta * begin.t
+    driver, values, theta = context.driver, context.values, context.beta * begin.t
     point = Point(with_first(begin.point.u, driver_displacement(driver, theta)),
                   with_first(begin.point.w, driver_velocity(driver, theta)), splat8(0.0), splat8(begin.t))
     rates = rates_at(values, driver, no_transform(values, begin.closed), point)
-    constants.out.counts[EVALUATIONS] += 1
+    context.out.counts[EVALUATIONS] += 1
     forces = begin.forces
-    if constants.every > 0:
-        forces = end_forces(values, driver, point, rates, constants.last)
+    if context.every > 0:
+        forces = end_forces(values, driver, point, rates, context.last)
     return StepBegin(begin.t, point, rates, forces, begin.bits, begin.closed)
 
 
 @inline_numba
-def end_of_step(constants, begin, checked, g, left):
+def end_of_step(context, begin, checked, g, left):
     """The end of a step past point g of the grid: where a contact changes, or at the last of the `left` points."""
     step, contact, x = checked.step, checked.contact, checked.x
     end, end_rates = step.end, step.end_rates
     time, passed = at(end.t, 0), 0
     if contact >= 0:
-        time = time_inside(constants.work, x)
-    while passed < left and (g + passed + 1) * constants.spacing <= time + constants.near:
+        time = time_inside(context.work, x)
+    while passed < left and (g + passed + 1) * context.spacing <= time + context.near:
         passed += 1
     if passed == left:
-        time = (g + passed) * constants.spacing
-        fraction = fraction_at(constants.work, time, x)
+        time = (g + passed) * context.spacing
+        fraction = fraction_at(context.work, time, x)
         if fraction < x:
             contact, x = -1, fraction
     cut = contact >= 0 or passed == left
     if cut:
-        end = point_inside(constants.work, step.start, x)
-        end_rates = rates_at(constants.values, constants.driver, no_transform(constants.values, begin.closed), end)
-        constants.out.counts[EVALUATIONS] += 1
+        end = point_inside(context.work, step.start, x)
+        end_rates = rates_at(context.values, context.driver, no_transform(context.values, begin.closed), end)
+        context.out.counts[EVALUATIONS] += 1
     return StepEnd(contact, x, time, passed, cut, end, end_rates)
 
 
 @inline_numba
-def record_step(constants, begin, checked, end, g, row, samples):
+def record_step(context, begin, checked, end, g, row, samples):
     """Record the forces in a step, and of the grid points past number g in it each `every`-th.
 
     Returns the forces at its end and the next free row of `samples`.
     """
-    slots, work, out = constants.slots, constants.work, constants.out
-    values, driver = constants.values, constants.driver
+    slots, work, out = context.slots, context.work, context.out
+    values, driver = context.values, context.driver
     step, forces, end_pace, exceeds, x = checked.step, checked.forces, checked.step.end_pace, checked.exceeds, end.x
     if end.cut:
-        forces = end_forces(values, driver, end.point, end.rates, constants.last)
+        forces = end_forces(values, driver, end.point, end.rates, context.last)
         if step.transform.active != 0.0:
-            end_pace, _, _ = powers(constants.power, at(end.point.q, 0))
+            end_pace, _, _ = powers(context.power, at(end.point.q, 0))
     first, last = in_xi(begin.forces, step.pace), in_xi(forces, end_pace)
     if checked.prepared:
         exceeds = may_exceed(first, last, x * step.h, out.log.peaks)
     if exceeds:
         search_forces(slots, work, first, last, x, x * step.h, out)
     for number in range(g + 1, g + 1 + end.passed):
-        if number % constants.every == 0:
-            inside = point_inside(work, step.start, fraction_at(work, number * constants.spacing, x))
+        if number % context.every == 0:
+            inside = point_inside(work, step.start, fraction_at(work, number * context.spacing, x))
             keep_state(work, inside, rates_at(values, driver, no_transform(values, begin.closed), inside))
             write_sample(slots, row, work.state[DISPLACEMENT], work.state[VELOCITY], work.state[ELASTIC], samples)
             row += 1
@@ -161,17 +162,17 @@ def record_step(constants, begin, checked, end, g, row, samples):
 
 @inline_llvm
 def growth(step, end):
-    """Factor from a step in time, as it was tried, to the next one."""
+    """Factor from the nominal size of a step in time (`accepted_attempt`) to that of the next one."""
     if end.cut and end.x < 0.5:
         return 1.0
-    most = _GROW if step.error > _SMALL_ERROR**2 else _GROW_FAST
-    return min(1.0 if step.limited else most, _SAFETY * inverse_sixteenth_root(max(step.error, 1e-24)))
+    most = _GROW if step.error_squared > _SMALL_ERROR**2 else _GROW_FAST
+    return min(1.0 if step.limited else most, _SAFETY * inverse_sixteenth_root(max(step.error_squared, 1e-24)))
 
 
 @inline_numba
-def write_beads(constants, begin, y, bodies):
+def write_beads(context, begin, y, bodies):
     """Write the state of the beads to y."""
-    state = constants.work.state
+    state = context.work.state
     store(state, DISPLACEMENT, begin.point.u)
     store(state, W, begin.point.w)
     for i in range(1, bodies - 1):
@@ -184,11 +185,11 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
     slots, drive, y, workspace = trajectory
     points, grid, every, counts = sample_range.points, sample_range.grid, sample_range.every, out.counts
     bodies, period = slots.chain.inverse_mass.size, drive.period
-    constants = RunConstants(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
+    context = RunContext(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
                       smooth_power(slots.dissipation), bodies - 2, period / grid, PERIOD_END * period, every)
     g, done, row, dt, renew = sample_range.first, 0, 1, workspace.next_step[0], True
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
-    begin = begin_of_run(constants, g * constants.spacing, y, bodies)
+    begin = begin_of_run(context, g * context.spacing, y, bodies)
     if every > 0:
         evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
         write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
@@ -196,28 +197,28 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
         if out.stop[0] != 0:
             return CANCELLED, row if every > 0 else done
         if renew:
-            begin = with_driver_in_place(constants, begin)
+            begin = with_driver_in_place(context, begin)
         dt = min(dt, method.largest_step)
-        units = new_units(constants, begin.point, workspace.scale)
+        units = new_units(context, begin.point, workspace.scale)
         chosen = nearest_event(begin.rates, begin.closed, workspace.scale[0], dt)
         if chosen >= 0 and at(begin.rates.overlap, chosen) <= 0.0 and at(begin.rates.rate, chosen) < 0.0:
             # opened by rounding, or by another event at the same time
-            begin, renew, events = with_contact_toggled(constants, begin, chosen), True, events + 1
+            begin, renew, events = with_contact_toggled(context, begin, chosen), True, events + 1
             if events > most_events:
                 return CHATTER, row if every > 0 else done
             continue
         if is_too_small(dt, begin.t, drive.beta):
             return STEP_TOO_SMALL, row if every > 0 else done
-        status, checked, dt = accepted_step(constants, begin, chosen, dt, units, g)
+        status, checked, dt = accepted_step(context, begin, chosen, dt, units, g)
         if status != DONE:
             return status, row if every > 0 else done
-        end = end_of_step(constants, begin, checked, g, points - done)
+        end = end_of_step(context, begin, checked, g, points - done)
         idle = idle + 1 if end.contact < 0 and end.time <= begin.t else 0
         if idle > ATTEMPTS:
             return STEP_TOO_SMALL, row if every > 0 else done
         forces = begin.forces
         if every > 0:
-            forces, row = record_step(constants, begin, checked, end, g, row, samples)
+            forces, row = record_step(context, begin, checked, end, g, row, samples)
         dt *= growth(checked.step, end)
         g, done, renew = g + end.passed, done + end.passed, end.contact >= 0
         counts[STEPS] += 1
@@ -227,14 +228,14 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
             counts[EVENTS] += 1
             if events > most_events:
                 return CHATTER, row if every > 0 else done
-            begin = with_contact_toggled(constants, begin, end.contact)
+            begin = with_contact_toggled(context, begin, end.contact)
             if (begin.bits >> end.contact) & 1 != 0 and every > 0:
-                record_closing(slots.dissipation, at(begin.rates.rate, end.contact), end.contact, constants.last,
+                record_closing(slots.dissipation, at(begin.rates.rate, end.contact), end.contact, context.last,
                              drive.beta * begin.t, out.log)
         if begin.t >= period:
             begin = StepBegin(begin.t - period, begin.point, begin.rates, begin.forces, begin.bits, begin.closed)
             g, events, renew = g - grid, 0, True
-    write_beads(constants, begin, y, bodies)
+    write_beads(context, begin, y, bodies)
     workspace.next_step[0] = dt
     evaluate(slots, drive.beta, begin.t, y, workspace.k[0], workspace.forces)
     if first_not_finite(y, bodies) != 0:

@@ -22,7 +22,7 @@ from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import LAWS, damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope, add_force_trace
-from ..simd.vector import VECTOR_WIDTH, aligned, blank, load, store
+from ..simd.vector import BLOCK_WIDTH, aligned, blank, load, store
 from ..step_ends import TINY
 from .attempt import record_stage
 from .event_time import rate_at
@@ -70,11 +70,11 @@ class Tangent(NamedTuple):
 def new_tangent(start, bodies, first_contact):
     """The workspace of the tangents that begin with the columns of `start` (2N, columns), eight in a block."""
     rows, columns = start.shape
-    blocks, contacts = -(-columns // VECTOR_WIDTH), bodies - 1
+    blocks, contacts = -(-columns // BLOCK_WIDTH), bodies - 1
     matrix = aligned(blocks * rows)
-    padded = np.zeros((rows, blocks * VECTOR_WIDTH))
+    padded = np.zeros((rows, blocks * BLOCK_WIDTH))
     padded[:, :columns] = start
-    matrix[:] = padded.reshape(rows, blocks, VECTOR_WIDTH).transpose(1, 0, 2).reshape(blocks * rows, VECTOR_WIDTH)
+    matrix[:] = padded.reshape(rows, blocks, BLOCK_WIDTH).transpose(1, 0, 2).reshape(blocks * rows, BLOCK_WIDTH)
     return Tangent(matrix, new_stage_motions(bodies), np.zeros((STAGES, contacts)), np.zeros((STAGES, contacts)),
                    aligned(STAGES * rows), aligned(rows), np.zeros((STAGES + 1, STAGES)), first_contact)
 
@@ -82,7 +82,7 @@ def new_tangent(start, bodies, first_contact):
 def columns_of(tangent, columns):
     """The first tangents as an ordinary matrix (2N, columns)."""
     rows = len(tangent.state)
-    blocks = tangent.matrix.reshape(-1, rows, VECTOR_WIDTH)
+    blocks = tangent.matrix.reshape(-1, rows, BLOCK_WIDTH)
     return np.ascontiguousarray(blocks.transpose(1, 0, 2).reshape(rows, -1)[:, :columns])
 
 

@@ -17,7 +17,7 @@ from ..effects.dissipation import LAWS, dashpot_force, primitive
 from ..effects.preload import batch_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, update_peak
-from ..simd.vector import VECTOR_WIDTH, from_left, from_right, load, positive_mask, splat8, store, with_first
+from ..simd.vector import BLOCK_WIDTH, from_left, from_right, load, positive_mask, splat8, store, with_first
 from .step import tabulated_displacement, tabulated_velocity
 
 
@@ -143,8 +143,8 @@ def comes_nearer(simd, slots, v0):
     Half of the test of `may_change` (step.py), for the two contacts that may touch within a step and part again.
     """
     last = slots.chain.stiffness.size - 1
-    first_overlap, last_overlap = simd.overlap[0, 0], simd.overlap[last // VECTOR_WIDTH, last % VECTOR_WIDTH]
-    first_rate, last_rate = v0 - simd.velocity[0, 1], simd.velocity[last // VECTOR_WIDTH, last % VECTOR_WIDTH]
+    first_overlap, last_overlap = simd.overlap[0, 0], simd.overlap[last // BLOCK_WIDTH, last % BLOCK_WIDTH]
+    first_rate, last_rate = v0 - simd.velocity[0, 1], simd.velocity[last // BLOCK_WIDTH, last % BLOCK_WIDTH]
     return (first_rate > 0.0) != (first_overlap > 0.0), (last_rate > 0.0) != (last_overlap > 0.0)
 
 
@@ -152,7 +152,7 @@ def comes_nearer(simd, slots, v0):
 def update_long_chain_peaks(slots, simd, v0, peaks):
     """Follow input force, output force and its elastic part at the last step's start."""
     last = slots.chain.stiffness.size - 1
-    block, lane = last // VECTOR_WIDTH, last % VECTOR_WIDTH
+    block, lane = last // BLOCK_WIDTH, last % BLOCK_WIDTH
     damped = dashpot_force(slots.dissipation, simd.overlap[0, 0], v0 - simd.velocity[0, 1])
     update_peak(peaks, INPUT, simd.elastic[0, 0] + damped)
     elastic = simd.elastic[block, lane]
@@ -166,7 +166,7 @@ def unpack(y, bodies, blocked, blocks):
     """Two rows of bodies into two rows of blocks."""
     for row in range(2):
         for i in range(bodies):
-            blocked[row * blocks + i // VECTOR_WIDTH, i % VECTOR_WIDTH] = y[row * bodies + i]
+            blocked[row * blocks + i // BLOCK_WIDTH, i % BLOCK_WIDTH] = y[row * bodies + i]
 
 
 @internal
@@ -174,4 +174,4 @@ def pack(blocked, blocks, y, bodies):
     """Two rows of blocks back into two rows of bodies."""
     for row in range(2):
         for i in range(bodies):
-            y[row * bodies + i] = blocked[row * blocks + i // VECTOR_WIDTH, i % VECTOR_WIDTH]
+            y[row * bodies + i] = blocked[row * blocks + i // BLOCK_WIDTH, i % BLOCK_WIDTH]

@@ -17,13 +17,13 @@ from numba.extending import intrinsic, overload
 
 from ..batch_size import BATCH_SIZE, has_avx512, is_x86
 from ..compiling.jit import FAST_MATH
-from .vector import VECTOR_WIDTH, VectorType, as_vector
+from .vector import VectorType, as_vector
 
 #: Whether the processor has `vrsqrt14pd` for eight doubles, and `rsqrtps` for four floats.
 _HAS_RSQRT14, _HAS_RSQRT_PS = has_avx512(), is_x86()
 #: Smallest number whose root is computed; smaller ones are replaced by it. Its power 3/2, the force of such an overlap,
 #: is negligible. Where `rsqrtps` is used it must not become zero in single precision.
-_LEAST_ARGUMENT = 1e-280 if BATCH_SIZE == VECTOR_WIDTH else 1e-30
+_LEAST_ARGUMENT = 1e-280 if BATCH_SIZE == 8 else 1e-30
 
 
 def _llvm_root(builder, kind, value):
@@ -91,7 +91,7 @@ def root_by_series(typingctx, value):
 
     def codegen(context, builder, sig, args):
         width = sig.return_type.width
-        if width == VECTOR_WIDTH and _HAS_RSQRT14:
+        if width == 8 and _HAS_RSQRT14:
             return _root_of_eight(builder, args[0])
         if width == 4 and _HAS_RSQRT_PS:
             return _root_of_four(builder, args[0])

@@ -1,17 +1,20 @@
-"""Kernels treat subnormal numbers as zero: ahead of a wave all numbers may be subnormal, which is slow."""
+"""Subnormal numbers taken for zero: ahead of a wave all numbers may be subnormal, which is slow.
+
+`Engine.record` and `Engine.periods`, short chains and batches switch this on; `run_flow` and others do not.
+"""
 
 from __future__ import annotations
-
-import platform
 
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-#: Bits of the x86 control register that make subnormal results and arguments zero.
+from ..batch_size import is_x86
+
+#: Bits of MXCSR, the control register of x86: flush results to zero (FTZ, 0x8000), take arguments for zero (DAZ, 0x40).
 _FLUSH = 0x8040
-_IS_X86 = platform.machine() in ("x86_64", "AMD64")
+_IS_X86 = is_x86()
 
 
 def _control_register(builder, name, pointer):

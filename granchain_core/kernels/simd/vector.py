@@ -24,8 +24,8 @@ from numba.extending import (
 from ..batch_size import BATCH_SIZE
 from ..compiling.jit import FAST_MATH
 
-#: Doubles in a vector along a chain or of tangents.
-VECTOR_WIDTH = 8
+#: Doubles in a block of a long chain, in one of tangents, and in the vectors of q and t (dop853_root).
+BLOCK_WIDTH = 8
 #: Widths of the vectors there are.
 WIDTHS = (4, 8, 16, 32)
 
@@ -40,7 +40,7 @@ class VectorType(types.Type):
 
 
 VECTORS = {width: VectorType(width) for width in WIDTHS}
-vector = VECTORS[VECTOR_WIDTH]
+vector = VECTORS[BLOCK_WIDTH]
 
 
 @register_model(VectorType)
@@ -98,7 +98,7 @@ for _kind in VECTORS.values():
         return builder.fneg(args[0], flags=FAST_MATH)
 
 
-def aligned(rows: int, width: int = VECTOR_WIDTH) -> np.ndarray:
+def aligned(rows: int, width: int = BLOCK_WIDTH) -> np.ndarray:
     """Zeros (rows, width) that begin on a cache line: a vector that lies across two lines costs two accesses."""
     spare = 8
     whole = np.zeros(rows * width + spare)
@@ -149,7 +149,7 @@ def loader(width):
     return load_row
 
 
-load, load16, load32 = (loader(width) for width in (VECTOR_WIDTH, 16, 32))
+load, load16, load32 = (loader(width) for width in (BLOCK_WIDTH, 16, 32))
 #: Reads one row of the arrays of a batch.
 load_batch = loader(BATCH_SIZE)
 

@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.simd.functions import root_by_series
-from granchain_core.kernels.simd.vector import VECTOR_WIDTH, aligned, load, loader, store
+from granchain_core.kernels.simd.vector import BLOCK_WIDTH, aligned, load, loader, store
 
 load4 = loader(4)
 
@@ -29,7 +29,7 @@ def roots_of_four(values, out):
 #: By the vector's width: the kernel, the smallest and largest exponents of ten, and the series' first term left out.
 #: 14 bits of an inverse root leave |e| ≤ 2^{−13}, 1.5 · 2^{−12} of one in floats |e| ≤ 3 · 2^{−12} and its square.
 CASES = {
-    VECTOR_WIDTH: (roots_of_eight, -200.0, 10.0, 5.0 / 16.0 * 2.0**-39),
+    BLOCK_WIDTH: (roots_of_eight, -200.0, 10.0, 5.0 / 16.0 * 2.0**-39),
     4: (roots_of_four, -30.0, 10.0, 35.0 / 128.0 * (3.0 * 2.0**-12) ** 4),
 }
 
