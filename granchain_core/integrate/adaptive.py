@@ -34,7 +34,7 @@ class Dop853Stepper:
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
         largest, size = scaled.period / LEAST_STEPS_PER_PERIOD, scaled.size
-        self.method: Any = Dop853(tolerance, largest)  # another slot in a class for another kernel
+        self.method: Any = Dop853(tolerance, largest)  # subclasses may put their own method slot here
         self.scaled = scaled
         self.grid = samples
         self.pause: Callable[[], None] = Stop().pause
@@ -95,7 +95,7 @@ class Dop853Stepper:
         return DONE, len(maxima)
 
     def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
-             out: KernelIO) -> tuple[int, int]:
+                  out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         wanted = SampleRange(first, points, self.grid, every)
         status, rows = _RUN_DOP853(self.structure, self.method, self.trajectory(y), wanted, samples, out)

@@ -24,7 +24,7 @@ _MISS_OF_STEP = 0.02
 #: [branch] Largest factor from one step to the next.
 _GROWTH_FACTOR = 2.0
 #: [branch] Smallest factor from one step to the next.
-_SHRINK_FACTOR = 0.5
+_LEAST_STEP_FACTOR = 0.5
 #: [branch] Angle of the turn beyond which a step is rejected [degrees].
 _LARGEST_TURN = 30.0
 #: [no threshold] Its cosine.
@@ -55,4 +55,4 @@ def next_step(step: float, off: float, cosine: float, failed: bool) -> float:
     angle = max(float(np.arccos(min(1.0, cosine))), 1e-9)
     most = 1.0 if failed else _GROWTH_FACTOR
     wanted = min(np.radians(_TURN_OF_STEP) / angle, np.sqrt(_MISS_OF_STEP * step / max(off, 1e-9 * step)), most)
-    return min(LONGEST_STEP, max(_SHRINK_FACTOR, float(wanted)) * step)
+    return min(LONGEST_STEP, max(_LEAST_STEP_FACTOR, float(wanted)) * step)

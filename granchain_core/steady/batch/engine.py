@@ -90,8 +90,7 @@ class _JobsInBatch:
         """Put jobs into the free lanes.
 
         A job to be measured takes two lanes. If such a job waits and only one lane is free, this lane stays empty until
-        another is free: in the curve of sec2 with 298 points for an eighth of the time, which costs a batch of eight
-        less than 2 %.
+        another is free.
         """
         while self.free and not self._waits_for_second_lane:
             job = (self.to_measure.pop(0) if self.to_measure else
