@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
-from documents import ROOT
+from documents import ROOT, blocks
 from edited_tree import copied, edited_copy, files_of, follow
 
 from granchain_core.kernels.compiling.jit import in_simd_kernels
@@ -17,6 +18,17 @@ MENTIONED = {PAGE: "## 5. Mention it: edit 1, and let a tool write the rest", QU
 #: The first line of each page.
 TITLES = {PAGE: "# Add an effect: edit 6 files, write 3, mention it in 1",
           QUADRATIC: "# Add a drag that is quadratic in the velocity: edit 6 files, write 3, mention it in 1"}
+
+
+def tests_of(page: Path) -> set[str]:
+    """Names of the tests that a page writes."""
+    return {name for block in blocks(page) if block.is_new_file for name in re.findall(r"^def (test_\w+)", block.text, re.MULTILINE)}
+
+
+def passed(tree: Path) -> set[str]:
+    """Names of the tests in a tree's tests/physics, none of which may fail: `follow` asserts that pytest succeeds."""
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "-rA", "tests/physics")
+    return set(re.findall(r"^PASSED \S+::(test_\w+)", printed, re.MULTILINE))
 
 
 @pytest.fixture(scope="module")
@@ -41,12 +53,12 @@ def test_the_page_edits_and_writes_as_many_files_as_it_says(page: Path) -> None:
 
 def test_a_force_that_is_not_linear_in_the_velocity_passes_the_tests_the_page_writes(quadratic: Path) -> None:
     """Tangent against differences and the second route, energy, stable step, stated error."""
-    assert "7 passed" in follow(quadratic, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics")
+    assert passed(quadratic) == tests_of(QUADRATIC)
 
 
 def test_the_new_effect_passes_the_tests_the_page_writes(tree: Path) -> None:
     """Force, energy and tangent of the page's effect are right in every kernel."""
-    assert "4 passed" in follow(tree, "-m", "pytest", "-p", "no:cacheprovider", "tests/physics/test_drag.py")
+    assert passed(tree) == tests_of(PAGE)
 
 
 @pytest.mark.long
