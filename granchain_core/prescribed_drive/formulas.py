@@ -77,11 +77,13 @@ FORMULAS: dict[str, Formula] = {
         Signal.burst, ("f", "periods", "duration"),
         "n periods of A₀ sin 2πft under a window sin²(πft/n), then at rest until the duration is over"),
     "tones": Formula(
-        Signal.tones, ("f1", "f2", "duration", "ratio"), "A₀ (sin 2πf₁t + r sin 2πf₂t)/(1 + r), with a ratio r of 1",
+        Signal.tones, ("f1", "f2", "duration", "ratio"),
+        "A₀ (sin 2πf₁t + r sin 2πf₂t)/(1 + r), with the ratio r, 1 if it is left out",
         optional=1, problem=_problem_of_tones),
     "noise": Formula(
         _noise, ("f0", "f1", "duration", "seed"),
-        "noise with a flat spectrum of displacement from f₀ to f₁ and the root mean square of a sine of amplitude A₀",
+        "noise with a flat spectrum of displacement from f₀ to f₁ and the root mean square of a sine of amplitude "
+        "A₀; another seed, 0 if it is left out, gives other noise",
         optional=1, problem=_problem_of_noise),
 }
 
