@@ -1,5 +1,5 @@
 """Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes and commands that
-draw (README.md), and what is used of libraries (docs/libraries.md).
+draw (README.md), drives by a formula (docs/scenes.md), and what is used of libraries (docs/libraries.md).
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from app import needed
 from app.cli.commands import COMMANDS
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
+from granchain_core.prescribed_drive.formulas import FORMULAS
 from granchain_core.scene.quantities import QUANTITIES, Quantity
 from tools.thresholds import printed
 
@@ -47,6 +48,14 @@ def table_of_orders() -> str:
         rows.append(f"| `{one.name}` | {' | '.join('–' if math.isnan(order) else f'{order:g}' for order in orders)} |")
     return "\n".join(["| method | smooth: theory | smooth: observed | events: theory | events: observed "
                       "| tension cut: observed |", "|---|---|---|---|---|---|", *rows])
+
+
+def table_of_drives() -> str:
+    """The table of docs/scenes.md: every drive by a formula, and a measured one."""
+    rows = [f"| `{name}={one.form}` | {one.meaning} |" for name, one in FORMULAS.items()]
+    return "\n".join(["| drive | motion of the driver |", "|---|---|", *rows,
+                      "| a file | the measured velocity of the shaker over time, or its displacement where no velocity is "
+                      "there; what files are read is in [data.md](data.md) |"])
 
 
 def table_of_scenes() -> str:

@@ -3,8 +3,8 @@
     python -m tools.update
 
 - tables in the docs: thresholds (docs/regimes.md, orbits.md, branches.md, accuracy.md), methods (docs/method.md), knobs
-  (docs/model.md), scenes and the list of commands with pictures (README.md), what is used of libraries
-  (docs/libraries.md);
+  (docs/model.md), scenes and the list of commands with pictures (README.md), drives by a formula (docs/scenes.md), what
+  is used of libraries (docs/libraries.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -21,6 +21,7 @@ from tools.generated import with_part
 from tools.lists import (
     commands_with_pictures,
     list_of_methods,
+    table_of_drives,
     table_of_knobs,
     table_of_libraries,
     table_of_orders,
@@ -50,6 +51,7 @@ _TABLES = (
     ("docs/model.md", "knobs", table_of_knobs),
     ("README.md", "scenes", table_of_scenes),
     ("README.md", "commands with pictures", commands_with_pictures),
+    ("docs/scenes.md", "drives", table_of_drives),
     ("docs/libraries.md", "libraries", table_of_libraries),
 )
 

@@ -52,7 +52,7 @@ def do_driven(arguments: argparse.Namespace, chosen: Scene) -> None:
 
 def chosen_signal(arguments: argparse.Namespace, chosen: Scene) -> Signal:
     """The signal that --drive names: a formula with the scene's A0, or a file."""
-    from granchain_core.prescribed_drive.signal import formula_signal
+    from granchain_core.prescribed_drive.formulas import formula_signal
 
     if not chosen.is_driven:
         raise BadInput("The scene has drive = rest, and --drive moves the driver: give one of them; the nearest valid "

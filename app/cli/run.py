@@ -10,6 +10,7 @@ from typing import Any
 from granchain_core import BadInput, Run, Scene
 from granchain_core.integrate import method_for
 from granchain_core.precompile.pieces import REGIME_KERNELS
+from granchain_core.prescribed_drive.formulas import FORMULAS
 from granchain_core.results.regime import Regime
 from granchain_core.results.run import start_words
 from granchain_core.run.budget import BUDGET
@@ -36,9 +37,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="refuse what would take longer")
     parser.add_argument("--explain", action="store_true", help="say which effects and method are used, and why")
     parser.add_argument("--drive", metavar="SIGNAL",
-                        help="another motion of the driver from the start to its end: chirp=f0:f1:T, burst=f:n:T, "
-                             "tones=f1:f2:T[:ratio], noise=f0:f1:T[:seed] with A0, or a FILE of its velocity or "
-                             "displacement over time")
+                        help="another motion of the driver from the start to its end: "
+                             f"{', '.join(f'{name}={one.form}' for name, one in FORMULAS.items())} with A0, or a FILE "
+                             "of its velocity or displacement over time")
     parser.add_argument("--gap", default="refuse", metavar="refuse|zero|interpolate",
                         help="what to do where samples of --drive FILE are missing")
     add_answers(parser)

@@ -235,7 +235,7 @@ def _regime(regimes: list[Regime]) -> Regime:
 
     Where the members have different names, the rule of steady/regime_criteria.py decides by this mean. All members
     share the bias of order 1/P of an exponent measured over P periods. Averaging does not reduce the bias, so the mean
-    is judged as if it had been measured over the shortest P, and it is zero within the error of a single measurement.
+    is judged as if it had been measured over the shortest P, and whether it is neutral by the error of a single one.
     """
     known = [regime.lyapunov for regime in regimes if regime.lyapunov is not None]
     periods = min((one.lyapunov_periods for one in regimes if one.lyapunov_periods is not None),

@@ -179,14 +179,14 @@ METHODS: dict[str, Method] = {
     m.name: m
     for m in (
         Method(
-            name="rk4", title="RK4 in w",
+            name="rk4", title="RK4 in (u, w)",
             order=4.0, order_at_events=2.0, observed_smooth=4.0, observed_order=2.0,
             adaptive=False, symplectic=False,
             restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, and the "
                          "jump of its force is taken from the ends of the step",
             reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9)),
         Method(
-            name=FIXED_STEP, title="RK4 in w, steps split at contact events, quadrature corrected there",
+            name=FIXED_STEP, title="RK4 in (u, w), steps split at contact events, quadrature corrected there",
             order=4.0, order_at_events=3.5, observed_smooth=4.0, observed_order=3.9,
             adaptive=False, symplectic=False,
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; in chains of "
@@ -209,13 +209,13 @@ METHODS: dict[str, Method] = {
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
             variables="uv", has_account=False),
         Method(
-            name=ADAPTIVE, title="Dormand–Prince 8 in w, contact events located",
+            name=ADAPTIVE, title="Dormand–Prince 8 in (u, w), contact events located",
             order=8.0, order_at_events=7.0, observed_smooth=8.5, observed_order=7.5,
             adaptive=True, symplectic=False, restrictions="errors down to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Dop853Stepper),
             cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, observed_with_cut=7.5),
         Method(
-            name="dop853-root", title="Dormand–Prince 8 in w, in the root of an overlap next to contact events",
+            name="dop853-root", title="Dormand–Prince 8 in (u, w), in the root of an overlap next to contact events",
             order=8.0, order_at_events=7.0, observed_smooth=8.0, observed_order=7.0,
             adaptive=True, symplectic=False,
             restrictions=f"errors down to about 1e-12; no energy account; only chains of up to {SHORT_CHAIN} beads, "

@@ -4,8 +4,9 @@ Two errors of displacements have no factor. That of a settled orbit is the diffe
 (steady/settling/recording.py). That of a motion without a drive, as the page shows it, is at least the method's typical
 error (steady/settling/undriven.py).
 
-Where the error falls with the method's order, the difference is itself a bound: with half the step at order 4 it is
-about 15 times the error of the finer computation. Contact events make the fall irregular.
+Where the error falls with the method's order, the difference is itself an overestimate: with half the step at order 4
+it is about 15 times the error of the finer computation. Contact events make the fall irregular. The factors are tested
+on random scenes (docs/accuracy.md); what they give is an estimate, no proven bound.
 """
 
 from __future__ import annotations

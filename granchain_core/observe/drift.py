@@ -2,8 +2,9 @@
 
 The observer of model (4), Zhang et al. 2016, is pushed by a given force; without a foundation its beads are held by the
 wall alone, and only while they touch it. If the leading multiplier is real and not inside the unit circle, and its mode
-is nearly a common shift of all beads, the instability is called a drift: the observer keeps its shape and moves to one
-side if the multiplier is positive, or alternates between the sides if it is negative (at 200 Hz).
+is nearly a common shift of all beads, the exponential instability along that shift is called a drift: the observer
+keeps its shape and moves to one side if the multiplier is positive, or alternates between the sides if it is negative
+(at 200 Hz).
 """
 
 from __future__ import annotations
@@ -44,7 +45,8 @@ def departure_words(drifts: bool, multiplier: complex | None) -> str:
     alternating = multiplier is not None and is_real(multiplier) and multiplier.real < 0.0
     sides = ", alternating between the sides" if alternating else ""
     if drifts:
-        return f"drifts{sides}: an offset of all its beads grows, because nothing pulls them back"
+        return (f"drifts{sides}: a common shift of all its beads grows exponentially, an instability, because nothing "
+                "pulls them back")
     return f"leaves its chain{sides}"
 
 

@@ -19,9 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..errors import BadInput
-from ..inputs.checks import unknown_name
 from ..inputs.gaps import Gaps, sample_number, with_zeros
-from ..inputs.text import number_in
 
 #: Knots in a period of the highest frequency of a formula.
 KNOTS = 400
@@ -306,36 +304,3 @@ def _of_samples(count: int, put_in: np.ndarray, of: Callable[[np.ndarray], Signa
     # differences of order p from a spacing h: C h^p (2^p − 1) and C h^p (4^p − 1), whose ratio is 2^p + 1
     falls = fourth / second - 1.0 if second > 0.0 else 4.0
     return replace(full, coarser=coarser, order=math.log2(min(max(falls, 2.0), 4.0)))
-
-
-#: Formulas by name: what their numbers are, and how many may be left out at the end.
-FORMULAS: dict[str, tuple[tuple[str, ...], int]] = {
-    "chirp": (("f0", "f1", "duration"), 0), "burst": (("f", "periods", "duration"), 0),
-    "tones": (("f1", "f2", "duration", "ratio"), 1), "noise": (("f0", "f1", "duration", "seed"), 1)}
-
-
-def formula_signal(text: str, amplitude: float) -> Signal | None:
-    """The signal that NAME=a:b:c describes, with the drive amplitude [m]; None for anything else, such as a file.
-
-    Raises `BadInput` where the numbers cannot be used.
-    """
-    name, equals, values = text.partition("=")
-    if not equals:
-        return None
-    if name not in FORMULAS:
-        raise unknown_name("drive", name, FORMULAS)
-    known, optional = FORMULAS[name]
-    numbers = [number_in(part) for part in values.split(":")]
-    if not len(known) - optional <= len(numbers) <= len(known) or any(
-            one is None or not math.isfinite(one) or one <= 0.0 for one in numbers[:3]) or None in numbers:
-        raise BadInput(f"--drive {text[:60]!r} must have the form {name}={':'.join(known)}, in Hz and s, with numbers "
-                       "above 0.")
-    given = [float(one) for one in numbers if one is not None]
-    if name == "noise" and (given[0] >= given[1] or given[3:] != [float(int(abs(one))) for one in given[3:]]):
-        raise BadInput(f"--drive {text[:60]!r}: noise goes from a lower to a higher frequency, and its seed is a whole "
-                       "number from 0.")
-    if name == "noise":
-        return Signal.noise(amplitude, given[0], given[1], given[2], int(given[3]) if len(given) > 3 else 0)
-    if name == "tones" and len(given) > 3 and given[3] < 0.0:
-        raise BadInput(f"--drive {text[:60]!r}: the ratio of two tones is a number from 0.")
-    return {"chirp": Signal.chirp, "burst": Signal.burst, "tones": Signal.tones}[name](amplitude, *given)

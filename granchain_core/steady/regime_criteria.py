@@ -104,11 +104,12 @@ def grows(mean: float, error: float, periods: int) -> bool:
 
 
 def is_neutral(mean: float, error: float, periods: int) -> bool:
-    """Whether nearby trajectories neither diverge nor approach, by a mean exponent and its standard error.
+    """Whether a mean exponent is as small as a closed curve may show, by its standard error and its periods.
 
     |mean| ≤ min(max(s, `_BOUNDED_GROWTH`/periods), `_LARGEST_NEUTRAL_EXPONENT`) with s = `STANDARD_ERRORS` σ, which
-    must be below `_LARGEST_NEUTRAL_EXPONENT` too: a large error must not make this easier. Weak chaos below that is
-    neutral. A mean that is neither neutral nor clearly positive or negative is undecided.
+    must be below `_LARGEST_NEUTRAL_EXPONENT` too: a large error must not make this easier. Up to 600 periods that is
+    |mean| ≤ `_LARGEST_NEUTRAL_EXPONENT`, so the mean may differ from zero by more than its error. Weak chaos below that
+    is neutral. A mean that is neither neutral nor clearly positive or negative is undecided.
     """
     uncertain = STANDARD_ERRORS * error
     limit = min(max(uncertain, _BOUNDED_GROWTH / periods), _LARGEST_NEUTRAL_EXPONENT)
@@ -136,10 +137,10 @@ def needs_more_periods(exponents: np.ndarray, periods: int) -> bool:
 def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarray, periods_run: int) -> Regime:
     """Chaotic, quasi-periodic or unsettled from the Lyapunov exponents of overlapping blocks of `periods` in all.
 
-    Chaotic: the mean is above three standard errors and a least value (`grows`). Quasi-periodic: it is not
-    distinguished from zero (`is_neutral`), the section comes back near itself (`return_limit`), and the record is long
-    enough to show that changes neither shrink nor grow. Anything else is unsettled. Where `is_neutral` holds the regime
-    has the numbers on which the other two conditions rest, met or not.
+    Chaotic: the mean is above three standard errors and a least value (`grows`). Quasi-periodic: it is neutral
+    (`is_neutral`), the section comes back near itself (`return_limit`), and the record is long enough to show that
+    changes neither shrink nor grow. Anything else is unsettled. Where `is_neutral` holds the regime has the numbers on
+    which the other two conditions rest, met or not.
     """
     mean, error = mean_and_error(exponents)
     if grows(mean, error, periods):

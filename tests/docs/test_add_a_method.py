@@ -43,7 +43,7 @@ print(compared_methods()["heun"].title, method_for(1e-6).method, sep="|")
 """)
     smooth, events, row = printed.splitlines()
     assert 1.8 < float(smooth) < 2.3 and 1.8 < float(events) < 2.6  # the limit is 2; over coarse steps a part of order 3 is left
-    assert row == "Heun's method in w|rk4-split"  # it is there, and not chosen by itself
+    assert row == "Heun's method in (u, w)|rk4-split"  # it is there, and not chosen by itself
 
 
 def test_the_method_with_error_control_keeps_to_its_tolerance_and_goes_on_from_a_checkpoint(tree: Path) -> None:

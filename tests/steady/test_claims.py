@@ -118,8 +118,8 @@ def test_a_rotation_or_a_short_record_is_not_almost_periodic() -> None:
 
 
 def test_a_slow_approach_with_a_zero_exponent_is_left_to_a_chain_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    """At 1206.2 to 1206.3 Hz the motion approaches an orbit of 6 periods so slowly that its exponent is zero within
-    the error: without the rule a batch calls it quasi-periodic."""
+    """At 1206.2 to 1206.3 Hz the motion approaches an orbit of 6 periods so slowly that its exponent is
+    neutral: without the rule a batch calls it quasi-periodic."""
     frequencies = [1206.2, 1206.22, 1206.28, 1206.3]
     found = [point.regime for point in resonance_curve(scene("sec2"), frequencies).points]
     assert [(one.name, one.period) for one in found] == [("periodic", 6)] * 4

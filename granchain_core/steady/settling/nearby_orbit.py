@@ -171,7 +171,7 @@ def seen_modulus(scene: Scene, period: int, x: np.ndarray, stop: Stop, refine: f
 def is_almost_periodic(strobes: np.ndarray) -> bool:
     """Whether a motion with these last strobes (P, 2, N) changes so little over some period that an orbit may be near.
 
-    It may approach the orbit so slowly that its Lyapunov exponent is zero within the error. False for a record that is
+    It may approach the orbit so slowly that its Lyapunov exponent is neutral (`is_neutral`). False for a record that is
     too short to tell.
     """
     if len(strobes) < _ALMOST_PERIODIC_CHANGES + LONGEST_PERIOD:
