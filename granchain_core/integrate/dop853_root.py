@@ -17,7 +17,7 @@ from ..kernels.dop853_root.run import run_dop853_root
 from ..kernels.forces.largest import new_log
 from ..kernels.samples import KernelIO, Samples
 from ..kernels.simd.vector import BLOCK_WIDTH, aligned
-from .adaptive import Dop853Stepper
+from .dop853 import Dop853Stepper
 from .fixed import SHORT_CHAIN, chain_width, short_chain_workspace
 from .scaling import ScaledChain
 from .stepper import CallStart, empty_samples

@@ -12,7 +12,7 @@ import numpy as np
 from ..inputs.checks import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
-from .adaptive import Dop853Stepper
+from .dop853 import Dop853Stepper
 from .dop853_root import Dop853RootStepper
 from .fixed import SHORT_CHAIN, FixedStep, FixedStepInVelocity
 from .scaling import ScaledChain

@@ -9,7 +9,7 @@ import numpy as np
 from ..errors import BadInput
 from ..execution.stop import Stop
 from ..integrate import Engine, adaptive_setting
-from ..integrate.adaptive import Dop853Stepper
+from ..integrate.dop853 import Dop853Stepper
 from ..integrate.scaling import ScaledChain, scale_like
 from ..kernels.dop853.tableau import STAGES
 from ..kernels.effects.contact import FrozenContacts

@@ -2,7 +2,7 @@
 
 A state that hardly changes from one period to the next need not be near the attractor: if changes shrink by r per
 orbit, the distance left is change·r/(1 − r). A motion whose bound is small enough is a candidate for a periodic one;
-settling/regime_decisions.py and batch/engine.py confirm it.
+settling/regime_decisions.py and batch/jobs_in_batch.py confirm it.
 """
 
 from __future__ import annotations

@@ -17,7 +17,7 @@ import numpy as np
 from granchain_core import Scene, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
-from granchain_core.steady.batch.engine import batch_results
+from granchain_core.steady.batch.jobs_in_batch import batch_results
 
 #: The orbit repeats itself to this, or the point is not judged after this many periods.
 REPEATS, PATIENCE = 1e-9, 3000

@@ -8,7 +8,7 @@ import pytest
 from granchain_core import scene
 from granchain_core.execution.stop import Stop
 from granchain_core.kernels.batch import checks
-from granchain_core.steady.batch import engine as batch_module
+from granchain_core.steady.batch import jobs_in_batch as batch_module
 from granchain_core.steady.curve.resonance_curve import draft_curve, resonance_curve
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.steady_state import SteadyState

@@ -13,7 +13,7 @@ from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch.record import STROBES_KEPT
 from granchain_core.kernels.batch_size import BATCH_SIZE
-from granchain_core.steady.batch.engine import batch_results
+from granchain_core.steady.batch.jobs_in_batch import batch_results
 from granchain_core.steady.steady_state import SteadyState
 
 #: Rows of a map: with one frequency all members end their periods at once, and several are due for a check together.

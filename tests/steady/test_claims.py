@@ -14,7 +14,7 @@ from granchain_core.integrate import Engine, Setting, adaptive_setting
 from granchain_core.kernels.strobes import periodicity
 from granchain_core.results.regime import Regime
 from granchain_core.steady import regime_criteria
-from granchain_core.steady.batch import engine
+from granchain_core.steady.batch import jobs_in_batch
 from granchain_core.steady.orbit_errors import errors_of_map, errors_of_two_orbits
 from granchain_core.steady.regime_criteria import changes
 from granchain_core.steady.settling import recording, refine_orbit, single_chain
@@ -123,7 +123,7 @@ def test_a_slow_approach_with_a_zero_exponent_is_left_to_a_chain_alone(monkeypat
     frequencies = [1206.2, 1206.22, 1206.28, 1206.3]
     found = [point.regime for point in resonance_curve(scene("sec2"), frequencies).points]
     assert [(one.name, one.period) for one in found] == [("periodic", 6)] * 4
-    monkeypatch.setattr(engine, "is_almost_periodic", lambda strobes: False)
+    monkeypatch.setattr(jobs_in_batch, "is_almost_periodic", lambda strobes: False)
     without = [point.regime.name for point in resonance_curve(scene("sec2"), frequencies).points]
     assert "quasi-periodic" in without
 

@@ -13,7 +13,7 @@ from granchain_core.errors import Cancelled
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine
 from granchain_core.steady.batch import job as batch_job
-from granchain_core.steady.batch.engine import batch_results
+from granchain_core.steady.batch.jobs_in_batch import batch_results
 from granchain_core.steady.settling import advance
 
 

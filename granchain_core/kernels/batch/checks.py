@@ -4,8 +4,8 @@ A coarse member is extrapolated to at most three times the distance that its dec
 The extrapolation is undone, with the periods run since, if the change per orbit is not smaller after it than before:
 the record goes on as if it had not been made. A chain may approach an unstable orbit before it leaves it, and an
 extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the disturbance
-decays; if it decays slowly, multipliers decide (steady/batch/engine.py). A fine member starts on the coarse orbit and
-is extrapolated to its own, each extrapolation checked in the same way.
+decays; if it decays slowly, multipliers decide (steady/batch/jobs_in_batch.py). A fine member starts on the coarse
+orbit and is extrapolated to its own, each extrapolation checked in the same way.
 
 `check_member` is the same for every structure. It takes longer to compile than the steps of a batch, so it is a kernel
 of its own, which `run_batch` calls by its address.

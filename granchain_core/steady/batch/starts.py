@@ -13,8 +13,8 @@ from ...integrate.methods import ADAPTIVE, FIXED_STEP
 from ...scene import Scene
 from ..settling.single_chain import settle_or_failure, settled_alone
 from ..steady_state import SteadyState
-from .engine import batch_states
 from .job import Start
+from .jobs_in_batch import batch_states
 from .threads import on_all_cores
 
 

@@ -17,8 +17,8 @@ from ...scene import Amplitude, Scene
 from ...scene.quantities import QUANTITIES
 from ...scene.refusals import refuse_undriven
 from ...scheduler import dealt, results
-from ..batch.engine import batch_results
 from ..batch.job import Start
+from ..batch.jobs_in_batch import batch_results
 from ..batch.starts import settle_starts
 from ..batch.threads import on_all_cores
 from ..settling.single_chain import settle_or_failure

@@ -13,7 +13,7 @@ from granchain_core.execution.stop import Stop
 from granchain_core.integrate.batch import NEVER, Batch
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.batch_size import BATCH_SIZE
-from granchain_core.steady.batch.engine import batch_results
+from granchain_core.steady.batch.jobs_in_batch import batch_results
 from granchain_core.steady.steady_state import SteadyState
 
 pytestmark = pytest.mark.quick
@@ -40,7 +40,7 @@ Found = dict[int, list[np.ndarray]]
 
 def seen(scenes: list[Scene], numbers: Sequence[int]) -> Found:
     """Strobes, largest forces and jumps of each scene; a member that has ended makes room for the next, as in
-    steady/batch/engine.py."""
+    steady/batch/jobs_in_batch.py."""
     waiting, batch = iter(numbers), Batch(scenes[numbers[0]], Stop())
     found: Found = {}
     held: dict[int, int] = {}

@@ -17,7 +17,7 @@ from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.rk4.short_chain import CHAIN_WIDTHS
 from granchain_core.scene.effects import EFFECTS
 from granchain_core.scene.state import rest
-from granchain_core.steady.batch.engine import batch_results
+from granchain_core.steady.batch.jobs_in_batch import batch_results
 from granchain_core.steady.curve.curve import CurvePoint
 from granchain_core.steady.settling.single_chain import settle_to_forces
 
