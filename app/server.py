@@ -20,7 +20,7 @@ from tornado.web import ErrorHandler
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
-from .needed import warn_of_missing
+from .needed import check_releases
 from .serve.compiling.compiler import COMPILER
 from .serve.computing.queues import PICTURES, SWEEPS
 from .serve.computing.shared import Shared
@@ -82,12 +82,13 @@ def is_loopback(address: str) -> bool:
 
 def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = None, log_level: str = "warning",
           before: Callable[[], None] = lambda: None) -> None:
-    """Serve the page until interrupted; `/liveness` answers health checks. Raises `OSError` for a taken port.
+    """Serve the page until interrupted; `/liveness` answers health checks.
 
-    `before` is called when the server is about to listen.
+    Raises `OSError` for a taken port and `MissingPart` for a library whose release lacks what is needed. `before` is
+    called when the server is about to listen.
     """
     logs.configure(log_level)
-    warn_of_missing()
+    check_releases()
     before()
     server = server_at(port, address, access)
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else _in_url(address)

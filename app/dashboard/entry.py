@@ -16,7 +16,7 @@ from .addresses import apply_address
 from .controller import Controller
 
 #: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (Needed("bokeh.core.property.validation", ("validate",), "the server does not start"),)
+NEEDED = (Needed("bokeh.core.property.validation", ("validate",), "an import would fail", required=True),)
 
 
 def page() -> None:

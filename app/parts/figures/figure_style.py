@@ -10,7 +10,7 @@ from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
 from ...needed import Needed
 
 #: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page can be made"),)
+NEEDED = (Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page could be made", required=True),)
 
 # Borders [px], the same for all time pictures, so that one cursor and the chain fit them exactly.
 TOP = 78
