@@ -100,7 +100,8 @@ class MainPicture:
         #: The settled picture that was sent last; None while a live run is shown.
         self._sent: Settled | None = None
         self._requested_at: float | None = None
-        #: Frames of the last pictures, so that they are prepared once.
+        #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
+        #: event loop would prepare again what a worker has prepared.
         self._frames: deque[Frames] = deque(maxlen=2)
         host.on_close(self._close)
 
@@ -246,7 +247,6 @@ class MainPicture:
         live = isinstance(result, LiveStep)
         if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
             return
-        METRICS.count("pictures")
         self._count_answer()
         if isinstance(result, Settled):
             self._session.settled = result
@@ -273,6 +273,7 @@ class MainPicture:
         self._views.status_line.update_state(busy=words)
 
     def _send(self, number: int, result: Settled | LiveStep) -> None:
+        METRICS.count("pictures")
         if isinstance(result, Settled):
             self._sent = result
             show_settled(self._views, number, result)

@@ -33,7 +33,7 @@ class SceneChanges:
         self._show_message = show_message
         self._next_tick = next_tick
         #: The settled picture of which the pages have not been informed yet.
-        self._untold: Settled | None = None
+        self._picture_for_pages: Settled | None = None
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
     def turn_knobs(self, scene: Scene, state: State | None, mode: str) -> None:
@@ -81,18 +81,18 @@ class SceneChanges:
 
     def request_picture(self, start: State | None = None) -> None:
         """Request a picture of the knobs as they are."""
-        self._untold = None
+        self._picture_for_pages = None
         for page in self._pages:
             page.picture_requested()
         self._pictures.compute(start)
 
     def picture_ready(self, settled: Settled) -> None:
         """Inform the pages once a picture is offered to the browser, unless another is requested or ready by then."""
-        self._untold = settled
+        self._picture_for_pages = settled
         self._next_tick(self._tell_picture)
 
     def _tell_picture(self) -> None:
-        settled, self._untold = self._untold, None
+        settled, self._picture_for_pages = self._picture_for_pages, None
         if settled is not None:
             for page in self._pages:
                 page.picture_ready(settled)
@@ -117,9 +117,20 @@ class SceneChanges:
         self.show_preset(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
-        """A step back or forward: the session becomes what the address says, its picture to the last digit."""
+        """A step back or forward: the session becomes what the address says, its picture to the last digit.
+
+        The browser is told in any case: until it is, it takes every change for a part of the step (`Steps.returning` of
+        address.js), and no change could be undone any more.
+        """
+        try:
+            self._apply(str(message.get("query", "")))
+        finally:
+            self._views.header.send(type="address-applied", query=self._session.link)
+
+    def _apply(self, query: str) -> None:
+        """Show what an address says."""
         session, name, curves = self._session, self._session.scene.name, self._session.curves
-        start, refused = apply_address(session, str(message.get("query", "")))
+        start, refused = apply_address(session, query)
         self._follow_mode()
         for page in self._pages:
             page.address_applied()
@@ -131,7 +142,6 @@ class SceneChanges:
                 session.curves = self._curves.select(session.scene, session.curves)
             self._show_turned_knobs(start)
         self._show_message(" ".join(refused))
-        self._views.header.send(type="address-applied", query=session.link)
 
     # What follows
 

@@ -189,7 +189,7 @@ class Header {
 
   // The replay runs or pauses as before a lost connection. If the browser is set to less motion, it begins paused.
   begin() {
-    const { again } = window.granchain.connection;
+    const again = window.granchain.connection.takeAgain();
     if (again) this.restore(again);
     else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
@@ -231,9 +231,7 @@ class Header {
   }
 
   // After a lost connection: sends what the share link does not contain.
-  restore(again) {
-    window.granchain.connection.again = null;
-    const { playing = true, uploaded = false } = again;
+  restore({ playing = true, uploaded = false }) {
     this.send("reconnected", { playing, uploaded });
   }
 

@@ -24,6 +24,7 @@ from bokeh.document import Document
 from bokeh.document.events import ColumnDataChangedEvent, DocumentPatchedEvent, MessageSentEvent, ModelChangedEvent
 from bokeh.events import ModelEvent
 from bokeh.model import Model
+from bokeh.models import ColumnarDataSource
 from tornado.iostream import IOStream, StreamClosedError
 from tornado.locks import Lock
 
@@ -258,11 +259,11 @@ def set_properties(model: Model, **values: Any) -> None:
         return
     known, events = model._property_values, document.callbacks._held_events
     for name, value in values.items():
-        if name != "data" and name in known and known[name] == value:
+        columns = name == "data" and isinstance(model, ColumnarDataSource)
+        if not columns and name in known and known[name] == value:  # arrays cannot be compared so
             continue
         known[name] = value
-        _keep_last(events, ModelChangedEvent(document, model, name, value) if name != "data"
-              else ColumnDataChangedEvent(document, model, name, value))
+        _keep_last(events, (ColumnDataChangedEvent if columns else ModelChangedEvent)(document, model, name, value))
 
 
 def _keep_last(events: list[Any], event: Any) -> None:

@@ -299,7 +299,7 @@ def test_the_metrics_have_the_format_of_prometheus(dashboard: Listening) -> None
     status, headers, text = dashboard.ask("/metrics")
     assert status == 200 and headers["Content-Type"].startswith("text/plain; version=0.0.4")
     for line in text.splitlines():
-        assert re.fullmatch(r'# (HELP|TYPE) granchain_\w+ .+|granchain_\w+(\{le="[^"]+"\})? \S+', line), line
+        assert re.fullmatch(r'# (HELP|TYPE) granchain_\w+ .+|granchain_\w+(\{(le|queue)="[^"]+"\})? \S+', line), line
     for name in ("visitors", "pictures_total", "answer_seconds_bucket", "queue", "cancelled_total", "picture_cache_hits_total",
                  "resident_memory_bytes"):
         assert f"granchain_{name}" in text
