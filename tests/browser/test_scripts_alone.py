@@ -194,6 +194,21 @@ def test_undo_and_redo_go_to_the_server_and_wait_for_its_answer(page: Page) -> N
     assert page.evaluate("[granchain.steps.at, granchain.steps.newest]") == [2, 2], "there is nothing ahead"
 
 
+def test_an_event_that_is_not_declared_is_an_error(page: Page) -> None:
+    """A misspelt name would otherwise be heard by nobody, without a word."""
+    for call in ("on('step', () => {})", "emit('step')"):
+        said = page.evaluate(f"() => {{ try {{ granchain.{call}; }} catch (error) {{ return error.message; }} }}")
+        assert said == "there is no event step"
+    assert page.evaluate("granchain.on('page:map', (data) => { window.heard = data; }); granchain.publish('map', 3); heard") == 3
+
+
+def test_what_the_page_before_a_reload_kept_is_taken_once(page: Page) -> None:
+    page.evaluate("sessionStorage.setItem('granchain-again', JSON.stringify({ playing: false }))")
+    page.reload()
+    taken = page.evaluate("[granchain.connection.again, granchain.connection.takeAgain(), granchain.connection.takeAgain()]")
+    assert taken == [{"playing": False}, {"playing": False}, None] and page.evaluate("granchain.connection.again") is None
+
+
 def test_a_silent_server_is_asked_counted_as_lost_and_taken_back(page: Page) -> None:
     page.evaluate("window.pings = 0; granchain.connection.connect(() => { pings += 1; })")
     page.clock.run_for(500)

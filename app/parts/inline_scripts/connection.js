@@ -2,8 +2,8 @@
 // are grey, the knobs are disabled, and a banner says so. Once the server is back, the page reloads from its link.
 (() => {
   const { granchain } = window;
-  // All in milliseconds. PING_EVERY + PING_TIMEOUT is the longest time for which a page without its server looks alive.
-  // Below 2 s a visitor has hardly read a picture that does not belong to the knobs; a busy server answers in less.
+  // All in milliseconds. For PING_EVERY + PING_TIMEOUT a page without its server still looks alive, so this stays below
+  // 2 s; it is no shorter because a server that is only busy must not count as lost.
   const TICK = 100, // how often the state is checked
     PING_EVERY = 300, // from an answer to the next ping
     PING_TIMEOUT = 1300, // silence after a ping that counts as a lost connection
