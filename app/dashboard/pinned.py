@@ -76,7 +76,7 @@ class Pinned:
         settled = session.settled
         if settled.run.scene != session.scene:  # where it begins is not known yet
             raise BadInput("The picture of these knobs is still being computed; pin it when it is shown.")
-        pin = Pin(session.scene, session.started_from)
+        pin = Pin(session.scene, session.initial_state)
         if settled.final:
             self._runs[_key(pin)] = settled.run
         if self._views.curve.whole:

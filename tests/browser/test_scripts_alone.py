@@ -87,14 +87,14 @@ def test_a_number_in_a_knobs_field_has_six_figures(blank: Page) -> None:
 
 
 def test_ticks_are_round_and_inside(blank: Page) -> None:
-    assert called(blank, "parts/toolkit/plot.js", "ticks", [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
+    assert called(blank, "parts/toolkit/round_numbers.js", "ticks", [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
         [0, 2, 4, 6, 8, 10], [-1, -0.5, 0, 0.5, 1], [0.2, 0.4], [0, 5e-10, 1e-9], [50, 100, 150]]
-    assert called(blank, "parts/toolkit/plot.js", "stepBelow", [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
+    assert called(blank, "parts/toolkit/round_numbers.js", "stepBelow", [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
 
 
 def test_the_browser_takes_the_prefixes_that_the_server_takes(blank: Page) -> None:
     values = [0.0, 1e-19, 999.4e-18, 999.6e-9, 1e-6, 0.001, 0.9994, 0.9996, 1.0, 999.4, 999.6, 1e3, 4.2e6, 1e9, 1e12]
-    found = called(blank, "parts/toolkit/plot.js", "prefixed", [[value] for value in values])
+    found = called(blank, "parts/toolkit/round_numbers.js", "prefixed", [[value] for value in values])
     assert [letter for _, letter in found] == [prefixed(value)[1] for value in values]
     assert [factor for factor, _ in found] == pytest.approx([prefixed(value)[0] for value in values], rel=1e-12, abs=0.0)
 

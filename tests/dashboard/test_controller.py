@@ -129,7 +129,7 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
     for picture in (replace(found, run=replace(found.run, start=GIVEN_STATE)), found):
         dashboard.picture_ready(picture)
         state = dashboard.views.header.state
-        assert (state["origin"], state["start"]) == (picture.start, "rest")
+        assert (state["picture_start"], state["start"]) == (picture.start, "rest")
 
 
 def test_the_pages_hear_of_a_picture_when_it_was_sent(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -180,7 +180,7 @@ def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeyp
     changed.set()
     dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
     assert session.settled is not None and session.settled.run.start == GIVEN_STATE
-    assert session.started_from is before.state and session.settled.run.energy_residual is not None
+    assert session.initial_state is before.state and session.settled.run.energy_residual is not None
 
 
 def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,

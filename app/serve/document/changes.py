@@ -188,19 +188,19 @@ class _Socket:
         stream, lock = self._stream, self._lock
         assert isinstance(stream, IOStream) and isinstance(lock, Lock)
 
-        def put(turn: Any) -> None:
-            with turn.result():
+        def put(locked: Any) -> None:
+            with locked.result():
                 if not stream.closed():
                     try:
                         stream.write(data)
                     except StreamClosedError:
                         return
 
-        turn: Any = lock.acquire()
-        if turn.done():
-            put(turn)
+        locked: Any = lock.acquire()
+        if locked.done():
+            put(locked)
         else:
-            turn.add_done_callback(put)
+            locked.add_done_callback(put)
 
 
 def _send(document: Document, session: Any, events: list[Any]) -> None:

@@ -84,7 +84,7 @@ class Metrics:
             self.answers_total += seconds
 
     def lagged(self, seconds: float) -> None:
-        """Record that a turn of the event loop came `seconds` late."""
+        """Record that an iteration of the event loop came `seconds` late."""
         self._lags.append(seconds)
 
     @property
