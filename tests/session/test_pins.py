@@ -49,7 +49,7 @@ def test_an_address_brings_everything_back() -> None:
     assert refused == [] and start is not None
     back.initial_state = start
     assert back.link == left.link
-    assert np.array_equal(back.pins[1].start.velocity, START.velocity)  # type: ignore[union-attr]
+    assert np.array_equal(back.pins[1].initial_state.velocity, START.velocity)  # type: ignore[union-attr]
     # what is left out is the default again
     apply_address(back, "v=1")
     assert back.link == Session().link
