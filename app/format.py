@@ -11,7 +11,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 def prefixed(largest: float) -> tuple[float, str]:
     """The factor and letter of the SI prefix in which `largest` reads between 1 and 1000, rounded to three figures."""
     for factor, letter in _PREFIXES:
-        if largest >= 0.9995 * factor:  # 999.6 would read "1e+03"; the same in parts/toolkit/plot.js
+        if largest >= 0.9995 * factor:  # 999.6 would read "1e+03"; the same in parts/toolkit/round_numbers.js
             return factor, letter
     return 1.0, ""
 

@@ -9,6 +9,7 @@ import dis
 import importlib
 import inspect
 import logging
+import re
 from collections.abc import Iterable, Iterator
 from functools import cache
 from types import CodeType
@@ -16,6 +17,8 @@ from typing import Any, NamedTuple
 
 log = logging.getLogger("granchain")
 
+#: The libraries of the tables.
+LIBRARIES = ("bokeh", "panel", "param", "tornado")
 #: The modules that have a table.
 WITH_TABLES = (
     "serve.http.guard", "serve.http.compressed", "serve.monitoring.logs", "serve.document.document_lock",
@@ -29,12 +32,23 @@ class Needed(NamedTuple):
     """Names that a library does not document, and what happens where a release lacks one of them.
 
     `owner` is the dotted name of the module, class or method that has them: attributes of the class or of its
-    instances, or keyword arguments of the method.
+    instances, or keyword arguments of the method. A row is `required` where no page works without the names, or where a
+    promise of docs/security.md is not kept: the server does not start then. `without` says what would happen if it did.
     """
 
     owner: str
     names: tuple[str, ...]
     without: str
+    required: bool = False
+
+
+class MissingPart(RuntimeError):
+    """The installed release of a library lacks what the server does not start without; the text is a sentence."""
+
+    def __init__(self, name: str, without: str = "") -> None:
+        library = name.partition(".")[0].capitalize()
+        super().__init__(f"This release of {library} has no {name}; granchain does not start without it"
+                         f"{f' ({without})' if without else ''}. The releases that work are in pyproject.toml.")
 
 
 def tables() -> dict[str, tuple[Needed, ...]]:
@@ -42,10 +56,22 @@ def tables() -> dict[str, tuple[Needed, ...]]:
     return {name: importlib.import_module(f".{name}", __package__).NEEDED for name in WITH_TABLES}
 
 
-def warn_of_missing() -> None:
-    """Write into the log what the installed releases lack, a line for each row of a table."""
-    for row, name in [found for table in tables().values() for found in missing(table)]:
+def check_releases() -> None:
+    """Raise `MissingPart` where the installed releases lack what is required; log what else they lack, a line a row."""
+    found = [one for table in tables().values() for one in missing(table)]
+    for row, name in found:
+        if row.required:
+            raise MissingPart(name, row.without)
+    for row, name in found:
         log.warning("a library has no %s: %s", name, row.without)
+
+
+def missing_in_import(problem: ImportError) -> MissingPart | None:
+    """The failure of an import as a sentence; None if the import was not from a library of the tables."""
+    if (problem.name or "").partition(".")[0] not in LIBRARIES:
+        return None
+    name = re.search(r"cannot import name '(\w+)'", str(problem))
+    return MissingPart(f"{problem.name}.{name[1]}" if name else str(problem.name))
 
 
 def missing(table: Iterable[Needed]) -> list[tuple[Needed, str]]:

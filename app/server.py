@@ -20,15 +20,15 @@ from tornado.web import ErrorHandler
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
-from .needed import warn_of_missing
+from .needed import check_releases
 from .serve.compiling.compiler import COMPILER
-from .serve.computing.queues import PICTURES, SWEEPS
+from .serve.computing.queues import COMPUTING, QUEUES
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
 from .serve.http.guard import Rules, guard_handlers, guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.monitoring import logs
-from .serve.monitoring.metrics import METRICS, Liveness, MetricsHandler
+from .serve.monitoring.metrics import METRICS, Gauge, Liveness, MetricsHandler
 from .serve.opening.bokeh_defaults import remember_defaults
 from .serve.opening.panel_resources import remember_resources
 from .session.session import Session
@@ -82,12 +82,13 @@ def is_loopback(address: str) -> bool:
 
 def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = None, log_level: str = "warning",
           before: Callable[[], None] = lambda: None) -> None:
-    """Serve the page until interrupted; `/liveness` answers health checks. Raises `OSError` for a taken port.
+    """Serve the page until interrupted; `/liveness` answers health checks.
 
-    `before` is called when the server is about to listen.
+    Raises `OSError` for a taken port and `MissingPart` for a library whose release lacks what is needed. `before` is
+    called when the server is about to listen.
     """
     logs.configure(log_level)
-    warn_of_missing()
+    check_releases()
     before()
     server = server_at(port, address, access)
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else _in_url(address)
@@ -131,13 +132,26 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
 def _count_what_is_shared() -> None:
     """The queues and caches of all visitors, for `/metrics`."""
     METRICS.turn_wait = lambda: TURNS.wait
-    METRICS.gauges.update(queue=lambda: TURNS.waiting + PICTURES.waiting + SWEEPS.waiting,
-                         computing=lambda: PICTURES.busy_threads + SWEEPS.busy_threads)
+    METRICS.gauges.update(
+        queue=Gauge("Work that waits: for a thread of any queue, for its owner's share, or for a turn.",
+                    lambda: TURNS.waiting + sum(queue.waiting + queue.held for queue in QUEUES)),
+        computing=Gauge("Computations that have a turn, and work under way in the queues "
+                        f"{', '.join(queue.name for queue in COMPUTING)}.",
+                        lambda: TURNS.running + sum(queue.busy_threads for queue in COMPUTING)),
+        turns_waiting=Gauge("Computations that wait for a turn; each also keeps a thread of its queue busy.",
+                            lambda: TURNS.waiting),
+        queue_waiting=Gauge("Work that waits for a thread of the queue or for its owner's share.",
+                            lambda: {queue.name: queue.waiting + queue.held for queue in QUEUES}, "queue"),
+        queue_busy=Gauge("Threads of the queue that have work, even if it waits for a turn or another queue.",
+                         lambda: {queue.name: queue.busy_threads for queue in QUEUES}, "queue"))
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
     for name, cache in shared.items():
-        METRICS.gauges.update({f"{name}_cache_hits_total": partial(getattr, cache, "hits"),
-                              f"{name}_cache_misses_total": partial(getattr, cache, "misses"),
-                              f"{name}_cache_bytes": partial(getattr, cache, "used")})
+        METRICS.gauges.update({
+            f"{name}_cache_hits_total": Gauge(
+                f"Requests of a {name} that was there or under way.", partial(getattr, cache, "hits")),
+            f"{name}_cache_misses_total": Gauge(
+                f"Requests of a {name} that had to be computed.", partial(getattr, cache, "misses")),
+            f"{name}_cache_bytes": Gauge(f"Memory of the {name}s that are kept.", partial(getattr, cache, "used"))})
 
 
 def _in_url(address: str) -> str:

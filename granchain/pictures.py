@@ -49,7 +49,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
     >>> granchain.figure(curve).xaxis[0].axis_label
     'drive frequency f (Hz)'
     """
-    return part_of_app("plots.any_result").figure_of(result, theme, width, height, **options)
+    return part_of_app("plots.any_result").bokeh_figure_of(result, theme, width, height, **options)
 
 
 def part_of_app(name: str) -> Any:

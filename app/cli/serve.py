@@ -61,8 +61,15 @@ def do(arguments: argparse.Namespace) -> None:
 def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
     """Import the dashboard and serve it; `before` is called when it is about to listen."""
     gc.disable()  # an import makes nothing but what stays, and a tenth of its time was the search for garbage
-    from ..server import Access, is_loopback
-    from ..server import serve as serve_dashboard
+    from ..needed import MissingPart, missing_in_import
+
+    try:
+        from ..server import Access, is_loopback
+        from ..server import serve as serve_dashboard
+    except ImportError as problem:
+        if lack := missing_in_import(problem):
+            raise BadInput(str(lack)) from None
+        raise
 
     secret, sign_in = _secret(arguments), _sign_in(arguments)
     exposed = arguments.behind_proxy or not is_loopback(arguments.address)
@@ -76,6 +83,8 @@ def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
                     tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()))
     try:
         serve_dashboard(arguments.port, arguments.address, access=access, log_level=arguments.log_level, before=before)
+    except MissingPart as lack:
+        raise BadInput(str(lack)) from None
     except OSError as problem:
         raise BadInput(f"Cannot listen on {arguments.address}:{arguments.port}: {problem.strerror or problem}; "
                        f"try --port {arguments.port + 1}.") from None

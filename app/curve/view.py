@@ -14,7 +14,7 @@ from granchain_core.steady.curve.resonance import Place, place_of
 
 from ..format import prefixed
 from ..frames import round_up
-from ..parts.figures.figure_style import quiet_axis, quiet_plot, together
+from ..parts.figures.figure_style import bare_axis, bare_plot, models_collected_once
 from ..plots.axes import knob_scale
 from ..plots.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
 from ..plots.measured import COLUMNS, TOOLTIPS, measured_columns
@@ -57,12 +57,12 @@ class CurveFigure:
         self._sources["rest"] = self._line("rest", grey=False)
 
     def _frame(self, choose: Callable[[float], None]) -> Plot:
-        plot = quiet_plot((58, 26), (5, 5), ("below", "left"), name="resonance curve", x_range=Range1d(0, 1),
+        plot = bare_plot((58, 26), (5, 5), ("below", "left"), name="resonance curve", x_range=Range1d(0, 1),
                           y_range=Range1d(0, 1))
         plot.min_border_top = 10
         plot.min_border_bottom = 6
         plot.xaxis.axis_label = knob_scale("f").label
-        quiet_axis(plot.yaxis[0], OUTPUT_COLOUR)
+        bare_axis(plot.yaxis[0], OUTPUT_COLOUR)
         plot.on_event(Tap, lambda event: choose(event.x))
         return plot
 
@@ -285,7 +285,7 @@ class CurveFigure:
     def _fill(self, sources: dict[str, ColumnDataSource], start: str, points: list[CurvePoint]) -> None:
         """Draw the points of the curve of this start, in ascending frequency."""
         if points and start not in sources:
-            with together(self.figure):
+            with models_collected_once(self.figure):
                 sources[start] = self._line(start, grey=sources is self._grey_sources)
         if start in sources:
             ordered = sorted(points, key=lambda point: point.frequency)

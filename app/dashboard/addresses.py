@@ -46,7 +46,7 @@ def apply_address(session: Session, query: str) -> tuple[State | None, list[str]
     session.question = fields.get(QUESTION, "")
     if session.question and _read(lambda: read_question(session.question, scene), sentences) is None:
         session.question = ""
-    session.settled, session.started_from = None, None
+    session.settled, session.initial_state = None, None
     return _read(lambda: read_start(fields[START], scene), sentences) if START in fields else None, sentences
 
 

@@ -31,7 +31,7 @@ class Calls:
         with_document_lock(self._document, partial(self.guarded, action, *arguments))
 
     def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` in the next turn of the event loop; from any thread."""
+        """Call `action` in the next iteration of the event loop; from any thread."""
         if not self._closed:
             self._channel.next_tick(partial(self.guarded, action, *arguments))
 

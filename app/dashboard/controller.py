@@ -39,16 +39,16 @@ class Controller:
     `curve_computing`, which any thread may read.
     """
 
-    def __init__(self, document: Document, session: Session, start: State | None = None,
+    def __init__(self, document: Document, session: Session, initial_state: State | None = None,
                  make_calls: Callable[[Document, Callable[[Exception], None]], Calls] = Calls) -> None:
         """Make views, parts and pages, each with what it calls, and collect their actions.
 
-        The motion of the first picture begins in `start`, if that is given. `make_calls` makes the calls with the
-        document locked; tests have their own.
+        The motion of the first picture begins in `initial_state`, if that is given. `make_calls` makes the calls with
+        the document locked; tests have their own.
         """
         self._document = document
         self._calls = make_calls(document, self.failed)
-        self._first_start = start
+        self._initial_state = initial_state
         METRICS.visitor_came()
         self.on_close(METRICS.visitor_left)
         self.session = session
@@ -103,7 +103,7 @@ class Controller:
         COMPILER.prepare(self.session.scene)
         self.choices.set_theme(message.get("theme"))
         self.pinned.show()
-        self._scenes.show_preset(self._first_start, self.session.curves)
+        self._scenes.show_preset(self._initial_state, self.session.curves)
 
     def _visible(self, message: dict[str, Any]) -> None:
         name, visible = message.get("name"), message.get("value")
@@ -168,11 +168,11 @@ class Controller:
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `Host`."""
-        self._scenes.turn_knobs(scene, state, mode)
+        self._scenes.show(scene, state, mode)
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         """See `Host`."""
-        self._scenes.open_scene(scene, state, curves)
+        self._scenes.open(scene, state, curves)
 
     def address_changed(self) -> None:
         """See `Host`."""
@@ -189,7 +189,7 @@ class Controller:
 
     def picture_ready(self, settled: Settled) -> None:
         """A settled picture is ready: inform all that show something of it, the pages once it is offered."""
-        self.views.header.began_from(settled.start, self.session)
+        self.views.header.show_picture_start(settled.start, self.session)
         self.pinned.picture_ready(settled)
         self.files.picture_ready(settled)
         self._scenes.picture_ready(settled)

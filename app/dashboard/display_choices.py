@@ -31,9 +31,6 @@ class DisplayChoices:
         """Take the colours and line widths of a theme; the name of no theme changes nothing."""
         theme = THEMES.get(str(name))
         if theme is not None:
-            self._views.curve.ink(theme.ink, theme.line)
-            self._views.trains.ink(theme.ink)
-            self._views.trains.thicken(theme.line)
             self._views.apply_theme(theme)
             self._theme_changed(theme)
 

@@ -16,7 +16,7 @@ from .addresses import apply_address
 from .controller import Controller
 
 #: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (Needed("bokeh.core.property.validation", ("validate",), "the server does not start"),)
+NEEDED = (Needed("bokeh.core.property.validation", ("validate",), "an import would fail", required=True),)
 
 
 def page() -> None:
@@ -27,9 +27,9 @@ def page() -> None:
         raise RuntimeError("the page is made inside a request; serve it, do not call it")
     session = Session()
     query = _query(document)
-    start, sentences = apply_address(session, query) if query.strip("?") else (None, [])
+    initial_state, sentences = apply_address(session, query) if query.strip("?") else (None, [])
     with validate(False):  # validation takes a sixth of an opening, and tests find what it would
-        controller = Controller(document, session, start)
+        controller = Controller(document, session, initial_state)
         controller.views.put_into(document)
     pn.config.exception_handler = _handler(controller)
     if sentences:

@@ -69,7 +69,13 @@ class Views:
         self.curve.set_compact(compact)
 
     def apply_theme(self, theme: Theme) -> None:
-        """Draw the figures of all pages in another theme."""
+        """Draw in another theme what does not follow it by the style sheet: the figures of the page and of all pages.
+
+        The energy map has no colour or line of the theme of its own; its surroundings are styled by dashboard.css.
+        """
+        self.curve.ink(theme.ink, theme.line)
+        self.trains.ink(theme.ink)
+        self.trains.thicken(theme.line)
         for overlay in self.overlays.values():
             overlay.apply_theme(theme)
 

@@ -75,7 +75,7 @@ class LinksAndFiles:
         curves = self._curves.complete(session.scene)
         if what == "curve" and not curves:
             raise BadInput("No resonance curve is complete yet; wait until its progress bar disappears.")
-        return Screen(run, session.started_from, curves, session.link)
+        return Screen(run, session.initial_state, curves, session.link)
 
     def _write(self, end: str, content: Callable[[], bytes]) -> None:
         scene = self._host.session.scene

@@ -41,10 +41,10 @@ def size_of(settled: Settled) -> int:
 PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of, lambda pictures: pictures[-1:])
 
 
-def _computed(scene: Scene, start: State | None, most: float, stop: TurnFlag) -> Iterator[Settled]:
+def _computed(scene: Scene, initial_state: State | None, most: float, stop: TurnFlag) -> Iterator[Settled]:
     """Pictures on the way to the steady state; `TooLong` after `most` seconds of computing."""
     began = time.thread_time()
-    pictures = settling(scene, start=start, samples=samples_for(scene), stop=stop)
+    pictures = settling(scene, start=initial_state, samples=samples_for(scene), stop=stop)
     yield next(pictures)
     with stop.released():
         compiled = all(COMPILER.await_piece(scene, piece, stop) for piece in PICTURE_PIECES)
@@ -62,7 +62,7 @@ class _Request:
 
     scene: Scene
     #: Where the motion begins; None is rest.
-    origin: State | None
+    initial_state: State | None
     #: Whether it is computed however long it takes.
     insisted: bool
     #: Whether its energy residual is computed, too.
@@ -100,7 +100,8 @@ class MainPicture:
         #: The settled picture that was sent last; None while a live run is shown.
         self._sent: Settled | None = None
         self._requested_at: float | None = None
-        #: Frames of the last pictures, so that they are prepared once.
+        #: Frames of the last pictures. The cache of `prepared_frames` has only weak references, so without these the
+        #: event loop would prepare again what a worker has prepared.
         self._frames: deque[Frames] = deque(maxlen=2)
         host.on_close(self._close)
 
@@ -119,9 +120,9 @@ class MainPicture:
         """The live run; None while a settled motion is shown."""
         return self._live
 
-    def begin_live(self, start: State | None = None) -> None:
-        """Begin a live run of the session's scene, from `start` or from rest, in place of the one before."""
-        self._live = LiveRun(self._session.scene, self._session.cpu_time, start)
+    def begin_live(self, initial_state: State | None = None) -> None:
+        """Begin a live run of the session's scene, from `initial_state` or from rest, in place of the one before."""
+        self._live = LiveRun(self._session.scene, self._session.cpu_time, initial_state)
 
     def end_live(self) -> None:
         """From now on settled motions are shown."""
@@ -135,8 +136,8 @@ class MainPicture:
 
     # Computing
 
-    def compute(self, start: State | None = None) -> None:
-        """Compute a picture for the knobs as they are now, from `start` or from where the visitor chose."""
+    def compute(self, initial_state: State | None = None) -> None:
+        """Compute a picture for the knobs as they are now, from `initial_state` or from where the visitor chose."""
         self._requested_at = self._requested_at or time.monotonic()
         session, scene = self._session, self._session.scene
         if session.mode == "live":
@@ -148,7 +149,8 @@ class MainPicture:
                 self.advance(1)  # a paused chain shows the new knobs, too
         else:
             self._jobs.submit(partial(self._settled_pictures, _Request(
-                scene, start or session.previous_state(scene), scene == session.insisted, session.energy_account)))
+                scene, initial_state or session.previous_state(scene), scene == session.insisted,
+                session.energy_account)))
 
     def advance(self, samples: int | None = None) -> None:
         """Take the next step of the live run: `samples`, or as many as the viewing time asks for."""
@@ -172,14 +174,14 @@ class MainPicture:
 
         Only those from rest, and not insisted on, are shared with other visitors.
         """
-        scene, origin, insisted = request.scene, request.origin, request.insisted
+        scene, initial_state, insisted = request.scene, request.initial_state, request.insisted
         if not insisted:
             check_first_picture(scene)
         self._await_first_kernels(scene, stop)
-        self._host.next_tick(self._begun_from, origin)
-        key = None if origin is not None or insisted else scene
+        self._host.next_tick(self._begun_from, initial_state)
+        key = None if initial_state is not None or insisted else scene
         most = math.inf if insisted else WHOLE_PICTURE
-        with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, origin, most), stop,
+        with closing(PICTURES_SHARED.follow(key, partial(_computed, scene, initial_state, most), stop,
                                             self._jobs.cpu_time)) as pictures:
             for settled in pictures:
                 yield settled
@@ -188,10 +190,10 @@ class MainPicture:
                 settled = with_account(settled, stop)
             yield settled
 
-    def _begun_from(self, origin: State | None) -> None:
+    def _begun_from(self, initial_state: State | None) -> None:
         """Remember where the motion begins; called with the document locked, before the first picture arrives."""
-        if origin is not self._session.started_from:
-            self._session.started_from = origin
+        if initial_state is not self._session.initial_state:
+            self._session.initial_state = initial_state
             self._host.address_changed()
 
     def _await_first_kernels(self, scene: Scene, stop: TurnFlag) -> None:
@@ -246,7 +248,6 @@ class MainPicture:
         live = isinstance(result, LiveStep)
         if live != (self._session.mode == "live") or result.run.scene.name != self._session.scene.name:
             return
-        METRICS.count("pictures")
         self._count_answer()
         if isinstance(result, Settled):
             self._session.settled = result
@@ -273,6 +274,7 @@ class MainPicture:
         self._views.status_line.update_state(busy=words)
 
     def _send(self, number: int, result: Settled | LiveStep) -> None:
+        METRICS.count("pictures")
         if isinstance(result, Settled):
             self._sent = result
             show_settled(self._views, number, result)

@@ -26,7 +26,10 @@ from .layout import Views
 
 
 class Pinned:
-    """Actions of the tab “numbers”. A pin is a scene and a start, so it fits into a link; its motion is computed."""
+    """Actions of the tab “numbers”.
+
+    A pin is a scene and an initial state, so it fits into a link; its motion is computed.
+    """
 
     def __init__(self, host: Host, views: Views) -> None:
         self._host = host
@@ -76,7 +79,7 @@ class Pinned:
         settled = session.settled
         if settled.run.scene != session.scene:  # where it begins is not known yet
             raise BadInput("The picture of these knobs is still being computed; pin it when it is shown.")
-        pin = Pin(session.scene, session.started_from)
+        pin = Pin(session.scene, session.initial_state)
         if settled.final:
             self._runs[_key(pin)] = settled.run
         if self._views.curve.whole:
@@ -93,7 +96,7 @@ class Pinned:
 
     def _open(self, message: dict[str, Any]) -> None:
         pin = listed("pin", self._session.pins, message.get("number"))
-        self._host.open(pin.scene, pin.start, "")
+        self._host.open(pin.scene, pin.initial_state, "")
 
     def _changed(self) -> None:
         self.show()
@@ -106,7 +109,7 @@ class Pinned:
             check_first_picture(pin.scene)
             job.give_way()
             job.compile(pin.scene, *PICTURE_PIECES)
-            found = settle(pin.scene, start=pin.start, samples=samples_for(pin.scene), stop=job.stop)
+            found = settle(pin.scene, start=pin.initial_state, samples=samples_for(pin.scene), stop=job.stop)
             job.next_tick(self._settled, pin, found.run)
 
     def _sweep(self, missing: Sequence[Scene], cpu_time: CpuTime, job: Job) -> None:
@@ -159,6 +162,6 @@ class Pinned:
 
 
 def _key(pin: Pin) -> str:
-    """What identifies a pin: its link, and the start itself if that is too long for a link."""
-    short = pin.start is None or len(pin.start.displacement) <= MOST_BEADS
-    return pin.text if short else f"{pin.text} {id(pin.start)}"
+    """What identifies a pin: its link, and the initial state itself if that is too long for a link."""
+    short = pin.initial_state is None or len(pin.initial_state.displacement) <= MOST_BEADS
+    return pin.text if short else f"{pin.text} {id(pin.initial_state)}"

@@ -33,17 +33,17 @@ class SceneChanges:
         self._show_message = show_message
         self._next_tick = next_tick
         #: The settled picture of which the pages have not been informed yet.
-        self._untold: Settled | None = None
+        self._picture_for_pages: Settled | None = None
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
-    def turn_knobs(self, scene: Scene, state: State | None, mode: str) -> None:
+    def show(self, scene: Scene, state: State | None, mode: str) -> None:
         """Turn the knobs to `scene` and show its motion; see `Host.show`."""
         self._session.set_mode(mode)
         self._session.scene = scene
         self._follow_mode(state)
         self._show_turned_knobs(state)
 
-    def open_scene(self, scene: Scene, state: State | None, curves: str) -> None:
+    def open(self, scene: Scene, state: State | None, curves: str) -> None:
         """Open a scene, maybe another preset; see `Host.open`."""
         session = self._session
         another = scene.name != session.scene.name
@@ -57,8 +57,8 @@ class SceneChanges:
             session.curves = self._curves.select(scene, curves)
         self._show_turned_knobs(state)
 
-    def show_preset(self, start: State | None, curves: str) -> None:
-        """Another preset is the session's scene: the whole dashboard shows it, its motion from `start`.
+    def show_preset(self, initial_state: State | None, curves: str) -> None:
+        """Another preset is the session's scene: the whole dashboard shows it, its motion from `initial_state`.
 
         `curves` are those of a link; an empty text leaves them as they are.
         """
@@ -71,7 +71,7 @@ class SceneChanges:
         self._views.header.show_session(self._session)
         if self._session.mode == "live":
             self._pictures.begin_live()
-        self.request_picture(start)
+        self.request_picture(initial_state)
 
     def choose_frequency(self, frequency: object) -> None:
         """Turn the knob f to a place on the curve."""
@@ -79,20 +79,20 @@ class SceneChanges:
         self._send_knob_values()
         self._follow_knobs()
 
-    def request_picture(self, start: State | None = None) -> None:
+    def request_picture(self, initial_state: State | None = None) -> None:
         """Request a picture of the knobs as they are."""
-        self._untold = None
+        self._picture_for_pages = None
         for page in self._pages:
             page.picture_requested()
-        self._pictures.compute(start)
+        self._pictures.compute(initial_state)
 
     def picture_ready(self, settled: Settled) -> None:
         """Inform the pages once a picture is offered to the browser, unless another is requested or ready by then."""
-        self._untold = settled
+        self._picture_for_pages = settled
         self._next_tick(self._tell_picture)
 
     def _tell_picture(self) -> None:
-        settled, self._untold = self._untold, None
+        settled, self._picture_for_pages = self._picture_for_pages, None
         if settled is not None:
             for page in self._pages:
                 page.picture_ready(settled)
@@ -117,21 +117,31 @@ class SceneChanges:
         self.show_preset(None, "")
 
     def _go(self, message: dict[str, Any]) -> None:
-        """A step back or forward: the session becomes what the address says, its picture to the last digit."""
+        """A step back or forward: the session becomes what the address says, its picture to the last digit.
+
+        The browser is told in any case: until it is, it takes every change for a part of the step (`Steps.returning` of
+        address.js), and no change could be undone any more.
+        """
+        try:
+            self._apply(str(message.get("query", "")))
+        finally:
+            self._views.header.send(type="address-applied", query=self._session.link)
+
+    def _apply(self, query: str) -> None:
+        """Show what an address says."""
         session, name, curves = self._session, self._session.scene.name, self._session.curves
-        start, refused = apply_address(session, str(message.get("query", "")))
+        initial_state, refused = apply_address(session, query)
         self._follow_mode()
         for page in self._pages:
             page.address_applied()
         self._pinned.show()
         if session.scene.name != name:
-            self.show_preset(start, session.curves)
+            self.show_preset(initial_state, session.curves)
         else:
             if session.curves != curves:
                 session.curves = self._curves.select(session.scene, session.curves)
-            self._show_turned_knobs(start)
+            self._show_turned_knobs(initial_state)
         self._show_message(" ".join(refused))
-        self._views.header.send(type="address-applied", query=session.link)
 
     # What follows
 
@@ -142,15 +152,15 @@ class SceneChanges:
         elif state is not None or self._pictures.live is None:
             self._pictures.begin_live(state)
 
-    def _show_turned_knobs(self, start: State | None) -> None:
+    def _show_turned_knobs(self, initial_state: State | None) -> None:
         """The knobs were turned, but not by the visitor: the bar and the knobs show it, too."""
         self._views.header.show_session(self._session)
         self._send_knob_values()
-        self._follow_knobs(start)
+        self._follow_knobs(initial_state)
 
-    def _follow_knobs(self, start: State | None = None) -> None:
+    def _follow_knobs(self, initial_state: State | None = None) -> None:
         """The knobs were turned: request a picture first, then inform the pages and the curve."""
-        self.request_picture(start)
+        self.request_picture(initial_state)
         if self._session.sentence:
             self._show_message("")
         self._tell_of_scene()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from ..pages.accuracy.page import AccuracyPage
 from ..pages.accuracy.view import Accuracy
@@ -30,16 +30,18 @@ from ..parts.toolkit.component import Component
 from ..session.host import Host
 from ..session.page import Page
 
+#: The heights of a tab.
+Height = Literal["usual", "taller", "tallest"]
+
 
 @dataclass(frozen=True)
 class TabSpec:
-    """A tab that belongs to no page; the fields are those of a `PageSpec`, but it is not `taller` by default."""
+    """A tab that belongs to no page; the fields are those of a `PageSpec`, but its `height` is "usual" by default."""
 
     name: str
     group: str
-    taller: bool = False
+    height: Height = "usual"
     placeholder: str = ""
-    tallest: bool = False
 
 
 @dataclass(frozen=True)
@@ -47,22 +49,21 @@ class PageSpec:
     """One page: its name in messages, in links and on its tab, what is computed and how it is drawn.
 
     `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
-    tabs.js. `placeholder` stands in the tab until the page has something to say. `taller` gives the tab more height. A
-    tab that is `tallest` takes the place of the curve. `group` is one of `GROUPS`. A page that `works_hidden` goes on
-    while its window is hidden or its tab is scrolled off the screen; the others count as not looked at then
-    (`Page.visibility_changed`). While a page that `needs_curve` lies over the pictures, the resonance curve is computed
-    as if it were on the screen.
+    tabs.js. `placeholder` stands in the tab until the page has something to say. A tab whose `height` is "taller" gets
+    more room than usual, and one that is "tallest" also takes the place of the curve, except on a phone. `group` is one
+    of `GROUPS`. A page that `works_hidden` goes on while its window is hidden or its tab is scrolled off the screen;
+    the others count as not looked at then (`Page.visibility_changed`). While a page that `needs_curve` lies over the
+    pictures, the resonance curve is computed as if it were on the screen.
     """
 
     name: str
     page: Callable[[Host, Any], Page]
     view: Callable[..., Component] | None
     placeholder: str = ""
-    taller: bool = True
+    height: Height = "taller"
     works_hidden: bool = True
     group: str = "try"
     needs_curve: bool = False
-    tallest: bool = False
 
 
 #: The groups of tabs; a tab of none of them stands apart at the end.
@@ -76,7 +77,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
     PageSpec("probe", ProbePage, Probe),
     PageSpec("stability", StabilityPage, Stability, works_hidden=False),
     PageSpec("accuracy", AccuracyPage, Accuracy, group="check"),
-    PageSpec("map", MapPage, None, tallest=True),
+    PageSpec("map", MapPage, None, height="tallest"),
     PageSpec("effects", EffectsPage, None, group="check"),
     PageSpec("branches", BranchesPage, Branches,
         "Periodic orbits followed over the drive frequency, stable and unstable.", needs_curve=True),
@@ -84,12 +85,12 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
         "Spectrum, bifurcation diagram, basins and Lyapunov exponents of the present scene."),
     PageSpec("observer", ObserverPage, Observer,
         "A copy of the chain that is driven only by its input force.", works_hidden=False),
-    PageSpec("hard", HardCasesPage, HardCases, ABOUT, taller=False, group="check"),
+    PageSpec("hard", HardCasesPage, HardCases, ABOUT, height="usual", group="check"),
     PageSpec("paper", PaperPage, Paper,
-        "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", taller=False,
+        "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", height="usual",
         group="learn"),
     PageSpec("numbers", NumbersPage, None, group=""),
-    TabSpec("data", "", taller=True),
+    TabSpec("data", "", height="taller"),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
 #: What the resonance curve, which is not a page, is called in the message `visible`.
@@ -110,8 +111,7 @@ check_names(TABS)
 def described_tabs() -> list[dict[str, Any]]:
     """What the browser needs of the table, in the order of the groups."""
     order = (*GROUPS, "")
-    return [{"name": row.name, "placeholder": row.placeholder, "taller": row.taller, "tallest": row.tallest,
-             "group": row.group}
+    return [{"name": row.name, "placeholder": row.placeholder, "height": row.height, "group": row.group}
             for row in sorted(TABS, key=lambda row: order.index(row.group))]
 
 

@@ -121,9 +121,9 @@ class Tabs {
   choose(name) {
     this.chosen = name;
     if (name !== "stories") leaveStories();
-    const { taller, tallest } = this.rows.get(name);
-    document.getElementById("curves").classList.toggle("taller", Boolean(taller));
-    this.larger.set(this.larger.wanted || (Boolean(tallest) && !PHONE.matches));
+    const { height } = this.rows.get(name);
+    document.getElementById("curves").classList.toggle("taller", height !== "usual");
+    this.larger.set(this.larger.wanted || (height === "tallest" && !PHONE.matches));
     this.show();
     window.granchain.address.setPlace({ tab: name === this.first ? "" : name });
     window.granchain.emit("tab", name);

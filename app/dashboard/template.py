@@ -17,8 +17,8 @@ from ..serve.document.part_messages import register
 
 #: What is used of Bokeh and Panel beyond their documentation (`app/needed.py`).
 NEEDED = (
-    Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page can be made"),
-    Needed("panel.io.resources", ("BASE_TEMPLATE",), "the server does not start"),
+    Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page could be made", required=True),
+    Needed("panel.io.resources", ("BASE_TEMPLATE",), "an import would fail", required=True),
 )
 
 

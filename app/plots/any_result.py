@@ -120,7 +120,7 @@ _PAPER = (EnergyMaps, Observers, Rig, RigResponse, ShakerAmplitude, Trains, Tran
 _TOGETHER: dict[type, Callable[..., LayoutDOM]] = {Curve: curve, Branch: branches}
 
 
-def figure_of(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
+def bokeh_figure_of(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
               **options: Any) -> LayoutDOM:
     """The figure of a result with a size of its own; what `granchain.figure` says of it holds."""
     drawn, size = _drawn(result, theme, options)

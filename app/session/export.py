@@ -27,10 +27,13 @@ _SAME_DIFFERENCE = 5e-6
 
 @dataclass(frozen=True, eq=False)
 class Screen:
-    """A settled picture with its start (None is rest), its complete curves by the start of each, and its address."""
+    """A settled picture with its initial state, its complete curves by the start of each, and its address.
+
+    An initial state of None is rest.
+    """
 
     run: Run
-    start: State | None
+    initial_state: State | None
     curves: Mapping[str, Sequence[CurvePoint]]
     query: str
 
@@ -115,7 +118,7 @@ import numpy as np
 from granchain import State, resonance_curve, scene, settle
 
 chain = {chain}'''
-    picture = f"""{_start(screen.start)}
+    picture = f"""{_start(screen.initial_state)}
 run = settle(chain, start=start, samples={screen.run.samples}).run"""
     forces = {title: float(getattr(screen.run, field)) for title, field in _FORCES.items()}
     numbers = f"""# What the page showed, and what was computed now.

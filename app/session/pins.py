@@ -22,12 +22,12 @@ class Pin:
     """A settled motion: its scene, and the state in which it began; None is rest."""
 
     scene: Scene
-    start: State | None = None
+    initial_state: State | None = None
 
     @property
     def text(self) -> str:
         """The pin as a link without a view."""
-        return encode(self.scene, {}, {START: start_text(self.start)})
+        return encode(self.scene, {}, {START: start_text(self.initial_state)})
 
 
 def pin_texts(pins: Sequence[Pin]) -> dict[str, str]:

@@ -50,7 +50,7 @@ class Session:
     #: The last settled picture, maybe of knobs that have moved since; None until there is one of this preset.
     settled: Settled | None = None
     #: The state in which the motion on the screen began; None for rest.
-    started_from: State | None = None
+    initial_state: State | None = None
     #: What the visitor is told until the next valid action, for instance why a value was refused.
     sentence: str = ""
     #: What the visitor is told until the next picture, for instance that kernels are being compiled.
@@ -77,7 +77,7 @@ class Session:
         """The query string that brings back what is on the screen: scene, knobs, where the motion began, the view."""
         view = {name: setting.text(getattr(self, setting.attribute))
                 for name, setting in VIEW.items() if name not in BROWSER_FIELDS}
-        began = self.started_from if self.mode == "settled" else None
+        began = self.initial_state if self.mode == "settled" else None
         texts = {START: start_text(began), "story": self.story, QUESTION: self.question, **pin_texts(self.pins)}
         return encode(self.scene, view, texts)
 

@@ -124,7 +124,7 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None
         if mine in SHARED:
             assert theirs in SHARED, f"{module} imports {name}"
         elif module == "app.cli.serve":
-            assert name in ("app.server", "app.cli.common", "app.cli.options", "app.cli.waiting",
+            assert name in ("app.server", "app.needed", "app.cli.common", "app.cli.options", "app.cli.waiting",
                             "app.serve.http.limits"), f"{module} imports {name}"
         elif mine in USES:
             fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())

@@ -87,14 +87,14 @@ def test_a_number_in_a_knobs_field_has_six_figures(blank: Page) -> None:
 
 
 def test_ticks_are_round_and_inside(blank: Page) -> None:
-    assert called(blank, "parts/toolkit/plot.js", "ticks", [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
+    assert called(blank, "parts/toolkit/round_numbers.js", "ticks", [[0, 10, 5], [-1, 1, 4], [0.13, 0.47, 3], [0, 1e-9, 2], [20, 160, 5]]) == [
         [0, 2, 4, 6, 8, 10], [-1, -0.5, 0, 0.5, 1], [0.2, 0.4], [0, 5e-10, 1e-9], [50, 100, 150]]
-    assert called(blank, "parts/toolkit/plot.js", "stepBelow", [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
+    assert called(blank, "parts/toolkit/round_numbers.js", "stepBelow", [[1], [7], [0.03], [9.99], [10], [450]]) == pytest.approx([1, 5, 0.02, 5, 10, 200])
 
 
 def test_the_browser_takes_the_prefixes_that_the_server_takes(blank: Page) -> None:
     values = [0.0, 1e-19, 999.4e-18, 999.6e-9, 1e-6, 0.001, 0.9994, 0.9996, 1.0, 999.4, 999.6, 1e3, 4.2e6, 1e9, 1e12]
-    found = called(blank, "parts/toolkit/plot.js", "prefixed", [[value] for value in values])
+    found = called(blank, "parts/toolkit/round_numbers.js", "prefixed", [[value] for value in values])
     assert [letter for _, letter in found] == [prefixed(value)[1] for value in values]
     assert [factor for factor, _ in found] == pytest.approx([prefixed(value)[0] for value in values], rel=1e-12, abs=0.0)
 
@@ -192,6 +192,21 @@ def test_undo_and_redo_go_to_the_server_and_wait_for_its_answer(page: Page) -> N
     assert page.evaluate("granchain.steps.at") == 2
     page.evaluate("granchain.address.applied('v=1&scene=sec2&f=2'); granchain.steps.redo()")
     assert page.evaluate("[granchain.steps.at, granchain.steps.newest]") == [2, 2], "there is nothing ahead"
+
+
+def test_an_event_that_is_not_declared_is_an_error(page: Page) -> None:
+    """A misspelt name would otherwise be heard by nobody, without a word."""
+    for call in ("on('step', () => {})", "emit('step')"):
+        said = page.evaluate(f"() => {{ try {{ granchain.{call}; }} catch (error) {{ return error.message; }} }}")
+        assert said == "there is no event step"
+    assert page.evaluate("granchain.on('page:map', (data) => { window.heard = data; }); granchain.publish('map', 3); heard") == 3
+
+
+def test_what_the_page_before_a_reload_kept_is_taken_once(page: Page) -> None:
+    page.evaluate("sessionStorage.setItem('granchain-again', JSON.stringify({ playing: false }))")
+    page.reload()
+    taken = page.evaluate("[granchain.connection.again, granchain.connection.takeAgain(), granchain.connection.takeAgain()]")
+    assert taken == [{"playing": False}, {"playing": False}, None] and page.evaluate("granchain.connection.again") is None
 
 
 def test_a_silent_server_is_asked_counted_as_lost_and_taken_back(page: Page) -> None:

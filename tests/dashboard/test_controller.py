@@ -129,7 +129,7 @@ def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboa
     for picture in (replace(found, run=replace(found.run, start=GIVEN_STATE)), found):
         dashboard.picture_ready(picture)
         state = dashboard.views.header.state
-        assert (state["origin"], state["start"]) == (picture.start, "rest")
+        assert (state["picture_start"], state["start"]) == (picture.start, "rest")
 
 
 def test_the_pages_hear_of_a_picture_when_it_was_sent(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -180,7 +180,7 @@ def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeyp
     changed.set()
     dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
     assert session.settled is not None and session.settled.run.start == GIVEN_STATE
-    assert session.started_from is before.state and session.settled.run.energy_residual is not None
+    assert session.initial_state is before.state and session.settled.run.energy_residual is not None
 
 
 def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,
@@ -328,3 +328,35 @@ def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monke
     finally:
         for _ in range(40):
             METRICS.lagged(0.0)
+
+
+def test_a_step_of_the_history_ends_in_the_browser_even_if_a_page_fails(dashboard: Dashboard,
+                                                                        monkeypatch: pytest.MonkeyPatch) -> None:
+    """Until `address-applied` comes no change of the visitor becomes a step of the history."""
+
+    def fail() -> None:
+        raise RuntimeError("a page's own fault")
+
+    monkeypatch.setattr(dashboard.pages[-1], "address_applied", fail)
+    dashboard.received({"do": "go", "query": "scene=sec2&f=2000"})
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert [message["query"] for message in dashboard.told if message["type"] == "address-applied"] == [dashboard.session.link]
+
+
+def test_a_picture_that_is_overtaken_before_it_is_sent_is_not_counted(dashboard: Dashboard) -> None:
+    dashboard.session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    found, counted = settle(chain, samples=8), METRICS.pictures
+    for _ in range(5):
+        dashboard.pictures._accept(found)
+    assert METRICS.pictures - counted == 2
+    dashboard.pictures.painted(1)
+    assert METRICS.pictures - counted == 3
+
+
+def test_the_figures_of_the_page_and_of_its_pages_follow_a_theme(dashboard: Dashboard) -> None:
+    views, theme = dashboard.views, THEMES["projector"]
+    widths = [line.glyph.line_width for line in views.trains._lines]
+    views.apply_theme(theme)
+    assert views.curve._dot.glyph.line_color == theme.ink
+    assert [line.glyph.line_width for line in views.trains._lines] == [pytest.approx(theme.line * width) for width in widths]
+    assert views.overlays["branches"].theme == theme

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -118,10 +118,37 @@ class Trial:
         """What the view has been told to show."""
         return dict(self.view.state)
 
+    def messages(self, kind: str) -> list[dict[str, Any]]:
+        """The messages of a kind that were sent to the browser."""
+        return [one for one in self.told if one.get("type") == kind]
+
     def last(self, kind: str) -> dict[str, Any]:
         """The last message of a kind that was sent to the browser."""
-        return next(one for one in reversed(self.told) if one.get("type") == kind)
+        return self.messages(kind)[-1]
 
-    def said(self, words: str) -> bool:
-        """Whether the page shows these words, or has sent them, or has left them to the dashboard."""
-        return words in repr((self.state, self.told, self.host.failures, [sentence for _, sentence in self.host.faults]))
+    @property
+    def statuses(self) -> set[str]:
+        """The status of each computation, as the page shows or has shown it (`StatusWords.of`)."""
+        return set(self._entries("status"))
+
+    @property
+    def sentences(self) -> list[str]:
+        """What the page says of failures, or has left to the dashboard to say; a row of effects says it in `state`."""
+        rows = (one for one in self._entries("state") if isinstance(one, str))
+        return [*self._entries("failure"), *rows, *map(str, self.host.failures), *(sentence for _, sentence in self.host.faults)]
+
+    @property
+    def is_stale(self) -> bool:
+        """Whether the page calls what it shows out of date."""
+        return any(self._entries("stale"))
+
+    def _entries(self, name: str) -> Iterator[Any]:
+        """The values of this name in the state and in the messages, at any depth."""
+        waiting: list[Any] = [self.state, *self.told]
+        while waiting:
+            one = waiting.pop()
+            if isinstance(one, dict):
+                yield from (value for key, value in one.items() if key == name)
+                waiting.extend(one.values())
+            elif isinstance(one, (list, tuple)):
+                waiting.extend(one)

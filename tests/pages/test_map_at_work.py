@@ -70,7 +70,7 @@ def test_f_and_A0_move_the_mark_and_any_other_knob_asks_for_another_map(tab: Tri
     tab.compute()
     tab.turn(f=2100.0)
     tab.rest()
-    assert tab.last("map-now")["now"] and tab.under_way == [] and not tab.said("map-stale")
+    assert tab.last("map-now")["now"] and tab.under_way == [] and tab.messages("map-stale") == []
     tab.turn(kappa=0.2)
     assert tab.last("map-stale") and tab.under_way == [], "it begins when the knobs rest"
     tab.turn(kappa=0.3)

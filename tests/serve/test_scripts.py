@@ -76,17 +76,17 @@ def test_no_other_file_is_served(path: str) -> None:
 
 def test_an_address_changes_with_what_is_served() -> None:
     """Whatever the browser kept of an earlier version has another address."""
-    assert re.fullmatch(r"components/app\.scripts/Scripts_[0-9a-f]{12}/__javascript_modules__/parts/toolkit/plot\.js", address("plot.js"))
+    assert re.fullmatch(r"components/app\.scripts/Scripts_[0-9a-f]{12}/__javascript_modules__/parts/toolkit/svg\.js", address("svg.js"))
 
 
 def test_a_module_is_found_without_panel_and_kept_by_the_browser_for_good() -> None:
     assert all(scripts.file_at(url.removeprefix("components/")) == served(url) for url in map(address, FILES))
-    assert scripts.file_at("app.scripts/Scripts_000000000000/__javascript_modules__/parts/toolkit/plot.js") is None
+    assert scripts.file_at("app.scripts/Scripts_000000000000/__javascript_modules__/parts/toolkit/svg.js") is None
     assert set(scripts.modules()) == {address(name) for name in FILES} - {address(name) for name in scripts.INLINE_SCRIPTS}
     one = Listening(Access())
     try:
-        assert all(f'<link rel="modulepreload" href="{url}">' in one.ask()[2] for url in (address("plot.js"), address("chain.js")))
-        assert "immutable" in one.ask("/" + address("plot.js"))[1]["Cache-Control"]
+        assert all(f'<link rel="modulepreload" href="{url}">' in one.ask()[2] for url in (address("svg.js"), address("chain.js")))
+        assert "immutable" in one.ask("/" + address("svg.js"))[1]["Cache-Control"]
         assert "immutable" not in one.ask("/static/js/bokeh.min.js")[1].get("Cache-Control", "")
     finally:
         one.stop()

@@ -43,13 +43,13 @@ def test_what_is_no_state_is_refused(text: str, told: str) -> None:
 
 def test_an_address_brings_everything_back() -> None:
     left = Session(SHOWN, start="previous", scale="fit", speed=0.25, energy_account=True, story="coexisting.2",
-                   started_from=START, pins=(Pin(scene("sec2")), Pin(scene("rig").evolve(D=12.0), START)))
+                   initial_state=START, pins=(Pin(scene("sec2")), Pin(scene("rig").evolve(D=12.0), START)))
     back = Session()
     start, refused = apply_address(back, left.link)
     assert refused == [] and start is not None
-    back.started_from = start
+    back.initial_state = start
     assert back.link == left.link
-    assert np.array_equal(back.pins[1].start.velocity, START.velocity)  # type: ignore[union-attr]
+    assert np.array_equal(back.pins[1].initial_state.velocity, START.velocity)  # type: ignore[union-attr]
     # what is left out is the default again
     apply_address(back, "v=1")
     assert back.link == Session().link

@@ -119,7 +119,7 @@ def test_every_link_that_is_made_can_be_read(name: str, beads: int, f: float, am
     states = [State(1e-6 * rng.standard_normal(beads), 1e-2 * rng.standard_normal(beads), 1234 / 9999)
               if started >> place & 1 else None for place in range(1 + pins)]
     left = Session(shown, start="previous", scale="fit", speed=0.25, energy_account=True, curves="rest.up.down.features",
-                   started_from=states[0], story="coexisting.2", pins=tuple(Pin(shown, one) for one in states[1:]),
+                   initial_state=states[0], story="coexisting.2", pins=tuple(Pin(shown, one) for one in states[1:]),
                    question="strobes?knob=A0&from=1.23456789012345e-07&to=1.23456789012345e-06&values=199&keep=499")
     back = Session()
     start, refused = apply_address(back, left.link + "&tab=stability&page=stability&look=projector&embed=1")
@@ -149,12 +149,12 @@ def test_pins_without_room_are_left_out_with_a_sentence() -> None:
     rng = np.random.default_rng(3)
     long = scene("sec2").evolve(N=MOST_BEADS)
     start = State(rng.standard_normal(MOST_BEADS) * 1e-6, rng.standard_normal(MOST_BEADS) * 1e-2)
-    full = Session(long, started_from=start, pins=(Pin(long, start),) * 3)
+    full = Session(long, initial_state=start, pins=(Pin(long, start),) * 3)
     knobs = {"f": 123.45678901234567, "A0": 1.2345678901234567e-7, "D": 12.345678901234567, "k": 12345.678901234567,
              "F0": 1.2345678901234567, "accuracy": 1.2345678901234567e-7, "taper": 1.0123456789012345,
              "dimer": 0.34567890123456789, "striker": 1.0123456789012345, "site": 12, "impurity": 0.23456789012345678,
              "dissipation": "kuwabara-kono", "tension": "cut", "wall": 1.2345678901234567}
-    fuller = Session(long.evolve(**knobs), started_from=start, pins=(Pin(long.evolve(**knobs), start),) * 3)
+    fuller = Session(long.evolve(**knobs), initial_state=start, pins=(Pin(long.evolve(**knobs), start),) * 3)
     assert (full.pins_left_out == "") == (pins_in(full.link) == 3)
     assert pins_in(fuller.link) == 2 and fuller.pins_left_out.startswith("The link has room for 2 of 3 pins")
 

@@ -2,7 +2,8 @@
 
 import { ChainDrawing } from "../../parts/chain/chain_drawing.js";
 import { element } from "../../parts/toolkit/dom.js";
-import { draw, frame, round3, ticks, words } from "../../parts/toolkit/plot.js";
+import { round3, ticks } from "../../parts/toolkit/round_numbers.js";
+import { draw, frame, words } from "../../parts/toolkit/svg.js";
 
 class DisturbedChain extends ChainDrawing {
   // A mode has no size of its own: its largest displacement is drawn as this part of the distance of two beads.

@@ -95,7 +95,7 @@ class StabilityPage(Page):
         again = self._settled is not None and settled.state is self._settled.state  # with its energy account
         self._settled = settled
         if not again:
-            self._start, self._rank = self._host.session.started_from, 0
+            self._start, self._rank = self._host.session.initial_state, 0
             self._quiet.start(self._begin)
 
     def visibility_changed(self, visible: bool) -> None:

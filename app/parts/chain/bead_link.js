@@ -1,7 +1,7 @@
 // A line joins the bead under the pointer, or else the chosen bead, to its column of the map, which has a frame. The
 // chain is wider than the map, so a bead is not above its column.
 
-import { draw } from "../toolkit/plot.js";
+import { draw } from "../toolkit/svg.js";
 
 export class BeadLink {
   constructor(drawing, layout, redraw) {

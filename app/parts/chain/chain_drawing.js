@@ -2,7 +2,7 @@
 
 import { extremes, sampler } from "./chain_series.js";
 import { writeWords } from "./chain_words.js";
-import { stepBelow } from "../toolkit/plot.js";
+import { stepBelow } from "../toolkit/round_numbers.js";
 import { Steel } from "./steel.js";
 
 const NUMBERED = 13; // px; smaller beads have no number

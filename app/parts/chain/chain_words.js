@@ -1,6 +1,6 @@
 // The words over a drawn chain: its ends, the magnification of its displacements, and a bar for them.
 
-import { prefixed, stepBelow } from "../toolkit/plot.js";
+import { prefixed, stepBelow } from "../toolkit/round_numbers.js";
 
 // The magnification, with a bar as long as a displacement of 1, 2 or 5 times a power of ten.
 export function writeWords(chain) {

@@ -10,7 +10,7 @@ from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
 from ...needed import Needed
 
 #: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page can be made"),)
+NEEDED = (Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page could be made", required=True),)
 
 # Borders [px], the same for all time pictures, so that one cursor and the chain fit them exactly.
 TOP = 78
@@ -19,7 +19,7 @@ LEFT = 60
 GAP = 6
 
 
-def quiet_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str, str | None],
+def bare_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str, str | None],
                grids: tuple[int, ...] = (0, 1), **options: Any) -> Plot:
     """A plot without toolbar that fills its cell; its colours come from the page's CSS.
 
@@ -38,12 +38,12 @@ def quiet_plot(borders: tuple[int, int], ticks: tuple[int, int], axes: tuple[str
             plot.add_layout(Grid(dimension=dimension, ticker=ticker, grid_line_alpha=1.0))
         if side is not None:
             axis = LinearAxis(ticker=ticker)
-            quiet_axis(axis)
+            bare_axis(axis)
             plot.add_layout(axis, side)
     return plot
 
 
-def quiet_axis(axis: Any, colour: str | None = None) -> None:
+def bare_axis(axis: Any, colour: str | None = None) -> None:
     """No tick marks, no lines, large upright labels; the label in `colour` when it names a quantity."""
     axis.axis_line_color = None
     axis.major_tick_line_color = None
@@ -57,6 +57,6 @@ def quiet_axis(axis: Any, colour: str | None = None) -> None:
         axis.css_variables = {"--bk-axis-label-text-color": colour}
 
 
-def together(plot: Plot) -> AbstractContextManager[None]:
+def models_collected_once(plot: Plot) -> AbstractContextManager[None]:
     """Collect the document's models once for all that is added to a plot inside, not for each change."""
     return plot.document.models.freeze() if plot.document is not None else nullcontext()

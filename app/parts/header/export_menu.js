@@ -2,7 +2,7 @@
 
 import { figuresIn, modelsNamed, svgContext, svgOf, viewOf, writtenSvg } from "../figures/bokeh.js";
 import { button, download, element } from "../toolkit/dom.js";
-import { draw, SVG } from "../toolkit/plot.js";
+import { draw, SVG } from "../toolkit/svg.js";
 
 const MARGIN = 12, // px around a picture
   SHARP = 2; // pixels of a PNG for one of the picture

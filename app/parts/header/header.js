@@ -86,18 +86,18 @@ class Header {
     const focused = root.getRootNode().activeElement;
     const steps = [
       () => this.scenes.name(false),
-      () => this.putAway(this.sound),
-      () => this.putAway(this.speed),
-      () => this.putAway(this.start),
-      () => this.putAway(this.exports, this.share),
-      () => this.putAway(this.undo, this.redo),
-      () => this.putAway(this.step),
-      () => this.putAway(this.scenes.button),
-      () => this.putAway(this.name),
-      () => this.putAway(this.pin),
-      () => this.putAway(this.reset),
-      () => this.putAway(this.mode),
-      () => this.putAway(this.help, this.theme),
+      () => this.takeOffBar(this.sound),
+      () => this.takeOffBar(this.speed),
+      () => this.takeOffBar(this.start),
+      () => this.takeOffBar(this.exports, this.share),
+      () => this.takeOffBar(this.undo, this.redo),
+      () => this.takeOffBar(this.step),
+      () => this.takeOffBar(this.scenes.button),
+      () => this.takeOffBar(this.name),
+      () => this.takeOffBar(this.pin),
+      () => this.takeOffBar(this.reset),
+      () => this.takeOffBar(this.mode),
+      () => this.takeOffBar(this.help, this.theme),
     ];
     this.scenes.name(true);
     for (const control of this.order) root.insertBefore(control, this.scenes.gallery.root);
@@ -108,7 +108,7 @@ class Header {
   }
 
   // The name of the page is not a control: it is left out, not moved into the menu.
-  putAway(...controls) {
+  takeOffBar(...controls) {
     for (const control of controls) {
       if (control === this.name) control.remove();
       else this.popovers.menu.append(control);
@@ -189,7 +189,7 @@ class Header {
 
   // The replay runs or pauses as before a lost connection. If the browser is set to less motion, it begins paused.
   begin() {
-    const { again } = window.granchain.connection;
+    const again = window.granchain.connection.takeAgain();
     if (again) this.restore(again);
     else if (matchMedia("(prefers-reduced-motion: reduce)").matches) this.setPlaying(false);
   }
@@ -214,8 +214,8 @@ class Header {
   }
 
   // Shows where the motion on the screen began. A scene without a drive has only one start, so the list is hidden.
-  showStart({ mode, start = "rest", origin = "rest", driven = true, starts, started_elsewhere }) {
-    const elsewhere = start === "rest" && origin !== "rest";
+  showStart({ mode, start = "rest", picture_start = "rest", driven = true, starts, started_elsewhere }) {
+    const elsewhere = start === "rest" && picture_start !== "rest";
     this.start.options[0].textContent = elsewhere ? started_elsewhere : starts[0][1];
     this.start.value = start;
     this.start.style.display = mode === "live" || !driven ? "none" : "";
@@ -231,9 +231,7 @@ class Header {
   }
 
   // After a lost connection: sends what the share link does not contain.
-  restore(again) {
-    window.granchain.connection.again = null;
-    const { playing = true, uploaded = false } = again;
+  restore({ playing = true, uploaded = false }) {
     this.send("reconnected", { playing, uploaded });
   }
 

@@ -35,17 +35,17 @@ class Header(Component):
             "files": list(EXPORTS.items()),
             "speeds": sorted(SPEEDS), "view_fields": list(VIEW_VALUES),
         }, **params)
-        self._origin = "rest"
+        self._picture_start = "rest"
 
-    def began_from(self, origin: str, session: Session) -> None:
+    def show_picture_start(self, start: str, session: Session) -> None:
         """The picture on the screen has another start, as `Settled.start` names it."""
-        if origin != self._origin:
-            self._origin = origin
+        if start != self._picture_start:
+            self._picture_start = start
             self.show_session(session)
 
     def show_session(self, session: Session) -> None:
         """Show what the session chose, and the start of the picture on the screen."""
         self.update_state(
             scenes=presets(), scene=session.scene.name, mode=session.mode, start=session.start, theme=session.theme,
-            origin=self._origin, driven=session.scene.is_driven, speed=session.speed, playing=session.playing,
-            query=session.link)
+            picture_start=self._picture_start, driven=session.scene.is_driven, speed=session.speed,
+            playing=session.playing, query=session.link)

@@ -133,7 +133,10 @@
       this.#follow(acted);
     }
 
-    /** A request is on its way to the server. */
+    /**
+     * A request is on its way to the server. Knobs that were asked for before belong to the scene before; and a name
+     * moves to the end, because of k and kappa the later one counts (`url`).
+     */
     requested(name, value) {
       if (name === "scene") this.#unanswered.clear();
       this.#unanswered.delete(name);

@@ -2,7 +2,8 @@
 // are grey, the knobs are disabled, and a banner says so. Once the server is back, the page reloads from its link.
 (() => {
   const { granchain } = window;
-  // All in milliseconds; PING_EVERY + PING_TIMEOUT stays below 2 s.
+  // All in milliseconds. For PING_EVERY + PING_TIMEOUT a page without its server still looks alive, so this stays below
+  // 2 s; it is no shorter because a server that is only busy must not count as lost.
   const TICK = 100, // how often the state is checked
     PING_EVERY = 300, // from an answer to the next ping
     PING_TIMEOUT = 1300, // silence after a ping that counts as a lost connection
@@ -56,8 +57,7 @@
 
   /** Asks the server again and again whether it answers; shows that it does not, and reloads the page once it does. */
   class Connection {
-    /** What the page before the reload kept; null if it is no reload. */
-    again = Connection.#taken();
+    #again = Connection.#taken();
     #kept = {};
     #lost = false;
     #leaving = false;
@@ -71,7 +71,7 @@
     #sinceReached = null; // since a lost server answered HTTP again; null while it does not
 
     constructor() {
-      if (this.again) this.#showLastPictures();
+      if (this.#again) this.#showLastPictures();
       setInterval(() => this.#tick(), TICK);
     }
 
@@ -83,6 +83,18 @@
     /** Whether the page is being reloaded after a lost connection. */
     get leaving() {
       return this.#leaving;
+    }
+
+    /** What the page before the reload kept; null if it is no reload, or once it has been taken. */
+    get again() {
+      return this.#again;
+    }
+
+    /** Gives what the page before the reload kept to the script that restores it. It is restored only once. */
+    takeAgain() {
+      const again = this.#again;
+      this.#again = null;
+      return again;
     }
 
     /** What the page needs besides its link when it is reloaded. */
@@ -165,7 +177,7 @@
     }
 
     #showLastPictures() {
-      const pictures = new LastPictures(this.again.snapshot ?? "");
+      const pictures = new LastPictures(this.#again.snapshot ?? "");
       document.addEventListener("DOMContentLoaded", () => {
         showBanner(BACK);
         pictures.show();

@@ -6,19 +6,49 @@ window.granchain = (() => {
   const KEPT_AS = "granchain-look"; // the theme, in the browser from visit to visit
   const THEMES = ["light", "dark", "projector"];
 
+  // The events: what has happened, and the detail, if there is one. There is also "page:NAME" for each page: it has
+  // published something, which is the detail.
+  const EVENTS = new Set([
+    "theme", // another theme: its name
+    "place", // another tab and page are to be shown: { tab, page }, empty for the first tab and no page
+    "tab", // a tab was opened: its name
+    "overlay", // a page was opened over the pictures, or closed: its name or null
+    "visible", // other pages are looked at: the set of their names
+    "story", // a story was opened or left: whether one is shown
+    "curved", // on a phone, the curve was shown or hidden: whether it is shown
+    "steps", // the place in the history has changed: { back, forward }, whether there are such steps
+    "lost", // the connection was lost, or is there again: whether it is lost
+    "shown", // a picture has come: `granchain.shown`
+    "painted", // a picture is on the screen: { number, live, lag }, the lag in milliseconds
+    "numbers-received", // the numbers of a picture have come
+    "play", // the replay begins or pauses: whether it runs
+    "pause", // the replay is to pause
+    "period", // the replay is to go one drive period forward
+    "speed", // another speed of the replay: drive periods a second
+    "sound", // the sound is to be on or off: whether on
+    "bead", // a bead was chosen: its number
+    "compare", // a picture was pinned, and its numbers are to be shown
+  ]);
+
   /** Tells scripts what happens in others: a script listens to an event by its name, and any script can cause it. */
   class Events {
     #listeners = new Map();
 
     /** Calls `listener` with the detail of every event of this name. */
     on(name, listener) {
-      if (!this.#listeners.has(name)) this.#listeners.set(name, new Set());
-      this.#listeners.get(name).add(listener);
+      this.#of(name).add(listener);
     }
 
     /** Calls all who listen to this name. */
     emit(name, detail) {
-      for (const listener of this.#listeners.get(name) ?? []) listener(detail);
+      for (const listener of this.#of(name)) listener(detail);
+    }
+
+    // The listeners of an event. A name that no event has is a mistake that nobody would notice otherwise.
+    #of(name) {
+      if (!EVENTS.has(name) && !name.startsWith("page:")) throw new Error(`there is no event ${name}`);
+      if (!this.#listeners.has(name)) this.#listeners.set(name, new Set());
+      return this.#listeners.get(name);
     }
   }
 

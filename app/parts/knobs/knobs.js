@@ -80,6 +80,8 @@ class Knobs {
   receive(message) {
     if (message.type !== "values") return;
     const { sent } = this.sender;
+    // Values without a number answer no movement: they were set elsewhere, as by a tap on the curve. So they answer no
+    // request of the address; but they are shown, unless a movement waits to be sent.
     const newest = this.sender.isNewest(message.seq ?? -1);
     window.granchain.address.linkReceived(message.query, newest ? [...this.knobs.keys()] : []);
     // An answer to an older movement must not pull the knob from under the hand.

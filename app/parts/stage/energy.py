@@ -9,7 +9,7 @@ from ...format import prefixed
 from ...frames import Frames
 from ...plots.energies import bead_interval, energy_hover, energy_mapper
 from ...serve.document.changes import set_properties
-from ..figures.figure_style import GAP, quiet_plot
+from ..figures.figure_style import GAP, bare_plot
 
 
 class EnergyMap:
@@ -22,7 +22,7 @@ class EnergyMap:
         self.figure = self._build(time)
 
     def _build(self, time: Range1d) -> Plot:
-        plot = quiet_plot((GAP, GAP), (12, 6), ("above", None), (), name="kinetic energy", y_range=time,
+        plot = bare_plot((GAP, GAP), (12, 6), ("above", None), (), name="kinetic energy", y_range=time,
                           x_range=Range1d(0.5, 11.5))
         self._axis = plot.xaxis[0]
         self._axis.ticker = SingleIntervalTicker(interval=1, num_minor_ticks=0)

@@ -18,7 +18,7 @@ from ...frames import Extremes, Frames, round_up
 from ...plots.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
 from ...plots.theme import GREY
 from ...serve.document.changes import set_properties
-from ..figures.figure_style import GAP, LEFT, quiet_axis, quiet_plot
+from ..figures.figure_style import GAP, LEFT, bare_axis, bare_plot
 from .measured_trains import MeasuredTrains
 from .pinned_trains import PinnedTrains
 
@@ -64,12 +64,12 @@ class ForceTrains:
         self._measured = MeasuredTrains(self.left, self.right, GREY)
 
     def _left_figure(self, time: Range1d) -> Plot:
-        plot = quiet_plot((LEFT, GAP), _TICKS, ("below", "left"), (1,), name="input force", y_range=time,
+        plot = bare_plot((LEFT, GAP), _TICKS, ("below", "left"), (1,), name="input force", y_range=time,
                           x_range=Range1d(-1, 1), extra_x_ranges={"drive": Range1d(-1, 1)})
         axis = LinearAxis(x_range_name="drive", ticker=BasicTicker(desired_num_ticks=_TICKS[0], num_minor_ticks=0))
-        quiet_axis(axis, DRIVE.colour)
+        bare_axis(axis, DRIVE.colour)
         plot.add_layout(axis, "above")
-        quiet_axis(plot.xaxis[1], INPUT.colour)
+        bare_axis(plot.xaxis[1], INPUT.colour)
         plot.yaxis.axis_label = "time"
         self._zero_of_drive = Span(location=0, dimension="height", x_range_name="drive", line_color=DRIVE.colour,
                                    **_ZERO)
@@ -82,9 +82,9 @@ class ForceTrains:
         return plot
 
     def _right_figure(self, time: Range1d) -> Plot:
-        plot = quiet_plot((GAP, 14), _TICKS, ("below", None), (1,), name="output force", y_range=time,
+        plot = bare_plot((GAP, 14), _TICKS, ("below", None), (1,), name="output force", y_range=time,
                           x_range=Range1d(0, 1))
-        quiet_axis(plot.xaxis[0], OUTPUT.colour)
+        bare_axis(plot.xaxis[0], OUTPUT.colour)
         plot.add_layout(Span(location=0, dimension="height", line_color=OUTPUT.colour, **_ZERO))
         self._lines += [
             plot.add_glyph(self._source, _glyph(ELASTIC, "elastic")),

@@ -2,7 +2,8 @@
 // map measures time, distance and speed between two places.
 
 import { element } from "../toolkit/dom.js";
-import { draw, prefixed } from "../toolkit/plot.js";
+import { prefixed } from "../toolkit/round_numbers.js";
+import { draw } from "../toolkit/svg.js";
 
 // A value with three figures and a prefix, as "0.52 N".
 function quantity(value, unit) {

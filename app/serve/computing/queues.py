@@ -59,8 +59,14 @@ class Queue:
 
     @property
     def busy_threads(self) -> int:
-        """How many threads are at work."""
+        """How many threads are at work, or wait for something in the middle of it, such as a turn."""
         return len(self._threads) - self._free
+
+    @property
+    def held(self) -> int:
+        """How much work waits because its owner has used its share."""
+        with self._lock:
+            return sum(map(len, self._held.values()))
 
     def submit(self, work: Callable[..., Result], *arguments: object, owner: object = None) -> Future[Result]:
         """Call `work` as soon as a thread is free; the future has what it returns or raises.
@@ -138,10 +144,13 @@ class Queue:
                     self._free += 1
 
 
-#: One thread for each visitor whose picture is awaited; live steps, energy accounts and drafts are computed in it.
+#: One thread for each visitor whose picture is awaited; live steps, energy accounts and drafts are computed in it. The
+#: number of threads is limited because each takes memory. It is below the largest `--most-visitors`, since most pages
+#: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served.
 VISITORS = Queue("visitors", 1000)
 #: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
-#: for the compiler keeps its thread.
+#: for the compiler keeps its thread. While more pictures than this are computed or wait for a turn, the next wait for a
+#: thread, first come, first served: turns do not put a first picture before refinements then.
 PICTURES = Queue("pictures", 200)
 #: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
 ANALYSES = Queue("analyses", 8, low_priority=True)
@@ -161,6 +170,12 @@ LONG = Queue("long", 8, low_priority=True, share=2)
 MEASUREMENTS = Queue("measurements", 1)
 #: Waiting for processes that compile.
 COMPILATIONS = Queue("compilations", 2)
+
+#: All queues.
+QUEUES = (VISITORS, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)
+#: Those whose threads compute while they are busy. A thread of `PICTURES` or `VISITORS` computes while it has a turn,
+#: and one of `CURVES` waits for `SWEEPS`.
+COMPUTING = (ANALYSES, SWEEPS, LONG, MEASUREMENTS)
 
 TurnWork = Callable[[TurnFlag], Iterator[object]]
 

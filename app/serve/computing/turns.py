@@ -1,8 +1,8 @@
 """Fair scheduling: of the visitors who wait, the one who has used least time gets the next turn to compute.
 
-Kernels run without the interpreter's lock, so as many computations as there are cores run at once. A first picture
-begins at once and is not interrupted, because it is short. A computation that refines a picture, or takes long, gives
-up its turn at the first pause after a slice of time.
+Kernels run without the interpreter's lock, so about as many computations as there are cores run at once. A first
+picture begins at once and is not interrupted, because it is short. A computation that refines a picture, or takes long,
+gives up its turn at the first pause after a slice of time.
 """
 
 from __future__ import annotations
@@ -70,7 +70,12 @@ class _Turn:
 
 
 class FairScheduler:
-    """Gives turns to `at_once` computations that have just begun, and to others while fewer than `at_once` compute."""
+    """Gives turns to computations that wait; only turns younger than `_LONGEST_TURN` keep others waiting.
+
+    A computation that has just begun gets one while fewer than `at_once` such computations have one, whatever else
+    computes. Another gets one while fewer than `at_once` computations of both kinds have one; once it has waited for
+    `_LONGEST_WAIT`, only those that have not just begun count. So `2 * at_once` young turns are possible for a moment.
+    """
 
     def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
         self._at_once, self._clock = at_once, clock
@@ -91,6 +96,11 @@ class FairScheduler:
     def waiting(self) -> int:
         """How many wait for their turn."""
         return len(self._waiting)
+
+    @property
+    def running(self) -> int:
+        """How many have a turn."""
+        return len(self._running)
 
     def begin(self, cpu_time: CpuTime, stop: Stop, is_new: bool = True) -> _Turn:
         """Wait for a turn, or until the stop flag is set; returns what `end` needs.

@@ -24,6 +24,7 @@ from bokeh.document import Document
 from bokeh.document.events import ColumnDataChangedEvent, DocumentPatchedEvent, MessageSentEvent, ModelChangedEvent
 from bokeh.events import ModelEvent
 from bokeh.model import Model
+from bokeh.models import ColumnarDataSource
 from tornado.iostream import IOStream, StreamClosedError
 from tornado.locks import Lock
 
@@ -187,19 +188,19 @@ class _Socket:
         stream, lock = self._stream, self._lock
         assert isinstance(stream, IOStream) and isinstance(lock, Lock)
 
-        def put(turn: Any) -> None:
-            with turn.result():
+        def put(locked: Any) -> None:
+            with locked.result():
                 if not stream.closed():
                     try:
                         stream.write(data)
                     except StreamClosedError:
                         return
 
-        turn: Any = lock.acquire()
-        if turn.done():
-            put(turn)
+        locked: Any = lock.acquire()
+        if locked.done():
+            put(locked)
         else:
-            turn.add_done_callback(put)
+            locked.add_done_callback(put)
 
 
 def _send(document: Document, session: Any, events: list[Any]) -> None:
@@ -258,11 +259,11 @@ def set_properties(model: Model, **values: Any) -> None:
         return
     known, events = model._property_values, document.callbacks._held_events
     for name, value in values.items():
-        if name != "data" and name in known and known[name] == value:
+        columns = name == "data" and isinstance(model, ColumnarDataSource)
+        if not columns and name in known and known[name] == value:  # arrays cannot be compared so
             continue
         known[name] = value
-        _keep_last(events, ModelChangedEvent(document, model, name, value) if name != "data"
-              else ColumnDataChangedEvent(document, model, name, value))
+        _keep_last(events, (ColumnDataChangedEvent if columns else ModelChangedEvent)(document, model, name, value))
 
 
 def _keep_last(events: list[Any], event: Any) -> None:

@@ -53,15 +53,15 @@ def session_of(document: Document) -> Any:
 
 def run_locked(session: Any, actions: list[Callable[[], None]]) -> None:
     """Run the actions as soon as the session's document is locked: at once, if nothing else has it."""
-    turn: Any = session._lock.acquire()
-    if turn.done():
-        _with_turn(session, actions, turn)
+    lock: Any = session._lock.acquire()
+    if lock.done():
+        _with_lock(session, actions, lock)
     else:
-        turn.add_done_callback(partial(_with_turn, session, actions))
+        lock.add_done_callback(partial(_with_lock, session, actions))
 
 
-def _with_turn(session: Any, actions: list[Callable[[], None]], turn: Any) -> None:
-    release = turn.result()
+def _with_lock(session: Any, actions: list[Callable[[], None]], lock: Any) -> None:
+    release = lock.result()
     pending: list[Any] = []
     try:
         if not session.destroyed:
@@ -120,7 +120,7 @@ class Channel:
         self._timers.clear()
 
     def next_tick(self, action: Callable[[], None]) -> None:
-        """Call `action` in the next turn of the event loop; from any thread."""
+        """Call `action` in the next iteration of the event loop; from any thread."""
         self._note_session()
         if self._closed or self._is_destroyed():
             return

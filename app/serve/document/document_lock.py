@@ -12,7 +12,7 @@ from ...needed import Needed
 #: What is used of Bokeh beyond its documentation (`app/needed.py`).
 NEEDED = (
     Needed("bokeh.server.session.ServerSession", ("_pending_writes",),
-           "every message waits for the next turn of the event loop"),
+           "every message waits for the next iteration of the event loop"),
 )
 
 
@@ -21,7 +21,7 @@ def has_document_lock(document: Document) -> bool:
 
     While it holds the lock it keeps a list of pending writes. A message can also arrive while answers to an earlier
     one are still being written; Bokeh then refuses every change. Where a release keeps the list elsewhere, the lock is
-    not known to be held, and a change waits for the next turn of the event loop.
+    not known to be held, and a change waits for the next iteration of the event loop.
     """
     session = getattr(document.session_context, "session", None)
     return session is None or getattr(session, "_pending_writes", None) is not None

@@ -52,7 +52,7 @@ class PicturePacer(Generic[Picture]):
         self._go_on()
 
     def restart(self) -> None:
-        """Forget acknowledgements that will never come (the page was reconnected)."""
+        """Forget acknowledgements that will never come: the window was hidden, and a hidden window paints nothing."""
         self._painted = self._sent
         self._go_on()
 

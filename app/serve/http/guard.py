@@ -29,22 +29,27 @@ from .message_rules import LARGEST_HEADER, RefusedMessage, checked_content
 
 log = logging.getLogger("granchain.requests")
 
-_NO_START = "the server does not start"
-_NOT_SAFE = "requests fail, or the promises of docs/security.md are not kept"
-#: What is used of Bokeh and Tornado beyond their documentation (`app/needed.py`).
+_UNGUARDED = "requests would be answered without checks"
+_NO_CONNECTION = "no page would get a connection"
+_NO_PAGE = "visitors could not be counted, and no page would open"
+_STAYS = "computations of a visitor who has left would go on"
+#: What is used of Bokeh and Tornado beyond their documentation (`app/needed.py`). The promises of docs/security.md rest
+#: on these rows, so all are required.
 NEEDED = (
-    Needed("bokeh.server.server.BaseServer", ("_tornado",), _NO_START),
-    Needed("bokeh.server.tornado.BokehTornado", ("websocket_origins",), _NO_START),
-    Needed("tornado.web.Application", ("wildcard_router",), _NO_START),
-    Needed("bokeh.server.views.session_handler", ("SessionHandler",), _NO_START),
-    Needed("bokeh.server.views.ws", ("WSHandler",), _NO_START),
-    Needed("bokeh.util.token", ("get_session_id", "check_token_signature"), _NO_START),
-    Needed("bokeh.server.tornado.BokehTornado", ("secret_key",), _NOT_SAFE),
-    Needed("bokeh.server.views.session_handler.SessionHandler", ("application_context",), _NOT_SAFE),
-    Needed("bokeh.server.contexts.ApplicationContext", ("sessions",), _NOT_SAFE),
-    Needed("bokeh.server.views.ws.WSHandler", ("connection", "send_message"), _NOT_SAFE),
-    Needed("bokeh.server.connection.ServerConnection", ("session",), _NOT_SAFE),
-    Needed("bokeh.server.session.ServerSession", ("request_expiration",), _NOT_SAFE),
+    Needed("bokeh.server.server.BaseServer", ("_tornado",), _UNGUARDED, required=True),
+    Needed("bokeh.server.tornado.BokehTornado", ("websocket_origins",), "pages at an IPv6 address get no connection",
+           required=True),
+    Needed("tornado.web.Application", ("wildcard_router",), _UNGUARDED, required=True),
+    Needed("bokeh.server.views.session_handler", ("SessionHandler",), _NO_PAGE, required=True),
+    Needed("bokeh.server.views.ws", ("WSHandler",), "messages would not be checked", required=True),
+    Needed("bokeh.util.token", ("get_session_id", "check_token_signature"), _NO_CONNECTION, required=True),
+    Needed("bokeh.server.tornado.BokehTornado", ("secret_key",), _NO_CONNECTION, required=True),
+    Needed("bokeh.server.views.session_handler.SessionHandler", ("application_context",), _NO_PAGE, required=True),
+    Needed("bokeh.server.contexts.ApplicationContext", ("sessions",), _NO_PAGE, required=True),
+    Needed("bokeh.server.views.ws.WSHandler", ("connection",), _STAYS, required=True),
+    Needed("bokeh.server.views.ws.WSHandler", ("send_message",), "tracebacks would reach the browser", required=True),
+    Needed("bokeh.server.connection.ServerConnection", ("session",), _STAYS, required=True),
+    Needed("bokeh.server.session.ServerSession", ("request_expiration",), _STAYS, required=True),
 )
 
 #: Websocket frames that a visitor may send, over a long time [1/s]: the rate at which the token bucket of a connection

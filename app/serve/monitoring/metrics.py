@@ -10,9 +10,9 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from tornado.web import HTTPError, RequestHandler
 
@@ -27,6 +27,17 @@ _BUSY_WAIT = 0.3
 
 #: What `Metrics.count` counts.
 Counter = Literal["pictures", "cancelled", "refused_visitors", "refused_pictures", "refused_messages", "errors"]
+
+
+class Gauge(NamedTuple):
+    """A number that is read when somebody asks: what it means, and how it is read.
+
+    With a `label`, `read` gives a number for each of its values.
+    """
+
+    meaning: str
+    read: Callable[[], float | Mapping[str, float]]
+    label: str = ""
 
 
 class Metrics:
@@ -45,7 +56,7 @@ class Metrics:
         self.answers = [0] * (len(BUCKETS) + 1)
         self.answers_total = 0.0
         self._lags: deque[float] = deque(maxlen=_LAGS_KEPT)
-        self.gauges: dict[str, Callable[[], float]] = {}
+        self.gauges: dict[str, Gauge] = {}
         #: How long computations wait before they can begin [s]; the server puts it there.
         self.turn_wait: Callable[[], float] = lambda: 0.0
 
@@ -73,7 +84,7 @@ class Metrics:
             self.answers_total += seconds
 
     def lagged(self, seconds: float) -> None:
-        """Record that a turn of the event loop came `seconds` late."""
+        """Record that an iteration of the event loop came `seconds` late."""
         self._lags.append(seconds)
 
     @property
@@ -97,13 +108,17 @@ class Metrics:
         """The counts in the text format of Prometheus, version 0.0.4."""
         lines: list[str] = []
 
-        def add(name: str, kind: str, meaning: str, value: float) -> None:
-            lines.extend((f"# HELP granchain_{name} {meaning}", f"# TYPE granchain_{name} {kind}",
-                          f"granchain_{name} {value:g}"))
+        def add(name: str, kind: str, meaning: str, value: float | Mapping[str, float], label: str = "") -> None:
+            lines.extend((f"# HELP granchain_{name} {meaning}", f"# TYPE granchain_{name} {kind}"))
+            if isinstance(value, Mapping):
+                lines.extend(f'granchain_{name}{{{label}="{key}"}} {one:g}' for key, one in value.items())
+            else:
+                lines.append(f"granchain_{name} {value:g}")
 
         add("visitors", "gauge", "Pages that are open.", self.visitors)
         add("visits_total", "counter", "Pages opened.", self.opened)
-        add("pictures_total", "counter", "Pictures sent.", self.pictures)
+        add("pictures_total", "counter", "Pictures sent, steps of live runs included, those overtaken before not.",
+            self.pictures)
         add("cancelled_total", "counter", "Computations of pictures that were cancelled.", self.cancelled)
         add("refused_visitors_total", "counter", "Visitors refused because there were too many.", self.refused_visitors)
         add("refused_pictures_total", "counter", "Pictures refused because they would take too long.",
@@ -117,9 +132,8 @@ class Metrics:
             self.turn_wait())
         add("resident_memory_bytes", "gauge", "Resident memory.", resident_memory())
         add("threads", "gauge", "Threads.", threading.active_count())
-        for name, read in sorted(self.gauges.items()):
-            add(name, "counter" if name.endswith("_total") else "gauge", name.replace("_", " ").capitalize() + ".",
-                read())
+        for name, gauge in sorted(self.gauges.items()):
+            add(name, "counter" if name.endswith("_total") else "gauge", gauge.meaning, gauge.read(), gauge.label)
         lines += ["# HELP granchain_answer_seconds From a moved knob to its first picture.",
                   "# TYPE granchain_answer_seconds histogram"]
         total = 0

@@ -30,7 +30,7 @@ NEEDED = (
     Needed("bokeh.core.has_props.HasProps.properties", ("_with_props",), _WITHOUT),
     Needed("bokeh.model.util",
            ("visit_immediate_value_references", "visit_value_and_its_immediate_references"), _WITHOUT),
-    Needed("bokeh.core.property.wrappers", ("PropertyValueContainer",), "the server does not start"),
+    Needed("bokeh.core.property.wrappers", ("PropertyValueContainer",), "an import would fail", required=True),
 )
 
 #: Types of immutable values: models can share them.

@@ -15,7 +15,7 @@ from ...needed import Needed
 #: What is used of Panel beyond its documentation (`app/needed.py`).
 NEEDED = (
     Needed("panel.io.server", ("bundle_resources", "patch_model_css"), "a page opens a tenth slower"),
-    Needed("panel.io.resources", ("patch_stylesheet",), "the server does not start"),
+    Needed("panel.io.resources", ("patch_stylesheet",), "an import would fail", required=True),
 )
 
 

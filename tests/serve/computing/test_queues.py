@@ -7,6 +7,7 @@ import threading
 import pytest
 import waiting
 
+from app.serve.computing import queues
 from app.serve.computing.queues import LatestWins, Queue
 
 pytestmark = pytest.mark.quick
@@ -77,3 +78,16 @@ def test_after_a_failure_that_cannot_be_reported_the_next_picture_comes() -> Non
     waiting.until(lambda: not jobs.busy)
     jobs.submit(lambda _: iter([1]))
     assert came.wait(20)
+
+
+def test_work_beyond_a_share_is_counted_as_held() -> None:
+    queue, go_on, owner = Queue("tested", 4, share=1), threading.Event(), object()
+    ended = [queue.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
+    assert (queue.busy_threads, queue.waiting, queue.held) == (1, 0, 2)
+    go_on.set()
+    assert all(one.result(20) for one in ended)
+    assert queue.held == 0
+
+
+def test_all_queues_are_in_the_metrics() -> None:
+    assert set(queues.QUEUES) == {one for one in vars(queues).values() if isinstance(one, Queue)}

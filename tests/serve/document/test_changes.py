@@ -22,6 +22,7 @@ from bokeh.server.views.ws import WSHandler
 from event_loop import in_a_thread
 from missing_attribute import hide, lose
 from panel.models.esm import ESMEvent
+from panel.models.vega import VegaPlot
 
 from app.needed import Needed
 from app.serve.document import changes
@@ -125,6 +126,18 @@ def test_of_two_changes_of_a_property_the_last_is_kept_and_an_equal_one_is_none(
         set_properties(axis, start=start, end=end)
     events = [(one.attr, one.new) for one in document.callbacks._held_events]
     assert events == [("start", 4)] and axis.start == 4
+
+
+def test_a_property_called_data_is_one_of_columns_in_data_sources_alone() -> None:
+    document = Document()
+    source, plot = ColumnDataSource(data={"x": [1]}), VegaPlot(data={"values": [1]})
+    document.add_root(source)
+    document.add_root(plot)
+    document.callbacks.hold()
+    set_properties(source, data={"x": [2]})
+    set_properties(plot, data={"values": [2]})
+    set_properties(plot, data={"values": [2]})
+    assert [type(one) for one in document.callbacks._held_events] == [ColumnDataChangedEvent, ModelChangedEvent]
 
 
 @pytest.mark.parametrize("row", changes.NEEDED, ids=lambda row: row.owner)

@@ -22,7 +22,7 @@ from app.serve.http.message_rules import (
 
 pytestmark = pytest.mark.quick
 
-ASKED = json.dumps({"msgid": "1", "msgtype": "PATCH-DOC"})
+HEADER = json.dumps({"msgid": "1", "msgtype": "PATCH-DOC"})
 
 
 def content(value: Any, kind: str = "MessageSent") -> str:
@@ -50,7 +50,7 @@ def nested(depth: int) -> list[Any]:
 @pytest.mark.parametrize("value", [
     None, 5, "text", [1, [2]], {"type": "number", "value": "nan"}, {"type": "map", "entries": [["a", {"id": "p2"}]]}, nested(DEEPEST)])
 def test_plain_values_pass(value: Any) -> None:
-    checked_content(ASKED, content(value))
+    checked_content(HEADER, content(value))
 
 
 @pytest.mark.parametrize("value", [
@@ -60,13 +60,13 @@ def test_plain_values_pass(value: Any) -> None:
     {"type": "map", "entries": [["a", {"type": "bytes", "data": "AAAA"}]]}, nested(DEEPEST + 1)])
 def test_values_that_no_page_sends_are_refused(value: Any) -> None:
     with pytest.raises(RefusedMessage, match="too deep" if isinstance(value, list) else "of a kind that no page sends"):
-        checked_content(ASKED, content(value))
+        checked_content(HEADER, content(value))
 
 
 @pytest.mark.parametrize("name", sorted(REPORTED_PROPERTIES))
 @pytest.mark.parametrize("value", [413, 0.5, None])
 def test_a_figure_reports_its_size(name: str, value: float | None) -> None:
-    checked_content(ASKED, changed(name, value))
+    checked_content(HEADER, changed(name, value))
 
 
 @pytest.mark.parametrize("name", ["tags", "name", "data", "children", "state", "subscribed_events", "js_property_callbacks", "title",
@@ -74,21 +74,21 @@ def test_a_figure_reports_its_size(name: str, value: float | None) -> None:
 def test_no_other_property_is_set_by_a_browser(name: object) -> None:
     """Bokeh keeps what a browser writes into `tags` of any model: 60 messages would take half a gigabyte."""
     with pytest.raises(RefusedMessage, match="property that no page reports"):
-        checked_content(ASKED, changed(name, 1))
+        checked_content(HEADER, changed(name, 1))
 
 
 @pytest.mark.parametrize("value", ["text", [1], {"type": "number", "value": "nan"}, {"type": "map", "entries": []}])
 def test_a_size_is_a_number(value: object) -> None:
     with pytest.raises(RefusedMessage, match="no number"):
-        checked_content(ASKED, changed("inner_width", value))
+        checked_content(HEADER, changed("inner_width", value))
 
 
 def test_only_an_upload_is_long() -> None:
-    checked_content(ASKED, uploaded(UPLOAD))
+    checked_content(HEADER, uploaded(UPLOAD))
     for given in (uploaded("go"), uploaded(UPLOAD, ["more", "text"]), content("x" * 200_000), changed("tags", "x" * 200_000),
                   json.dumps({"events": [json.loads(uploaded(UPLOAD))["events"][0]] * 2})):
         with pytest.raises(RefusedMessage, match="too long a message"):
-            checked_content(ASKED, given)
+            checked_content(HEADER, given)
     with pytest.raises(RefusedMessage, match="too long a message"):
         checked_content(json.dumps({"msgid": "1", "msgtype": "PULL-DOC-REQ"}), json.dumps({"a": "x" * 200_000}))
 
@@ -97,8 +97,8 @@ def test_only_an_upload_is_long() -> None:
     ("{", "{}", "unreadable header"), ("[" * 100_000, "{}", "unreadable header"), ("[1]", "{}", "unreadable header"),
     ('{"msgtype": "PATCH-DOC"}', content(1), "kind of message"), ('{"msgid": "1", "msgtype": "PUSH-DOC"}', "{}", "kind of message"),
     ('{"msgid": "1", "msgtype": "PATCH-DOC", "num_buffers": 1}', content(1), "binary data"),
-    (ASKED, "{}", "no events"), (ASKED, '{"events": []}', "no events"), (ASKED, "[" * 100_000, "unreadable content"),
-    (ASKED, '{"events": [5]}', "kind of event"), (ASKED, content(1, "RootAdded"), "kind of event")])
+    (HEADER, "{}", "no events"), (HEADER, '{"events": []}', "no events"), (HEADER, "[" * 100_000, "unreadable content"),
+    (HEADER, '{"events": [5]}', "kind of event"), (HEADER, content(1, "RootAdded"), "kind of event")])
 def test_messages_that_no_page_sends_are_refused(header: str, given: str, why: str) -> None:
     with pytest.raises(RefusedMessage, match=why):
         checked_content(header, given)
@@ -128,7 +128,7 @@ class Socket:
 
 def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken() -> None:
     one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
-    good, bad = (ASKED, "{}", content(1)), (ASKED, "{}", content({"type": "bytes", "data": "AAAA"}))
+    good, bad = (HEADER, "{}", content(1)), (HEADER, "{}", content({"type": "bytes", "data": "AAAA"}))
 
     async def send() -> None:
         for frame in (*good, *bad, *good):
@@ -139,7 +139,7 @@ def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken()
     assert one.taken == list(good) and one.closed == 1008
 
 
-@pytest.mark.parametrize("frames", [("x" * (LARGEST_HEADER + 1),), (ASKED, "x" * (LARGEST_HEADER + 1))])
+@pytest.mark.parametrize("frames", [("x" * (LARGEST_HEADER + 1),), (HEADER, "x" * (LARGEST_HEADER + 1))])
 def test_a_long_header_closes_the_connection_before_the_content_comes(frames: tuple[str, ...]) -> None:
     one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
     for frame in frames:

@@ -40,7 +40,7 @@ SECRET = b"a secret of this test alone, long enough"
 
 LIMITS = dict(re.findall(r"^\| ([^|]+) \| ([^|]+) \|$", (Path(__file__).parents[3] / "docs" / "security.md").read_text(
     encoding="utf-8").split("| limit | value |")[1].split("\n\n")[0], re.MULTILINE))
-ASKED = dict(re.findall(r"^\| ([^|]+) \| (\d+) \|$", (Path(__file__).parents[3] / "docs" / "security.md").read_text(
+STATED_LIMITS = dict(re.findall(r"^\| ([^|]+) \| (\d+) \|$", (Path(__file__).parents[3] / "docs" / "security.md").read_text(
     encoding="utf-8").split("| a visitor asks for | at most |")[1].split("\n\n")[0], re.MULTILINE))
 
 
@@ -71,7 +71,7 @@ def test_what_pages_may_be_asked_is_what_the_document_says() -> None:
         "Analysis: beads": questions.MOST_BEADS, "Analysis: values of a knob": questions.MOST_VALUES,
         "Analysis: starts of each of two knobs": questions.MOST_STARTS, "Analysis: drive periods": questions.MOST_PERIODS,
         "Analysis: strobes kept": questions.MOST_STROBES,
-    } == {name: int(value) for name, value in ASKED.items()}
+    } == {name: int(value) for name, value in STATED_LIMITS.items()}
 
 
 @pytest.fixture(scope="module")
@@ -299,7 +299,7 @@ def test_the_metrics_have_the_format_of_prometheus(dashboard: Listening) -> None
     status, headers, text = dashboard.ask("/metrics")
     assert status == 200 and headers["Content-Type"].startswith("text/plain; version=0.0.4")
     for line in text.splitlines():
-        assert re.fullmatch(r'# (HELP|TYPE) granchain_\w+ .+|granchain_\w+(\{le="[^"]+"\})? \S+', line), line
+        assert re.fullmatch(r'# (HELP|TYPE) granchain_\w+ .+|granchain_\w+(\{(le|queue)="[^"]+"\})? \S+', line), line
     for name in ("visitors", "pictures_total", "answer_seconds_bucket", "queue", "cancelled_total", "picture_cache_hits_total",
                  "resident_memory_bytes"):
         assert f"granchain_{name}" in text

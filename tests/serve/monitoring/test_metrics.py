@@ -2,11 +2,27 @@
 
 from __future__ import annotations
 
+import re
 import threading
 
+import pytest
+import waiting
+
+from app import server
 from app.serve.computing.cpu_time import CpuTime
+from app.serve.computing.queues import (
+    COMPILATIONS,
+    COMPUTING,
+    CURVES,
+    FILES,
+    LOADING,
+    PICTURES,
+    QUEUES,
+    VISITORS,
+    Queue,
+)
 from app.serve.computing.turns import FairScheduler
-from app.serve.monitoring.metrics import Metrics
+from app.serve.monitoring.metrics import METRICS, Metrics
 from granchain_core import Stop
 
 
@@ -35,3 +51,48 @@ def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> No
     assert turns.wait == 1.5
     now[0] = 12.0
     assert turns.wait == 0.0
+
+
+def shown(name: str) -> float:
+    """A number of `/metrics`."""
+    server._count_what_is_shared()
+    found = re.search(rf"^granchain_{re.escape(name)} (\S+)$", METRICS.text(), re.MULTILINE)
+    assert found is not None
+    return float(found[1])
+
+
+def test_each_queue_has_its_own_gauges() -> None:
+    for queue in QUEUES:
+        assert shown(f'queue_busy{{queue="{queue.name}"}}') >= 0.0
+        assert shown(f'queue_waiting{{queue="{queue.name}"}}') >= 0.0
+
+
+def test_queues_whose_threads_wait_for_others_do_not_count_as_computing() -> None:
+    """Those of PICTURES and VISITORS wait for turns, those of CURVES for SWEEPS."""
+    assert set(QUEUES) - set(COMPUTING) == {VISITORS, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
+
+
+def test_long_work_is_computing_and_what_its_owner_has_beyond_a_share_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    queue, go_on, owner = Queue("long", 8, share=2), threading.Event(), object()
+    for name, value in (("QUEUES", (queue,)), ("COMPUTING", (queue,)), ("TURNS", FairScheduler(2))):
+        monkeypatch.setattr(server, name, value)
+    ended = [queue.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
+    assert (shown("computing"), shown("queue")) == (2, 1)
+    assert (shown('queue_busy{queue="long"}'), shown('queue_waiting{queue="long"}')) == (2, 1)
+    go_on.set()
+    assert all(one.result(20) for one in ended)
+
+
+def test_a_picture_that_waits_for_a_turn_waits_and_is_not_computing(monkeypatch: pytest.MonkeyPatch) -> None:
+    turns, queue, stop = FairScheduler(2, lambda: 0.0), Queue("pictures", 8), Stop()
+    for name, value in (("QUEUES", (queue,)), ("COMPUTING", ()), ("TURNS", turns)):
+        monkeypatch.setattr(server, name, value)
+    for _ in range(2):
+        turns.begin(CpuTime(), Stop(), is_new=False)
+    third = queue.submit(turns.begin, CpuTime(), stop, False)
+    waiting.until(lambda: turns.waiting == 1, 20)
+    assert (shown("computing"), shown("queue"), shown("turns_waiting")) == (2, 1, 1)
+    assert shown('queue_busy{queue="pictures"}') == 1
+    stop.set()
+    turns.stopped(stop)
+    assert third.result(20)

@@ -1,12 +1,4 @@
-// Small drawings in SVG: axes and words.
-
-export const SVG = "http://www.w3.org/2000/svg";
-export const draw = (tag, attributes = {}, ...children) => {
-  const element = document.createElementNS(SVG, tag);
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
-  element.append(...children);
-  return element;
-};
+// Numbers for a reader: prefixes, round values, ticks of an axis.
 
 // Factor and letter of the SI prefix in which a value, to three figures, reads from 1 to 1000 (as in app/format.py).
 const PREFIXES = [..."GMk mµnpfa"].map((letter, i) => [10 ** (9 - 3 * i), letter.trim()]);
@@ -30,17 +22,3 @@ export function ticks(low, high, count) {
   for (let v = Math.ceil(low / step) * step; v <= high + 1e-9 * step; v += step) found.push(Number(v.toPrecision(6)));
   return found;
 }
-
-// A frame with axes in both directions; `box` is the room for data.
-export function frame(host, { left, right, top, bottom }, label) {
-  const width = Math.max(60, host.clientWidth),
-    height = Math.max(60, host.clientHeight);
-  const svg = draw("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": label });
-  host.replaceChildren(svg);
-  return { svg, width, height, x0: left, x1: width - right, y0: height - bottom, y1: top };
-}
-export const words = (svg, x, y, text, anchor = "middle", className = "", extra = {}) => {
-  const element = draw("text", { x, y, "text-anchor": anchor, class: className, ...extra }, text);
-  svg.append(element);
-  return element;
-};
