@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import brief_kernel, internal, kernel
+from ..compiling.jit import brief_kernel, inline_llvm, internal, kernel
 
 #: [period n, followed, quasi-periodic] Longest period that a batch tests, in drive periods, and longest period of an
 #: orbit that is looked for beside a motion, in a batch or alone. A longer one is settled alone.
@@ -82,7 +82,7 @@ def write_scale(strobes, scale):
         scale[q] = largest if largest > 0.0 else 1.0
 
 
-@internal
+@inline_llvm
 def change_in(strobes, q, now, then):
     """Largest change of displacements or velocities (q) from state `then` to state `now`."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0  # four, so that none of them waits for the one before
