@@ -20,12 +20,13 @@ from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.effects.driver import driver_displacement, driver_velocity
+from ..kernels.equations.chain_in_vector import CHAIN_WIDTHS
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
 from ..kernels.naive import naive_motion
 from ..kernels.rk4.long_chain import LongChain
 from ..kernels.rk4.run import RunRecord, run_steps
-from ..kernels.rk4.short_chain import CHAIN_WIDTHS, STATE_ROWS, STEPS_IN_BLOCK, ShortChain
+from ..kernels.rk4.short_chain import STATE_ROWS, STEPS_IN_BLOCK, ShortChain
 from ..kernels.rk4.step import DriveTable, Rk4Workspace
 from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.simd.vector import BLOCK_WIDTH, aligned

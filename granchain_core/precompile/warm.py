@@ -26,7 +26,7 @@ from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting, f
 from ..integrate.batch import Batch, can_share_batch, is_uniform
 from ..integrate.scaling import scale_chain
 from ..kernels.compiling.cache_folder import CACHE_FOLDER, MARK
-from ..kernels.rk4.short_chain import CHAIN_WIDTHS
+from ..kernels.equations.chain_in_vector import CHAIN_WIDTHS
 from ..observe.pair import Pair
 from ..orbits.branch.axis import KnobAxis
 from ..orbits.branch.equations import BranchEquations

@@ -37,7 +37,7 @@ _OTHER_NUMBERS = {
 #: Where the law stands without such a number: as δ times its root, as a polynomial or a constant, or in a text.
 _WITHOUT_NUMBER = {
     ("kernels/effects/contact.py", "elastic_force"), ("kernels/effects/contact.py", "three_halves"),
-    ("kernels/batch/step.py", "contact"), ("kernels/rk4/short_chain.py", "chain_slope"),
+    ("kernels/batch/step.py", "contact"), ("kernels/equations/chain_in_vector.py", "chain_slope"),
     ("kernels/dop853_root/chain.py", "rates_at"), ("kernels/dop853_root/chain.py", "powers"),
     ("kernels/dop853_root/changes.py", "size_in_xi"), ("kernels/dop853/force_kinks.py", "scaled_force"),
     ("kernels/rk4/contact_events.py", "add_quadrature_errors"), ("kernels/flow/event_time.py", "smooth_power"),

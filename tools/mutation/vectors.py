@@ -8,6 +8,7 @@ from .mutant import Mutant
 _BATCH_STEP, _BATCH_RUN, _CORRECTION = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
 _PERIOD_END, _CHECKS = "kernels/batch/period_end.py", "kernels/batch/checks.py"
 _SHORT, _RUN, _LONG = "kernels/rk4/short_chain.py", "kernels/rk4/short_chain_steps.py", "kernels/rk4/long_chain.py"
+_CHAIN = "kernels/equations/chain_in_vector.py"
 _MATH = "kernels/simd/functions.py"
 _BATCH = "integrate/batch.py"
 
@@ -78,7 +79,7 @@ IN_ROWS = (
     Mutant("wide-given-back-sign", _SHORT, "values.inverse_mass * (excess - from_left(blank(excess), excess))",
            "values.inverse_mass * (from_left(blank(excess), excess) - excess)",
            "short chains are given once more what Simpson's rule gives too much", k.SIMD_PLAIN),
-    Mutant("wide-damping-of-one-side", _SHORT, "damping_over_mass * (from_left(blank(primitives), primitives) - primitives)",
+    Mutant("wide-damping-of-one-side", _CHAIN, "damping_over_mass * (from_left(blank(primitives), primitives) - primitives)",
            "damping_over_mass * (blank(primitives) - primitives)", "a bead of a short chain is damped by one of its contacts", k.SIMD_PLAIN),
     Mutant("wide-driver-at-rest", _SHORT, "moving = with_first(du, v0)", "moving = with_first(du, 0.0 * v0)",
            "short chains do not know how fast their driver comes", k.SIMD_PLAIN),

@@ -26,11 +26,11 @@ from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.driver import driver_acceleration
 from ..effects.preload import row_overlap
 from ..equations.body_forces import force_on_bead
+from ..equations.chain_in_vector import chain_velocity
 from ..flow.event_time import smooth_power
-from ..rk4.short_chain import chain_velocity
 from ..simd.functions import gate, root
 from ..simd.sums import only_lane, repeat_like
-from ..simd.vector import at, blank, from_left, from_right, store, with_first
+from ..simd.vector import at, blank, from_left, from_right, splat8, store, with_first
 
 #: Rows of the workspace's state, and their number.
 DISPLACEMENT, VELOCITY, ELASTIC, W, STATE_ROWS = range(5)
@@ -161,9 +161,9 @@ def rates_at(values, driver, transform, point):
 def transform_of(values, closed, chosen, active, contact):
     """The transformed time next to the event of a contact, for which `chosen` is 1; nowhere, for the time itself."""
     others, pull = closed * (1.0 - chosen), from_left(blank(chosen), chosen) - chosen
-    return TimeTransform(active, contact, others, others * values.stiffness, chosen * values.stiffness,
-                         pull_of_damping(values.slots.dissipation, values.damping_over_mass, pull),
-                         from_left(blank(chosen), chosen * values.stiffness) - chosen * values.stiffness)
+    stiffness = repeat_like(chosen, splat8(at(values.stiffness, contact)))
+    return TimeTransform(active, contact, others, others * values.stiffness, chosen * stiffness,
+                         pull_of_damping(values.slots.dissipation, values.damping_over_mass, pull), stiffness * pull)
 
 
 @inline_llvm

@@ -13,9 +13,9 @@ from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import dashpot_force, dashpot_slope
 from ..effects.driver import driver_acceleration
 from ..equations.body_forces import force_on_bead
+from ..equations.chain_in_vector import chain_values, load_row
 from ..forces.largest import cubic_top, update_largest
 from ..forces.peaks import row_of
-from ..rk4.short_chain import chain_values, load_row
 from ..simd.vector import at, blank, from_left, from_right, load, with_first
 from ..status import EVALUATIONS
 from .chain import Point, no_transform, rates_at

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 from ..compiling.jit import inline_llvm, inline_numba, kernel
 from ..dop853.step import PERIOD_END, evaluate
 from ..effects.driver import driver_displacement, driver_velocity
+from ..equations.chain_in_vector import chain_values, load_row
 from ..flow.event_time import smooth_power
 from ..forces.largest import SAMPLE, record_closing
-from ..rk4.short_chain import chain_values, load_row
 from ..samples import first_not_finite, write_sample
 from ..simd.sums import inverse_sixteenth_root
 from ..simd.vector import at, blank, positive_mask, splat8, store, with_first

@@ -1,6 +1,6 @@
 """The equations of motion in w-variables, assembled from the effects that are present: the reference form.
 
-rk4/short_chain.py, rk4/long_chain.py, dop853_root/chain.py and batch/step.py repeat them in vectors, naive.py states
+chain_in_vector.py, rk4/long_chain.py, dop853_root/chain.py and batch/step.py repeat them in vectors, naive.py states
 them in (u, v), and flow/tangent.py and flow/velocity_tangent.py linearise them. tests/kernels/equations/test_motion.py
 compares this file with the paper's equations; tests/kernels, tests/numerics/test_methods_agree.py and
 tests/orbits/test_tangents.py compare the others with it.

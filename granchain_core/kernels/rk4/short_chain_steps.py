@@ -8,6 +8,7 @@ from ..compiling.jit import inline_llvm, inline_numba, internal
 from ..contact_cubic import turns
 from ..effects.dissipation import dashpot_force
 from ..effects.driver import driver_displacement, driver_velocity
+from ..equations.chain_in_vector import chain_values, load_row
 from ..forces.largest import update_end_forces_at_event
 from ..forces.peaks import HIGHEST, INPUT, OUTPUT, OUTPUT_ELASTIC, update_peak
 from ..simd.functions import larger
@@ -34,8 +35,6 @@ from .short_chain import (
     chain_at,
     chain_correction,
     chain_step,
-    chain_values,
-    load_row,
     load_state,
     store_state,
 )
