@@ -21,10 +21,10 @@ log = logging.getLogger("granchain")
 LIBRARIES = ("bokeh", "panel", "param", "tornado")
 #: The modules that have a table.
 WITH_TABLES = (
-    "serve.http.guard", "serve.http.compressed", "serve.monitoring.logs", "serve.document.document_lock",
-    "serve.document.channel", "serve.document.changes", "serve.document.socket_tuning", "serve.opening.bokeh_defaults",
-    "serve.opening.panel_shortcuts", "serve.opening.panel_resources", "parts.figures.figure_style",
-    "dashboard.template", "dashboard.entry",
+    "serve.http.guard", "serve.monitoring.logs", "serve.document.document_lock",
+    "serve.document.channel", "serve.document.changes", "serve.document.leaving", "serve.document.socket_tuning",
+    "serve.opening.bokeh_defaults", "serve.opening.panel_shortcuts", "serve.opening.panel_resources",
+    "parts.figures.figure_style",
 )
 
 
@@ -32,14 +32,13 @@ class Needed(NamedTuple):
     """Names that a library does not document, and what happens where a release lacks one of them.
 
     `owner` is the dotted name of the module, class or method that has them: attributes of the class or of its
-    instances, or keyword arguments of the method. A row is `required` where no page works without the names, or where a
-    promise of docs/security.md is not kept: the server does not start then. `without` says what would happen if it did.
+    instances, or keyword arguments of the method. The page works and the promises of docs/security.md are kept without
+    them; `without` says what is lost.
     """
 
     owner: str
     names: tuple[str, ...]
     without: str
-    required: bool = False
 
 
 class MissingPart(RuntimeError):
@@ -57,12 +56,8 @@ def tables() -> dict[str, tuple[Needed, ...]]:
 
 
 def check_releases() -> None:
-    """Raise `MissingPart` where the installed releases lack what is required; log what else they lack, a line a row."""
-    found = [one for table in tables().values() for one in missing(table)]
-    for row, name in found:
-        if row.required:
-            raise MissingPart(name, row.without)
-    for row, name in found:
+    """Log what the installed releases lack, a line a row."""
+    for row, name in (one for table in tables().values() for one in missing(table)):
         log.warning("a library has no %s: %s", name, row.without)
 
 

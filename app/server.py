@@ -15,7 +15,6 @@ from typing import Any
 import panel as pn
 from bokeh.server.server import Server
 from bokeh.settings import settings
-from tornado.web import ErrorHandler
 
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
@@ -25,7 +24,7 @@ from .serve.compiling.compiler import COMPILER
 from .serve.computing.queues import COMPUTING, QUEUES
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
-from .serve.http.guard import Rules, guard_handlers, guarded
+from .serve.http.guard import Rules, guard_setting, is_guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.monitoring import logs
 from .serve.monitoring.metrics import METRICS, Gauge, Liveness, MetricsHandler
@@ -112,9 +111,10 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
     access = access or Access()
     names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
     hosts = frozenset(_name_of(origin) for origin in names)
-    rules = Rules(hosts, access.most_visitors, access.embedding)
-    server = pn.serve(
-        {"/": page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
+    secret = access.secret or secrets.token_bytes(32)
+    rules = Rules(hosts, access.most_visitors, access.embedding, secret, frozenset(filter(_is_ipv6, names)))
+    server = rules.server = pn.serve(
+        {"/": _guarded_page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
         websocket_max_message_size=LARGEST_MESSAGE,
         extra_patterns=[(r"/liveness", Liveness), (r"/metrics", MetricsHandler)],
@@ -122,11 +122,16 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
                             "max_body_size": LARGEST_BODY, "xheaders": access.proxy},
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
         unused_session_lifetime_milliseconds=UNCONNECTED_MS, check_unused_sessions_milliseconds=SESSION_CHECK_MS,
-        default_handler_class=guarded(ErrorHandler, rules), default_handler_args={"status_code": 404},
-        sign_sessions=True, secret_key=access.secret or secrets.token_bytes(32), **dict(access.sign_in))
-    guard_handlers(server, rules, filter(_is_ipv6, names))
+        sign_sessions=True, secret_key=secret, **guard_setting(rules), **dict(access.sign_in))
     _count_what_is_shared()
     return server
+
+
+def _guarded_page() -> None:
+    """Make the page; fail where its request had no guard, because docs/security.md would promise too much then."""
+    if not is_guarded():
+        raise RuntimeError("a request came to the page without a check")
+    page()
 
 
 def _count_what_is_shared() -> None:

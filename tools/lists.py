@@ -79,10 +79,6 @@ def _help(command: str) -> str:
 
 def table_of_libraries() -> str:
     """The table of docs/libraries.md: what is used of libraries beyond their documentation, and where."""
-    rows = [f"| `{row.owner}`: {', '.join(f'`{name}`' for name in row.names)} | `app/{module.replace('.', '/')}.py` | {_consequence(row)} |"
+    rows = [f"| `{row.owner}`: {', '.join(f'`{name}`' for name in row.names)} | `app/{module.replace('.', '/')}.py` | {row.without} |"
             for module, table in needed.tables().items() for row in table]
     return "\n".join(["| what | where | without it |", "|---|---|---|", *rows])
-
-
-def _consequence(row: needed.Needed) -> str:
-    return f"the server does not start: {row.without}" if row.required else row.without

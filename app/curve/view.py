@@ -285,7 +285,7 @@ class CurveFigure:
     def _fill(self, sources: dict[str, ColumnDataSource], start: str, points: list[CurvePoint]) -> None:
         """Draw the points of the curve of this start, in ascending frequency."""
         if points and start not in sources:
-            with models_collected_once(self.figure):
+            with models_collected_once(self.figure.document):
                 sources[start] = self._line(start, grey=sources is self._grey_sources)
         if start in sources:
             ordered = sorted(points, key=lambda point: point.frequency)

@@ -139,6 +139,10 @@ class Controller:
         self.sentences.report_fault(error, sentence)
 
     def close(self, session_context: object) -> None:
+        """Bokeh has dropped the session: see `leave`."""
+        self.leave()
+
+    def leave(self) -> None:
         """The visitor left: everything that is computed for this page ends, and nothing is called any more."""
         self._calls.close()
 

@@ -7,16 +7,13 @@ from collections.abc import Callable
 from urllib.parse import urlsplit
 
 import panel as pn
-from bokeh.core.property.validation import validate
+from bokeh.core.properties import validate
 from bokeh.document import Document
 
-from ..needed import Needed
+from ..serve.document.leaving import when_left
 from ..session.session import Session
 from .addresses import apply_address
 from .controller import Controller
-
-#: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (Needed("bokeh.core.property.validation", ("validate",), "an import would fail", required=True),)
 
 
 def page() -> None:
@@ -34,6 +31,7 @@ def page() -> None:
     pn.config.exception_handler = _handler(controller)
     if sentences:
         controller.show_message(" ".join(sentences))
+    when_left(document, controller.leave)
     pn.state.on_session_destroyed(controller.close)
 
 

@@ -8,18 +8,11 @@ from typing import Any
 
 from bokeh.document import Document
 from bokeh.models import Plot
-from jinja2 import Template
-from panel.io.resources import BASE_TEMPLATE
+from jinja2 import Environment, Template
 
-from ..needed import Needed
+from ..parts.figures.figure_style import models_collected_once
 from ..parts.toolkit.component import Component
 from ..serve.document.part_messages import register
-
-#: What is used of Bokeh and Panel beyond their documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page could be made", required=True),
-    Needed("panel.io.resources", ("BASE_TEMPLATE",), "an import would fail", required=True),
-)
 
 
 def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable[Plot], template: str,
@@ -29,7 +22,7 @@ def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable
     Each part of ours goes by Panel's `server_doc`; a plot needs nothing of Panel. `pn.Template` adds what this page
     does not use: a second layout around all roots, a design, and a configuration set and restored for each part.
     """
-    with document.models.freeze():  # what the document refers to is collected once, not anew for each part
+    with models_collected_once(document):
         for name, part in parts.items():
             part.server_doc(document, title="granchain", location=False)
             document.roots[-1].name = name
@@ -42,4 +35,5 @@ def put_into(document: Document, parts: Mapping[str, Component], plots: Iterable
 
 @cache
 def _compiled(text: str) -> Template:
-    return BASE_TEMPLATE.environment.from_string(text)
+    """The template; Panel gives it the one that it extends as the variable `base`."""
+    return Environment(trim_blocks=True, lstrip_blocks=True).from_string(text)

@@ -65,7 +65,7 @@ class Listening:
 
     def open(self, token: str, **headers: str) -> tuple[int, socket.socket]:
         """The same, and its socket."""
-        one = socket.create_connection(("127.0.0.1", self.port), timeout=60)
+        one = socket.create_connection((self.address, self.port), timeout=60)
         words = {"Host": f"127.0.0.1:{self.port}", "Upgrade": "websocket", "Connection": "Upgrade",
                  "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version": "13",
                  "Sec-WebSocket-Protocol": f"bokeh, {token}", "Origin": f"http://127.0.0.1:{self.port}", **headers}

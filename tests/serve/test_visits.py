@@ -12,12 +12,15 @@ from typing import Any
 import pytest
 from bokeh.document import Document
 from bokeh.io.state import curstate
+from bokeh.server.session import ServerSession
 from event_loop import run_async
 from listening import Listening
+from missing_attribute import hide
 from waiting import until
 
 from app.dashboard.controller import Controller
 from app.serve.computing.queues import PICTURES, VISITORS
+from app.serve.document import leaving
 from app.server import Access
 from granchain_core import OverBudget, scene
 from granchain_core.run.budget import refuse_long_picture
@@ -60,8 +63,15 @@ def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) ->
         one.stop()
 
 
-def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit() -> None:
-    """A heavy client, ten thousand beads at 0.1 Hz: refused, insisted on, and left."""
+@pytest.mark.parametrize("forgotten", [True, False])
+def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit(
+        forgotten: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A heavy client, ten thousand beads at 0.1 Hz: refused, insisted on, and left.
+
+    It also ends where Bokeh cannot be asked to forget the session.
+    """
+    if not forgotten:
+        hide(monkeypatch, leaving, ServerSession, "request_expiration")
 
     async def insist(address: str) -> str:
         visitor = Visitor(address, query_of(N=10000, f=0.1, A0=1e-4))

@@ -5,12 +5,16 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
+from bokeh.document import Document
 from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
 
 from ...needed import Needed
 
 #: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (Needed("bokeh.document.models.DocumentModelManager", ("freeze",), "no page could be made", required=True),)
+NEEDED = (
+    Needed("bokeh.document.models.DocumentModelManager", ("freeze",),
+           "Bokeh collects what a document refers to anew for each part: a page opens more slowly"),
+)
 
 # Borders [px], the same for all time pictures, so that one cursor and the chain fit them exactly.
 TOP = 78
@@ -57,6 +61,8 @@ def bare_axis(axis: Any, colour: str | None = None) -> None:
         axis.css_variables = {"--bk-axis-label-text-color": colour}
 
 
-def models_collected_once(plot: Plot) -> AbstractContextManager[None]:
-    """Collect the document's models once for all that is added to a plot inside, not for each change."""
-    return plot.document.models.freeze() if plot.document is not None else nullcontext()
+def models_collected_once(document: Document | None) -> AbstractContextManager[None]:
+    """Collect the document's models once for all that is added to it inside, not anew for each change."""
+    freeze = getattr(getattr(document, "models", None), "freeze", nullcontext)
+    once: AbstractContextManager[None] = freeze()
+    return once

@@ -30,9 +30,8 @@ def register(document: Document, model: str, receive: Receive) -> None:
     _RECEIVERS.setdefault(document, {})[model] = weakref.WeakMethod(receive)
 
 
-def dispatch(connection: Any, content: dict[str, Any]) -> bool:
-    """Pass a message on to its part, with the document locked; False if it is for Bokeh."""
-    session = getattr(connection, "session", None)
+def dispatch(session: Any, content: dict[str, Any]) -> bool:
+    """Pass a message on to its part, with the session's document locked; False if it is for Bokeh."""
     if session is None or not can_lock(session) or session.destroyed:
         return False
     known = _RECEIVERS.get(session.document)

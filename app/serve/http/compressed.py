@@ -12,14 +12,7 @@ from typing import Any
 
 from tornado.web import StaticFileHandler
 
-from ...needed import Needed
 from ...scripts import FILES, file_at
-
-#: What is used of Tornado beyond its documentation (`app/needed.py`).
-NEEDED = (
-    Needed("tornado.web.StaticFileHandler", ("get_content", "get_content_size", "absolute_path", "compute_etag"),
-           "scripts and styles may be sent wrong; tests/serve/http/test_compressed.py fails"),
-)
 
 #: Kinds of files that are smaller when compressed; pictures and fonts are not.
 _COMPRESSED_SUFFIXES = frozenset({".js", ".mjs", ".css", ".svg", ".json", ".map", ".html", ".txt"})

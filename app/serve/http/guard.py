@@ -1,55 +1,49 @@
 """Request guard: checks host, session and the number of visitors, and adds security headers.
 
 docs/security.md says what is promised. Bokeh's, Panel's and Tornado's handlers are kept; `guarded` derives a class from
-each that checks a request first.
+each that checks a request first. Tornado asks the application for the handler of every request (its documented
+`get_handler_delegate`), and there the guarded class takes the place of the other.
 """
 
 from __future__ import annotations
 
+import json
 import logging
 import secrets
 import time
-from collections.abc import Awaitable, Iterable
+from collections.abc import Awaitable
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from typing import Any
+from urllib.parse import urlsplit
 
+from bokeh.protocol.exceptions import ProtocolError
 from bokeh.server.server import Server
-from bokeh.server.views.session_handler import SessionHandler
-from bokeh.server.views.ws import WSHandler
+from bokeh.server.tornado import BokehTornado
 from bokeh.util.token import check_token_signature, get_session_id
-from tornado.web import HTTPError, RequestHandler, StaticFileHandler
+from tornado.web import Application, HTTPError, RequestHandler, StaticFileHandler
+from tornado.websocket import WebSocketHandler
 
-from ...needed import Needed
+from ...needed import MissingPart, Needed
+from ..document.leaving import leave
 from ..document.part_messages import dispatch
-from ..monitoring.metrics import METRICS
+from ..monitoring.metrics import METRICS, Liveness, MetricsHandler
 from .compressed import CompressedFiles
 from .limits import USUAL_VISITORS
 from .message_rules import LARGEST_HEADER, RefusedMessage, checked_content
 
 log = logging.getLogger("granchain.requests")
 
-_UNGUARDED = "requests would be answered without checks"
-_NO_CONNECTION = "no page would get a connection"
-_NO_PAGE = "visitors could not be counted, and no page would open"
-_STAYS = "computations of a visitor who has left would go on"
-#: What is used of Bokeh and Tornado beyond their documentation (`app/needed.py`). The promises of docs/security.md rest
-#: on these rows, so all are required.
+try:
+    from bokeh.server.views.session_handler import SessionHandler
+except ImportError:  # see `_opens_page`
+    SessionHandler = None
+
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
 NEEDED = (
-    Needed("bokeh.server.server.BaseServer", ("_tornado",), _UNGUARDED, required=True),
-    Needed("bokeh.server.tornado.BokehTornado", ("websocket_origins",), "pages at an IPv6 address get no connection",
-           required=True),
-    Needed("tornado.web.Application", ("wildcard_router",), _UNGUARDED, required=True),
-    Needed("bokeh.server.views.session_handler", ("SessionHandler",), _NO_PAGE, required=True),
-    Needed("bokeh.server.views.ws", ("WSHandler",), "messages would not be checked", required=True),
-    Needed("bokeh.util.token", ("get_session_id", "check_token_signature"), _NO_CONNECTION, required=True),
-    Needed("bokeh.server.tornado.BokehTornado", ("secret_key",), _NO_CONNECTION, required=True),
-    Needed("bokeh.server.views.session_handler.SessionHandler", ("application_context",), _NO_PAGE, required=True),
-    Needed("bokeh.server.contexts.ApplicationContext", ("sessions",), _NO_PAGE, required=True),
-    Needed("bokeh.server.views.ws.WSHandler", ("connection",), _STAYS, required=True),
-    Needed("bokeh.server.views.ws.WSHandler", ("send_message",), "tracebacks would reach the browser", required=True),
-    Needed("bokeh.server.connection.ServerConnection", ("session",), _STAYS, required=True),
-    Needed("bokeh.server.session.ServerSession", ("request_expiration",), _STAYS, required=True),
+    Needed("bokeh.server.views.session_handler", ("SessionHandler",),
+           "a server with as many visitors as it may have also refuses to sign visitors in or out"),
 )
 
 #: Websocket frames that a visitor may send, over a long time [1/s]: the rate at which the token bucket of a connection
@@ -57,6 +51,10 @@ NEEDED = (
 FRAME_RATE = 600.0
 #: Frames that a visitor may send at once: what the bucket holds.
 FRAME_BURST = 3000.0
+#: The name of the setting that has an application's `Rules`.
+_SETTING = "granchain_rules"
+#: Whether the request that is being answered has passed a guard. A page is made in the context of its request.
+_IS_GUARDED: ContextVar[bool] = ContextVar("is_guarded", default=False)
 #: Time in which a session's id is remembered, longer than Bokeh's tokens live [s].
 _SESSIONS_REMEMBERED = 600.0
 
@@ -68,6 +66,14 @@ class Rules:
     hosts: frozenset[str] = frozenset()
     most_visitors: int = USUAL_VISITORS
     embedding: tuple[str, ...] = ()
+    #: Signs sessions.
+    secret: bytes = b""
+    #: Origins that Bokeh's own option refuses: those at addresses of IPv6.
+    origins: frozenset[str] = frozenset()
+    #: The server that is guarded, when it is there.
+    server: Server | None = None
+    #: The class with a guard for each class of handlers.
+    handlers: dict[type[RequestHandler], type[RequestHandler]] = field(default_factory=dict)
     #: Ids of sessions that had their connection, and when [s].
     connected: dict[str, float] = field(default_factory=dict)
 
@@ -96,6 +102,20 @@ class Rules:
         plain = host.lower().strip("[]")  # Tornado leaves the brackets of IPv6, which are a set of letters in a pattern
         return not self.hosts or any(fnmatchcase(plain, name) for name in self.hosts)
 
+    @property
+    def visitors(self) -> int:
+        """The pages that are open."""
+        assert self.server is not None  # requests come when the server is there
+        return len(self.server.get_sessions())
+
+    def session(self, session_id: str) -> Any:
+        """Bokeh's session with this id; None if there is none."""
+        assert self.server is not None
+        try:
+            return self.server.get_session("/", session_id)
+        except (ProtocolError, ValueError):
+            return None
+
     def claim_connection(self, session: str) -> bool:
         """Give the session its one connection; False if it had one before."""
         now = time.monotonic()
@@ -123,6 +143,7 @@ class Guard(RequestHandler):
     async def prepare(self) -> None:
         """Refuse a request that is for another server or not allowed."""
         self.check_request()
+        _IS_GUARDED.set(True)
         looked = super().prepare()
         if looked is not None:
             await looked
@@ -134,8 +155,7 @@ class Guard(RequestHandler):
         if any(name in self.request.arguments for name in ("bokeh-session-id", "bokeh-token")) \
                 or "Bokeh-Session-Id" in self.request.headers:
             raise HTTPError(403, "a session id of the client's own")
-        if isinstance(self, SessionHandler) \
-                and len(list(self.application_context.sessions)) >= self.rules.most_visitors:
+        if _opens_page(self) and self.rules.visitors >= self.rules.most_visitors:
             METRICS.count("refused_visitors")
             raise HTTPError(503, "there are %d visitors", self.rules.most_visitors)
 
@@ -169,6 +189,7 @@ class GuardedSocket(Guard):
     _frames: tuple[str, ...] = ()
     _refused = False
     _left = False
+    _session_id = ""
 
     def check_request(self) -> None:
         """Also refuse a connection without a token of this server, or with one that was used before.
@@ -178,7 +199,7 @@ class GuardedSocket(Guard):
         super().check_request()
         offered = [word.strip() for word in self.request.headers.get("Sec-WebSocket-Protocol", "").split(",")]
         try:
-            token, secret = offered[1], self.application.secret_key  # type: ignore[attr-defined]
+            token, secret = offered[1], self.rules.secret
             session = get_session_id(token) if check_token_signature(token, secret, signed=True) else None
         except Exception:  # a stranger may have written anything there
             session = None
@@ -186,6 +207,17 @@ class GuardedSocket(Guard):
             raise HTTPError(403, "no token of ours")
         if not self.rules.claim_connection(session):
             raise HTTPError(403, "a second connection to one session")
+        self._session_id = session
+
+    def check_origin(self, origin: str) -> bool:
+        """Whether pages of this origin may connect."""
+        return urlsplit(origin).netloc.lower() in self.rules.origins \
+            or bool(super().check_origin(origin))  # type: ignore[misc]
+
+    @property
+    def session(self) -> Any:
+        """Bokeh's session of this connection; None before the handshake, and when Bokeh has dropped it."""
+        return self.rules.session(self._session_id) if self._session_id else None
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
         """Pass whole messages on, unless there are too many or one is not of a page; that closes the connection."""
@@ -209,7 +241,7 @@ class GuardedSocket(Guard):
         except RefusedMessage as reason:
             self._refuse(str(reason))
             return None
-        return None if dispatch(getattr(self, "connection", None), content) else self._to_bokeh(frames)
+        return None if dispatch(self.session, content) else self._to_bokeh(frames)
 
     async def _to_bokeh(self, frames: tuple[str, ...]) -> None:
         for frame in frames:
@@ -222,45 +254,70 @@ class GuardedSocket(Guard):
         self.close(1008, reason)  # type: ignore[attr-defined]
 
     def on_close(self) -> None:
-        """The visitor left: Bokeh drops the session at its next check, which ends the page's computations.
+        """The visitor left: the page's computations end, and Bokeh drops the session at its next check.
 
         Tornado calls this twice if the closing frame of a refused page arrives before its stream ends.
         """
         if self._left:
             return
         self._left = True
-        connection = self.connection  # type: ignore[attr-defined]
-        session = None if connection is None else connection.session
+        session = self.session
         super().on_close()  # type: ignore[misc]
         if session is not None:
-            session.request_expiration()
+            leave(session)
 
-    async def send_message(self, message: Any) -> None:
+    def write_message(self, message: Any, *words: Any, **named: Any) -> Any:
         """Send errors with the request's id in place of a traceback."""
-        if message.msgtype == "ERROR":
-            METRICS.count("errors")
-            log.error("message failed: %s", message.content["text"],
-                      extra={"request": self.request_id, "remote": self.request.remote_ip})
-            message.content = {"text": f"The message could not be handled (request {self.request_id}).",
-                               "traceback": None}
-        await super().send_message(message)  # type: ignore[misc]
+        return super().write_message(self._without_traceback(message), *words, **named)  # type: ignore[misc]
+
+    def _without_traceback(self, frame: Any) -> Any:
+        """The frame; in place of the content of an error, the only one with the key `traceback`, another one."""
+        if not isinstance(frame, str) or '"traceback"' not in frame:  # inside a text there are backslashes
+            return frame
+        content = json.loads(frame)
+        if not isinstance(content, dict) or "traceback" not in content:
+            return frame
+        METRICS.count("errors")
+        log.error("message failed: %s", content.get("text"),
+                  extra={"request": self.request_id, "remote": self.request.remote_ip})
+        return json.dumps({"text": f"The message could not be handled (request {self.request_id}).", "traceback": None})
+
+
+def _opens_page(handler: RequestHandler) -> bool:
+    """Whether a request may open a page; without Bokeh's class of such handlers, of all that are not known not to."""
+    if SessionHandler is not None:
+        return isinstance(handler, SessionHandler)
+    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, Liveness, MetricsHandler))
 
 
 def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:
     """The handler class with a guard before it; a handler of files also sends them compressed."""
-    guard = GuardedSocket if issubclass(handler, WSHandler) else Guard
-    files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
-    return type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})
+    if handler not in rules.handlers:
+        guard = GuardedSocket if issubclass(handler, WebSocketHandler) else Guard
+        files = (CompressedFiles,) if issubclass(handler, StaticFileHandler) else ()
+        rules.handlers[handler] = type(f"Guarded{handler.__name__}", (guard, *files, handler), {"rules": rules})
+    return rules.handlers[handler]
 
 
-def guard_handlers(server: Server, rules: Rules, origins: Iterable[str] = ()) -> None:
-    """Put a guard before every handler of the server, and allow `origins` that Bokeh's own option refuses: IPv6.
+def is_guarded() -> bool:
+    """Whether the request that is being answered has passed a guard."""
+    return _IS_GUARDED.get()
 
-    Bokeh's handlers are not public. If a release keeps them elsewhere, this raises `AttributeError`, and the server
-    does not start: it must not run without guards.
+
+def guard_setting(rules: Rules) -> dict[str, Rules]:
+    """The setting of a Tornado application with which a guard is put before every handler of a Bokeh server.
+
+    Raises `MissingPart` where Tornado has no such method. Should a release have it and no longer use it, requests would
+    have no guard, and `is_guarded` says so: a page of ours must not open then.
     """
-    application = server._tornado
-    application.websocket_origins.update(origins)
-    for rule in application.wildcard_router.rules:
-        if isinstance(rule.target, type) and issubclass(rule.target, RequestHandler):
-            rule.target = guarded(rule.target, rules)
+    if not hasattr(Application, "get_handler_delegate"):
+        raise MissingPart("tornado.web.Application.get_handler_delegate", "requests would be answered without checks")
+    BokehTornado.get_handler_delegate = _guarded_delegate
+    return {_SETTING: rules}
+
+
+def _guarded_delegate(application: Application, request: Any, handler: type[RequestHandler], *words: Any,
+                      **named: Any) -> Any:
+    rules = application.settings.get(_SETTING)
+    checked = handler if rules is None else guarded(handler, rules)
+    return Application.get_handler_delegate(application, request, checked, *words, **named)

@@ -11,10 +11,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-import bokeh.model.util as references
 from bokeh.core.has_props import HasProps
-from bokeh.core.property.descriptors import PropertyDescriptor
-from bokeh.core.property.wrappers import PropertyValueContainer
+
+try:
+    import bokeh.model.util as references
+    from bokeh.core.property.descriptors import PropertyDescriptor
+    from bokeh.core.property.wrappers import PropertyValueContainer
+except ImportError:  # then `missing` names what there is not, and nothing is replaced
+    pass
 
 from ...needed import Needed, missing
 
@@ -30,7 +34,7 @@ NEEDED = (
     Needed("bokeh.core.has_props.HasProps.properties", ("_with_props",), _WITHOUT),
     Needed("bokeh.model.util",
            ("visit_immediate_value_references", "visit_value_and_its_immediate_references"), _WITHOUT),
-    Needed("bokeh.core.property.wrappers", ("PropertyValueContainer",), "an import would fail", required=True),
+    Needed("bokeh.core.property.wrappers", ("PropertyValueContainer",), _WITHOUT),
 )
 
 #: Types of immutable values: models can share them.

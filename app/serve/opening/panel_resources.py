@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import panel.io.resources as own
 import panel.io.server as pages
 from bokeh.model import Model
 from bokeh.models import ImportedStyleSheet
-from panel.io.resources import patch_stylesheet
 
 from ...needed import Needed
 
+_WITHOUT = "a page opens a tenth slower"
 #: What is used of Panel beyond its documentation (`app/needed.py`).
 NEEDED = (
-    Needed("panel.io.server", ("bundle_resources", "patch_model_css"), "a page opens a tenth slower"),
-    Needed("panel.io.resources", ("patch_stylesheet",), "an import would fail", required=True),
+    Needed("panel.io.server", ("bundle_resources", "patch_model_css"), _WITHOUT),
+    Needed("panel.io.resources", ("patch_stylesheet",), _WITHOUT),
 )
 
 
@@ -27,7 +28,8 @@ def remember_resources() -> None:
     """
     bundle: Callable[..., Any] | None = getattr(pages, "bundle_resources", None)
     patch: Callable[[Model, str], None] | None = getattr(pages, "patch_model_css", None)
-    if bundle is None or patch is None or hasattr(bundle, "known"):
+    patch_stylesheet: Callable[[Model, str], None] | None = getattr(own, "patch_stylesheet", None)
+    if bundle is None or patch is None or patch_stylesheet is None or hasattr(bundle, "known"):
         return
     known: dict[tuple[Any, ...], tuple[str, ...]] = {}
     plain: set[tuple[type[Model], str]] = set()

@@ -35,13 +35,6 @@ class Part:
         self.heard.append(message)
 
 
-class Connection:
-    """A connection with a session."""
-
-    def __init__(self) -> None:
-        self.session = ServerSession("tested", Document())  # type: ignore[arg-type]
-
-
 def content(data: Any, model: str = "p1", **changes: Any) -> dict[str, Any]:
     """The content of a message as BokehJS writes it."""
     event = {"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": {"type": "event", "name": "data_event", "values": {
@@ -51,11 +44,11 @@ def content(data: Any, model: str = "p1", **changes: Any) -> dict[str, Any]:
 
 def heard(sent: dict[str, Any]) -> tuple[bool, list[Any]]:
     """Whether a message was taken, and what the part heard."""
-    connection, part = Connection(), Part()
-    register(connection.session.document, "p1", part.hear)
+    session, part = ServerSession("tested", Document()), Part()  # type: ignore[arg-type]
+    register(session.document, "p1", part.hear)
 
     async def send() -> bool:
-        return dispatch(connection, sent)
+        return dispatch(session, sent)
 
     return run_async(send()), part.heard
 
@@ -79,9 +72,9 @@ def test_anything_else_is_left_to_bokeh(sent: dict[str, Any]) -> None:
 
 
 def test_a_part_that_is_gone_is_not_kept_and_hears_nothing() -> None:
-    connection = Connection()
-    register(connection.session.document, "p1", Part().hear)
-    assert not dispatch(connection, content(VALUE))
+    session = ServerSession("tested", Document())  # type: ignore[arg-type]
+    register(session.document, "p1", Part().hear)
+    assert not dispatch(session, content(VALUE))
 
 
 def test_an_action_waits_for_the_lock_and_what_comes_from_threads_runs_in_order(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import socket
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -12,7 +11,6 @@ from listening import Listening
 
 from app import server
 from app.cli import main
-from app.serve.http.guard import Rules, guard_handlers
 from app.server import Access, is_loopback
 
 _SECRET = b"a secret of this test alone, long enough"
@@ -52,6 +50,8 @@ def test_an_address_of_ipv6_is_served_under_its_own_name() -> None:
         assert one.ask("/")[0] == 200
         hosts = {"[::1]:5006": 200, "[2001:db8::7]": 200, "[::2]:5006": 421}
         assert {host: one.ask("/liveness", Host=host)[0] for host in hosts} == hosts
+        origins = {"https://[2001:db8::7]:443": 101, "https://[2001:db8::8]:443": 403}
+        assert {origin: one.connect(one.token(), Origin=origin) for origin in origins} == origins
     finally:
         one.stop()
 
@@ -77,9 +77,3 @@ def test_what_cannot_be_used_is_refused_with_a_sentence(words: list[str], senten
                                                         capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["serve", *words]) == 2
     assert sentence in capsys.readouterr().err
-
-
-def test_a_server_whose_handlers_are_not_found_does_not_start() -> None:
-    """A release that keeps them elsewhere must not serve without guards."""
-    with pytest.raises(AttributeError, match="_tornado"):
-        guard_handlers(SimpleNamespace(), Rules())

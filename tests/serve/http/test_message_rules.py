@@ -110,7 +110,6 @@ class Socket:
     def __init__(self) -> None:
         self.taken: list[str] = []
         self.closed = self.left = 0
-        self.connection = None
         self.request = type("Request", (), {"remote_ip": "127.0.0.1"})
 
     async def on_message(self, fragment: str) -> None:

@@ -30,6 +30,17 @@ def page_of(one: Listening) -> str:
 
 
 @pytest.mark.usefixtures("own_way")
+@pytest.mark.parametrize("name", ["bundle_resources", "patch_model_css", "patch_stylesheet"])
+def test_a_release_without_a_part_of_it_keeps_its_own_way(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    where = resources if name == "patch_stylesheet" else pages
+    before = pages.bundle_resources, pages.patch_model_css
+    with monkeypatch.context() as lost:
+        lost.delattr(where, name)
+        remember_resources()
+    assert (pages.bundle_resources, pages.patch_model_css) == before
+
+
+@pytest.mark.usefixtures("own_way")
 def test_remembered_resources_give_panels_page() -> None:
     one = Listening(Access())
     try:

@@ -1,0 +1,35 @@
+"""What happens when a visitor leaves: the page is told at once, and Bokeh is asked to drop the session."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable
+from typing import Any
+
+from bokeh.document import Document
+
+from ...needed import Needed
+
+#: What is used of Bokeh beyond its documentation (`app/needed.py`).
+NEEDED = (
+    Needed("bokeh.server.session.ServerSession", ("request_expiration",),
+           "a page that was left counts as a visitor and stays in memory for a minute, but nothing is computed for it"),
+)
+
+#: What a page does when its visitor leaves.
+_PAGES: weakref.WeakKeyDictionary[Document, weakref.WeakMethod[Callable[[], None]]] = weakref.WeakKeyDictionary()
+
+
+def when_left(document: Document, close: Callable[[], None]) -> None:
+    """Let a method, which is not kept alive, be called when the visitor of this document leaves."""
+    _PAGES[document] = weakref.WeakMethod(close)
+
+
+def leave(session: Any) -> None:
+    """The visitor of this session of Bokeh's has left; nobody else can connect to it."""
+    close = _PAGES[session.document]() if session.document in _PAGES else None
+    if close is not None:
+        close()
+    expire = getattr(session, "request_expiration", None)
+    if expire is not None:
+        expire()
