@@ -30,6 +30,12 @@ def test_a_file_is_short_and_has_docstrings(path: Path) -> None:
             assert ast.get_docstring(node), f"{path.name}: {node.name} has no docstring"  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("path", sorted((ROOT / "tests").rglob("test_*.py")), ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_file_of_tests_has_tests(path: Path) -> None:
+    """One that is emptied by mistake fails nowhere else."""
+    assert any(isinstance(node, ast.FunctionDef) and node.name.startswith("test_") for node in ast.walk(parsed(path)))
+
+
 @pytest.mark.parametrize("path", sorted((ROOT / "app").rglob("*.js")), ids=lambda p: p.name)
 def test_a_script_is_short_and_begins_with_a_comment(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
