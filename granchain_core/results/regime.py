@@ -38,7 +38,8 @@ class Regime:
     lyapunov_periods : int or None
         Drive periods over which it was measured.
     multiplier : float or None
-        Largest |μ| of the n-period map; None if it was not computed.
+        Largest |μ| of the n-period map; None if it was not computed. A batch computes it for orbits found by
+        extrapolation that decay slowly, to about 1e-4.
     followed : bool
         Whether the motion was still approaching its orbit, which was then found by Newton's method or extrapolation.
     approaches : int or None

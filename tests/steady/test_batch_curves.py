@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import scene
+from granchain_core import scene, settle
 from granchain_core.execution.stop import Stop
 from granchain_core.kernels.batch import checks
 from granchain_core.steady.batch import jobs_in_batch as batch_module
@@ -38,6 +38,19 @@ def test_what_is_extrapolated_is_what_the_chain_was_going_to() -> None:
         # the fixed-step method's own error at these steps is a few 1e-5 of the displacement, more on steep flanks
         assert found.maxima[1] == pytest.approx(top, rel=2e-3)
     assert periodic >= 9
+
+
+def test_a_computed_multiplier_is_kept_and_is_what_the_errors_rest_on() -> None:
+    """Section 2 at 400 Hz: |μ| = 0.914 per orbit. Before the extrapolation changes shrank by 1e-4 per orbit only.
+
+    One-sided differences are good to 1e-4 of the map, whose |μ| the coarse steps move by as much.
+    """
+    found = results([400.0])[400.0]
+    exact = settle(scene("sec2").evolve(f=400.0, accuracy=1e-6))
+    assert found.regime.decay is not None and found.regime.decay > 0.998
+    assert found.regime.multiplier == pytest.approx(exact.regime.multiplier, abs=1e-3)
+    assert found.errors is not None and found.errors.max() < 2e-4
+    assert found.maxima[1] == pytest.approx(exact.run.max_output_force, rel=found.errors[1])
 
 
 def test_what_batches_call_quasi_periodic_was_measured_twice(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,6 +22,7 @@ from ..exponent_measurements import ExponentMeasurements
 from ..orbit_errors import errors_between, errors_of_two_orbits, force_distances
 from ..regime_criteria import SLOW_RECORD, converging
 from ..settling.advance import MOST_SETTLING_STEPS
+from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
@@ -29,6 +30,11 @@ from ..steady_state import IRREGULAR_PERIODS, SteadyState
 FINE_STEPS_PER_COARSE = 3
 #: Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
 _LOCATED_SETTING = fixed_step_setting(8)
+#: [period n] A batch: an orbit found by extrapolation needs multipliers if its decay per orbit is above this.
+_SLOW_DECAY = 0.998
+#: [period n] A batch: such an orbit is accepted if its largest |μ|, by one-sided differences, is below this, else
+#: settled alone.
+_LARGEST_SURE_MULTIPLIER = 0.995
 #: Typical relative error of the finer run.
 _FINER_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
 
@@ -110,6 +116,8 @@ class BatchJob:
         y, distance = batch.state.y[:, member], float(batch.state.last_check[member, CHECK_DISTANCE])
         maxima, jumps = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
+        multiplier = self._multiplier(regime, y, batch.stop)
+        regime = replace(regime, distance=distance, multiplier=multiplier)
         left = force_distances(farther, self.scaled, maxima, y)
         errors = errors_of_two_orbits(relative_changes(maxima, before), _FINER_ERROR, regime.assumed_contraction) + left
         if (jumps > AT_A_JUMP * maxima[:2]).any():
@@ -117,8 +125,19 @@ class BatchJob:
             located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
             maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, located_errors, errors)
         maxima = maxima * self.scaled.scales.force
-        return SteadyState(self.scene, maxima, replace(regime, distance=distance), errors, self.scaled.to_si(y),
-                           number=self.number)
+        undecided = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
+        return SteadyState(self.scene, maxima, regime, errors, self.scaled.to_si(y), number=self.number,
+                           undecided=undecided)
+
+    def _multiplier(self, regime: Regime, y: np.ndarray, stop: Stop) -> float | None:
+        """Largest |μ| of an orbit through the scaled state y that was found by extrapolation and decays slowly.
+
+        None for other orbits, and for chains too long for multipliers. Raises `Cancelled`.
+        """
+        slow = regime.followed and (regime.decay or 0.0) > _SLOW_DECAY
+        if regime.period is None or not slow or self.scene.N > MOST_BEADS_WITH_MULTIPLIERS:
+            return None
+        return seen_modulus(self.scene, regime.period, self.scaled.beads_of(y), stop, refine=1.0)
 
     def _located_maxima(self, y: np.ndarray, regime: Regime, distance: float,
                         stop: Stop) -> tuple[np.ndarray, np.ndarray]:

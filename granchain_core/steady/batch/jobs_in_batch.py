@@ -23,7 +23,7 @@ import numpy as np
 
 from ...execution.stop import Stop
 from ...integrate.batch import Batch
-from ...integrate.scaling import scale_chain, scale_like
+from ...integrate.scaling import scale_like
 from ...kernels.batch_size import BATCH_SIZE
 from ...kernels.strobes.periodicity import LONGEST_PERIOD, SETTLED_DISTANCE
 from ...results.regime import Regime
@@ -33,18 +33,13 @@ from ...scene.state import rest
 from ..exponent_measurements import MEASURED_PERIODS
 from ..lyapunov import growth_of, put_with_shadow
 from ..regime_criteria import converging, find_period
-from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, is_almost_periodic, seen_modulus
+from ..settling.nearby_orbit import is_almost_periodic
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
 from .job import FINE_STEPS_PER_COARSE, BatchJob, Stage, Start, draft_result, failed, outcome_of_coarse_run
 
 #: [unsettled] Most drive periods of a draft of a curve.
 _DRAFT_PERIODS = 300
-#: [period n] A batch: an orbit found by extrapolation needs multipliers if its decay per orbit is above this.
-_SLOW_DECAY = 0.998
-#: [period n] A batch: such an orbit is accepted if its largest |μ|, by one-sided differences, is below this, else
-#: settled alone.
-_LARGEST_SURE_MULTIPLIER = 0.995
 
 
 class _JobsInBatch:
@@ -163,7 +158,7 @@ class _JobsInBatch:
             return None
         self._free(member)
         if isinstance(outcome, SteadyState):
-            return confirmed(outcome, self.stop)
+            return outcome
         if outcome.stage is Stage.EXPONENT:
             self._measure(outcome)
         else:
@@ -247,14 +242,3 @@ def batch_states(starts: Iterator[Start], stop: Stop, draft: bool = False) -> It
         if result is not None:
             yield result
         jobs.fill()
-
-
-def confirmed(result: SteadyState, stop: Stop) -> SteadyState:
-    """The result, undecided if its orbit was found by extrapolation, decays slowly and has no |μ| clearly below 1."""
-    regime, scene = result.regime, result.scene
-    slow = regime.followed and (regime.decay or 0.0) > _SLOW_DECAY
-    if regime.period is None or not slow or scene.N > MOST_BEADS_WITH_MULTIPLIERS:
-        return result
-    y = scale_chain(scene).from_si(result.state).reshape(2, -1)
-    largest = seen_modulus(scene, regime.period, y[:, 1:-1].ravel(), stop, refine=1.0)
-    return result if largest < _LARGEST_SURE_MULTIPLIER else replace(result, undecided=True)

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from bisect import bisect
+from collections.abc import Iterator, Sequence
 
 from ...inputs.checks import unknown_name
 
+#: The knobs of one point of a curve that differ from its neighbours', by their names.
+Knobs = dict[str, float]
+
 #: Ways to start the points of a curve: each from rest, or each from the state of the one before, upwards or downwards.
 CURVE_STARTS = ("rest", "up", "down")
+#: One point in so many has a frequency of the lowest, which come first. Of `sec2` on two threads the last of 298 points
+#: then ends 3 % after the mean, with 8 or 32 it ends 5 % after it, and with none 8 %.
+_LOWEST = 16
 
 
 def coarse_first(count: int) -> list[int]:
@@ -47,3 +55,37 @@ def used_and_missing(known: Sequence[float], frequencies: Sequence[float], start
         else:
             missing.append(i)
     return used, missing
+
+
+class LongestFirst:
+    """Points of a curve from rest, in the order in which threads draw them: those that may take long come early.
+
+    A long point that is drawn last keeps one thread busy when the others have nothing left to do. The lowest
+    frequencies come first, since their periods have the most steps. The rest is coarse first, up to the last points,
+    which lie between others: of these, the ones whose neighbours took longest come first, since next to a bifurcation
+    all settle slowly.
+    """
+
+    def __init__(self, points: list[Knobs]) -> None:
+        ascending = sorted(range(len(points)), key=lambda i: points[i]["f"])
+        lowest = ascending[: len(points) // _LOWEST]
+        self._lowest = [points[i] for i in lowest]
+        others = [points[i] for i in sorted(ascending[len(lowest):])]
+        half = (len(others) + 1) // 2
+        self._coarse, self._between = others[:half], others[half:]
+        self._time: dict[float, float] = {}
+
+    def __iter__(self) -> Iterator[Knobs]:
+        yield from self._lowest
+        yield from self._coarse
+        frequencies = sorted(knobs["f"] for knobs in (*self._lowest, *self._coarse))
+
+        def of_neighbours(knobs: Knobs) -> float:
+            place = bisect(frequencies, knobs["f"])
+            return max(self._time.get(f, math.inf) for f in frequencies[max(0, place - 1) : place + 1])
+
+        yield from sorted(self._between, key=of_neighbours, reverse=True)
+
+    def finished(self, frequency: float, periods: int) -> None:
+        """Note the time that a point took. One still under way when the last points begin counts as the longest."""
+        self._time[frequency] = periods / frequency

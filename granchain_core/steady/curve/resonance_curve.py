@@ -23,10 +23,8 @@ from ..batch.starts import settle_starts
 from ..batch.threads import on_all_cores
 from ..settling.single_chain import settle_or_failure
 from .curve import Curve, CurvePoint
-from .order import used_and_missing
+from .order import Knobs, LongestFirst, used_and_missing
 
-#: The knobs of one point of a curve that differ from its neighbours', by their names.
-Knobs = dict[str, float]
 #: Most points of one curve.
 MOST_POINTS = 100_000
 #: Points of one task of a scheduler's worker.
@@ -124,9 +122,14 @@ def _carried(scene: Scene, left: list[Knobs], before: CurvePoint | None, stop: S
 
 def _from_rest(scene: Scene, left: list[Knobs], stop: Stop | None, workers: int | None) -> Iterator[CurvePoint]:
     """Independent points on all cores: in batches where they can, else one by one; closing the generator stops them."""
-    ended = Stop()
-    yield from on_all_cores(lambda shared: _points(scene, shared, ended), left, ended, stop,
-                            min(workers or usable_cores(), len(left)))
+    ended, order = Stop(), LongestFirst(left)
+
+    def work(shared: Iterator[Knobs]) -> Iterator[CurvePoint]:
+        for point in _points(scene, shared, ended):
+            order.finished(point.frequency, point.regime.periods_run)
+            yield point
+
+    yield from on_all_cores(work, order, ended, stop, min(workers or usable_cores(), len(left)))
 
 
 def _points(scene: Scene, left: Iterator[Knobs], ended: Stop) -> Iterator[CurvePoint]:

@@ -1,0 +1,47 @@
+"""The order in which the points of a curve are drawn by threads."""
+
+from __future__ import annotations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from granchain_core.steady.curve.order import LongestFirst, coarse_first
+
+
+def points(frequencies: list[float]) -> list[dict[str, float]]:
+    return [{"f": f} for f in frequencies]
+
+
+@given(st.lists(st.sampled_from([10.0, 20.0, 30.0, 40.0]) | st.floats(1.0, 1e4), max_size=70), st.data())
+def test_every_point_is_drawn_once(frequencies: list[float], data: st.DataObject) -> None:
+    """Also a frequency that is there twice, whatever has been finished before the last points begin."""
+    order = LongestFirst(points(frequencies))
+    drawn = []
+    for knobs in order:
+        drawn.append(knobs["f"])
+        if data.draw(st.booleans()):
+            order.finished(knobs["f"], data.draw(st.integers(1, 3000)))
+    assert sorted(drawn) == sorted(frequencies)
+
+
+def test_the_lowest_come_first_and_the_last_where_neighbours_took_long() -> None:
+    """Of 32 points the two lowest; last those between others, and first of these the ones beside the slow point."""
+    frequencies = [100.0 + 10.0 * i for i in range(33)]
+    order = LongestFirst(points([frequencies[i] for i in coarse_first(33)]))
+    drawn = []
+    for knobs in order:
+        drawn.append(knobs["f"])
+        order.finished(knobs["f"], 2000 if knobs["f"] == 260.0 else 20)
+    assert drawn[:3] == [100.0, 110.0, 420.0]
+    assert set(drawn[18:20]) == {250.0, 270.0}
+
+
+def test_a_point_under_way_counts_as_the_longest() -> None:
+    frequencies = [100.0 + 10.0 * i for i in range(33)]
+    order = LongestFirst(points([frequencies[i] for i in coarse_first(33)]))
+    drawn = []
+    for knobs in order:
+        drawn.append(knobs["f"])
+        if knobs["f"] != 300.0:
+            order.finished(knobs["f"], 3000)
+    assert set(drawn[18:20]) == {290.0, 310.0}
