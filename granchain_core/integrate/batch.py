@@ -9,9 +9,9 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..execution.stop import Stop
-from ..kernels.batch import run as kernels
 from ..kernels.batch.checks import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, check_member
 from ..kernels.batch.record import STROBES_KEPT
+from ..kernels.batch.run import IS_SHADOW, NO_SHADOW, BatchState, Members, run_batch
 from ..kernels.batch.unequal import Unequal
 from ..kernels.batch_size import BATCH_SIZE
 from ..kernels.compiling.by_address import address_of
@@ -76,7 +76,7 @@ class Batch:
         self._run: Any = None
         self._check = 0
         n = example.N
-        self.members = kernels.Members(
+        self.members = Members(
             wall=_rows(1), unequal=None if is_uniform(scaled) else Unequal(_rows(n + 2), _rows(n + 1)),
             slots=_slots_of_members(scaled), turn=_rows(2), beta=_rows(1), h=_rows(1),
         )
@@ -86,7 +86,7 @@ class Batch:
             "shadow", "strobe_count", "tested_period")}
         numbers = {name: np.zeros(BATCH_SIZE) for name in (
             "slowest_decay", "slowest_decay_before", "change_before_extrapolation", "distance")}
-        self.state = kernels.BatchState(
+        self.state = BatchState(
             **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), end_contacts=_rows(4), phase=_rows(2),
             first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
             peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)),
@@ -140,7 +140,7 @@ class Batch:
         state.change_before_extrapolation[member] = 0.0
         state.fine_record[member], state.last_check[member] = 0.0, 0.0
         state.tested_period[member], state.due[member] = 0, 0
-        state.shadow[member] = kernels.NO_SHADOW
+        state.shadow[member] = NO_SHADOW
 
     def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, contraction: float,
                  maxima: np.ndarray) -> None:
@@ -164,7 +164,7 @@ class Batch:
         self.put(member, scaled, y, 1, periods, NEVER)
         self.put(shadow, scaled, y + offset, 1, NEVER, NEVER)
         state = self.state
-        state.shadow[member], state.shadow[shadow], state.distance[member] = shadow, kernels.IS_SHADOW, distance
+        state.shadow[member], state.shadow[shadow], state.distance[member] = shadow, IS_SHADOW, distance
 
     def checks_address(self) -> int:
         """Address of the kernel that checks a member's regime, compiled first where it is not there yet."""
@@ -177,7 +177,7 @@ class Batch:
     def run(self) -> tuple[int, bool]:
         """Run until a member is due; its number, and whether it is finite."""
         if self._run is None:
-            self._run = entry(kernels.run_batch, self.members, self.state, self.stop.flag, 0)
+            self._run = entry(run_batch, self.members, self.state, self.stop.flag, 0)
             self._check = self.checks_address()
         arguments = self.members, self.state, self.stop.flag, self._check
         status, member = self._run(*arguments)

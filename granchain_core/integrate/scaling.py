@@ -142,7 +142,7 @@ class ScaledChain:
         displacement, velocity = self.rows(y)
         displacement[:] = state.displacement / self.scales.length
         velocity[:] = state.velocity / self.scales.velocity
-        _EVALUATE_AT_PHASE(types_of(self.slots), self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
+        _EVALUATE_AT_PHASE(self.slot_types, self.slots, 0.0, y, np.zeros_like(y), self.forces(), True)
         y[0] = 0.0
         return y
 
@@ -152,8 +152,13 @@ class ScaledChain:
         The second half of y is w, not velocity; v is recovered from w and the overlaps.
         """
         slope = np.zeros_like(y)
-        _EVALUATE_AT_PHASE(types_of(self.slots), self.slots, 0.0, y.copy(), slope, self.forces(), False)
+        _EVALUATE_AT_PHASE(self.slot_types, self.slots, 0.0, y.copy(), slope, self.forces(), False)
         return State(self.rows(y)[0] * self.scales.length, self.rows(slope)[0] * self.scales.velocity)
+
+    @cached_property
+    def slot_types(self) -> Any:
+        """The types of the slots, by which the kernels' versions for them are found."""
+        return types_of(self.slots)
 
     @cached_property
     def step(self) -> float:
@@ -260,7 +265,9 @@ def scale_like(known: ScaledChain, scene: Scene) -> ScaledChain:
         return scale_chain(scene)
     beta = 2 * math.pi * scene.f / known.scales.phi
     driver = known.slots.driver._replace(beta=beta)
-    return replace(known, scene=scene, slots=known.slots._replace(driver=driver), beta=beta).own()
+    scaled = replace(known, scene=scene, slots=known.slots._replace(driver=driver), beta=beta).own()
+    vars(scaled)["slot_types"] = known.slot_types  # the arrays are the same ones, or of the same types
+    return scaled
 
 
 _TITLES = ALWAYS | {effect.slot: effect.title for effect in (*EFFECTS, ACCOUNT)}

@@ -23,7 +23,7 @@ FORCE_FREE = (
            "the later of two kinks in a step is taken for the first", k.FORCE_FREE_ENERGY),
     Mutant("wrong-side-kept", _KINKS, "            turned = True", "            turned = False",
            "a contact that rounding put on the wrong side of its kink stays there", k.FORCE_FREE),
-    Mutant("sign-of-rounding-believed", _KINKS, "        elif not again:", "        elif not again and free == (f0 < 0.0):",
+    Mutant("sign-of-rounding-believed", _KINKS, "        elif not skip_wrong_side:", "        elif not skip_wrong_side and free == (f0 < 0.0):",
            "a force that is rounding decides whether a contact is on the wrong side", k.FORCE_FREE),
     Mutant("one-changes-sides-at-a-time", _KINKS, "            turned = True", "            turned = True\n            break",
            "of two mirrored contacts on the wrong side one changes before the other", k.CUT_SYMMETRY),

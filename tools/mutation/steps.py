@@ -97,7 +97,7 @@ ADAPTIVE = (
     Mutant("chatter-unseen", _DOP853_RUN, "if events > EVENTS_PER_CONTACT * (bodies - 1):", "if events < 0:",
            "contacts that open and close without end are followed without a word",
            ("tests/hard_cases/test_outcomes.py::test_endless_touches_fail_with_a_sentence",)),
-    Mutant("events-of-all-periods", _DOP853_RUN, "t, g, events = 0.0, 0, 0", "t, g = 0.0, 0",
+    Mutant("events-of-all-periods", _DOP853_RUN, "t, point, events = 0.0, 0, 0", "t, point = 0.0, 0",
            "a long run is called chatter", k.MANY_PERIODS),
     Mutant("samples-at-step-ends", _DOP853_RUN, "min(1.0, (at - t) / h)", "1.0",
            "samples are taken where a step happens to end", k.ADAPTIVE_ORDER),

@@ -64,7 +64,7 @@ IN_BATCHES = (
            "from its second period on the next scene in a place has the steps of the one before", k.REFILL),
     Mutant("refill-with-old-verdict", _BATCH, "state.fine_record[member], state.last_check[member] = 0.0, 0.0",
            "state.last_check[member] = 0.0", "the next scene in a place is checked as the finer run of the one before", k.REFILL),
-    Mutant("refill-with-old-shadow", _BATCH, "        state.shadow[member] = kernels.NO_SHADOW\n", "",
+    Mutant("refill-with-old-shadow", _BATCH, "        state.shadow[member] = NO_SHADOW\n", "",
            "the next scene in a lane is a shadow, or has one, because the one before was", k.SHADOWS),
     Mutant("batch-only-first-bead-is-finite", _BATCH_RUN, "return (DONE if is_finite_member(state.y, member) else NOT_FINITE), member",
            "return (DONE if np.isfinite(state.y[1, member]) else NOT_FINITE), member",

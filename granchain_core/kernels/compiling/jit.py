@@ -1,5 +1,14 @@
 """The decorators of kernels and the options they are compiled with; cache.py keeps what is compiled.
 
+    `kernel`         called from Python; releases the GIL
+    `brief_kernel`   called from Python; takes microseconds and keeps the GIL
+    `internal`       a function of kernels, compiled by itself and linked into its callers
+    `inline_llvm`    the same, inlined by LLVM, so that values stay in registers
+    `inline_numba`   the same, inlined by Numba before types are inferred: for functions with one caller
+    `by_slot`        a term of an effect: the type of its slot chooses the code; None is that of an absent effect
+    `by_type`        the same for other types, such as widths of vectors or quantities inside a step
+    `…_inlined`      both, inlined by LLVM
+
 * `nogil`, so that threads really run kernels side by side; not for brief kernels (`brief_kernel`).
 * No `nnan`/`ninf`: a NaN must stay visible. With the flags of `FAST_MATH` sums are vectorised and `x + 0.0`
   folds away. `x * 0.0` does not, so the code for an absent effect must not multiply by zero.
@@ -84,9 +93,9 @@ def kernel(function):
 
 
 def brief_kernel(function):
-    """`kernel` for one that takes some microseconds: it keeps the interpreter's lock.
+    """`kernel` for one that takes some microseconds: it keeps the GIL.
 
-    To give the lock away and to wait for it again takes longer than such a kernel where another thread wants it too.
+    To release the GIL and to wait for it again takes longer than such a kernel where another thread wants it too.
     """
     compiled = numba.njit(nogil=False, **_OPTIONS)(function)
     keep_on_disk(compiled)

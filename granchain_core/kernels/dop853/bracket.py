@@ -30,7 +30,7 @@ def value_at(quantity, step, x):
 
 
 @internal
-def between(bracket):
+def secant_point(bracket):
     """Where the straight line through both ends is zero; the middle where rounding has it outside."""
     low, high, f_low, f_high, _ = bracket
     x = (low * f_high - high * f_low) / (f_high - f_low)
@@ -38,8 +38,8 @@ def between(bracket):
 
 
 @internal
-def narrowed(bracket, x, f):
-    """The bracket once the quantity is known to be f at x."""
+def narrowed_to(bracket, x, f):
+    """The part of the bracket in which the sign still changes, once the quantity is known to be f at x."""
     low, high, f_low, f_high, moved = bracket
     if (f > 0.0) == (f_low > 0.0):
         return Bracket(x, high, f, 0.5 * f_high if moved < 0 else f_high, -1)
@@ -50,21 +50,21 @@ def narrowed(bracket, x, f):
 def root_inside(quantity, step, bracket, near):
     """Fraction in the bracket at which the quantity changes sign, to about `near`.
 
-    80 evaluations are more than halving to rounding would take; the method needs about ten.
+    The method takes about ten evaluations. Where 80 do not suffice, the last estimate is returned.
     """
     x = bracket.high
     for _ in range(80):
         before = x
-        x = between(bracket)
+        x = secant_point(bracket)
         f = value_at(quantity, step, x)
         if f == 0.0 or abs(x - before) < near:
             break
-        bracket = narrowed(bracket, x, f)
+        bracket = narrowed_to(bracket, x, f)
     return x
 
 
 @internal
-def top_inside(quantity, step, until, sections):
+def maximum_inside(quantity, step, until, sections):
     """(fraction, value) where the quantity is largest in the step up to fraction `until`, if it has one maximum."""
     low, high = 0.0, until
     a, b = (1.0 - _RATIO) * until, _RATIO * until

@@ -106,7 +106,7 @@ def _(tension, trajectory):
 
 
 @by_slot
-def first_kink(tension, step, until, counts, again):
+def first_kink(tension, step, until, counts, skip_wrong_side):
     """Look for the first point of the accepted step, up to `until`, at which the force of a contact reaches F = 0.
 
     Returns (outcome, fraction):
@@ -114,13 +114,13 @@ def first_kink(tension, step, until, counts, again):
         KINK           a contact stops pushing, or pushes again, at the fraction
         WRONG_SIDE     rounding put a contact on the wrong side of F = 0 at the start. All such contacts have changed
                        sides together, to keep a symmetric motion symmetric, and the step is to be repeated; once a step
-                       (`again`), because where F is only rounding, either choice is right
+                       (`skip_wrong_side`), because where F is only rounding, either choice is right
     """
     return NO_KINK, 1.0
 
 
 @first_kink.of(TensionCut)
-def _(tension, step, until, counts, again):
+def _(tension, step, until, counts, skip_wrong_side):
     slots, drive, y, workspace = step.trajectory
     first, ready, turned, k, still = 1.0, False, False, workspace.k, _REST_PART * workspace.scale[1]
     for c in range(slots.chain.stiffness.size):
@@ -148,7 +148,7 @@ def _(tension, step, until, counts, again):
         if x * step.h > _LEAST_DISTANCE:
             if x < first and x * step.h < until * step.h - _LEAST_DISTANCE:
                 first = x
-        elif not again:
+        elif not skip_wrong_side:
             if free:
                 tension.force_free[c] = 0
             else:

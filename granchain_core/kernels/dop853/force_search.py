@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..compiling.jit import internal
+from ..compiling.jit import inline_llvm, internal
 from ..effects.contact import elastic_force, elastic_slope, positive_part
 from ..effects.dissipation import dashpot_force
 from ..effects.preload import overlap
@@ -20,7 +20,7 @@ from ..effects.tension import cut_at_zero
 from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import row_of
 from ..status import EVALUATIONS
-from .bracket import top_inside, value_at
+from .bracket import maximum_inside, value_at
 from .step import evaluate, interpolate, prepare_dense
 from .tableau import DENSE_EVALUATIONS, STAGES
 
@@ -100,6 +100,15 @@ def is_monotone(f0, s0, f1, s1, h):
     return chord * s0 >= 0.0 and chord * s1 >= 0.0 and h * max(abs(s0), abs(s1)) <= abs(chord)
 
 
+@inline_llvm
+def may_hold_maximum(start, rises, middle, end, falls):
+    """Whether a force may be largest inside a step: it rises from the start on or to the middle, and falls to the end.
+
+    `rises` and `falls` are its slopes at the two ends. Where it turns twice, a slope alone would miss a maximum.
+    """
+    return (rises > 0.0 or middle > start) and (falls < 0.0 or middle > end)
+
+
 @internal
 def update_forces_in_step(step, ready, peaks, counts):
     """Raise the largest forces to those in the accepted step; returns whether its dense output is prepared now.
@@ -130,7 +139,8 @@ def update_forces_in_step(step, ready, peaks, counts):
     for q in range(3):
         peaks[row_of(q)] = max(peaks[row_of(q)], middle[q])
         guess = max(middle[q], cubic_top(start[q], rises[q], end[q], falls[q], step.h))
-        if rises[q] > 0.0 and falls[q] < 0.0 and guess > WORTH * peaks[row_of(q)]:
-            _, top = top_inside(Force(q, counts), step, 1.0, FORCE_SECTIONS)
+        if (may_hold_maximum(start[q], rises[q], middle[q], end[q], falls[q])
+                and guess > WORTH * peaks[row_of(q)]):
+            _, top = maximum_inside(Force(q, counts), step, 1.0, FORCE_SECTIONS)
             peaks[row_of(q)] = max(peaks[row_of(q)], top)
     return True

@@ -65,7 +65,7 @@ _EVENT_STRETCH = 1.01
 _NEAR_END = 1e-9
 #: After an event is a term (t − t_e)^{5/2}: the first step is this times tolerance^{2/5}, and errs by about the
 #: tolerance.
-_FIRST_STEP = 2.0
+_STEP_AFTER_EVENT = 2.0
 
 
 class SampleRange(NamedTuple):
@@ -172,25 +172,29 @@ def accepted_step(method, trajectory, t, h, counts):
 def located_step(method, trajectory, t, limit, counts):
     """One accepted step from y at local time t, at most to `limit`; the result is workspace.end.
 
+    A step is tried. Where a contact event or a kink of a force lies inside, the step is shortened to it and tried
+    again, until nothing lies before its end; Newton's method then puts the end just past the event (`locate_event`).
+    Contacts that rounding put on the wrong side of a kink change sides once (`first_kink`), and the step begins anew.
+
     Returns (status, step taken, contact that changed at its end or −1); workspace.next_step[0] is the next step to try.
     """
     tension, next_step = trajectory.slots.tension, trajectory.workspace.next_step
     h = min(next_step[0], method.largest_step, limit - t)
     enter_force_free(tension, trajectory, t)
-    aimed, kinked, again = -1, False, False
+    aimed, kinked, skip_wrong_side = -1, False, False
     while True:
         tried = h
         status, h, factor = accepted_step(method, trajectory, t, tried, counts)
         if status != DONE:
             return status, h, -1
-        step = Step(trajectory, t, h)
-        if h == tried and (aimed >= 0 or kinked):
+        step, not_shortened = Step(trajectory, t, h), h == tried
+        if not_shortened and (aimed >= 0 or kinked):
             break
         kinked = False
         aimed, x = first_event(step, counts)
-        outcome, kink = first_kink(tension, step, min(x, 1.0), counts, again)
+        outcome, kink = first_kink(tension, step, min(x, 1.0), counts, skip_wrong_side)
         if outcome == WRONG_SIDE:
-            aimed, again = -1, True
+            aimed, skip_wrong_side = -1, True
             continue
         if outcome == KINK:
             next_step[0] = min(next_step[0], h * factor)
@@ -202,7 +206,7 @@ def located_step(method, trajectory, t, limit, counts):
         h *= x
     if aimed >= 0:
         h = locate_event(method, step, limit, aimed, counts)
-        next_step[0] = min(next_step[0], _FIRST_STEP * method.tolerance**0.4)
+        next_step[0] = min(next_step[0], _STEP_AFTER_EVENT * method.tolerance**0.4)
     elif not kinked and (h < limit - t or factor < 1.0 or next_step[0] <= h):
         next_step[0] = h * factor  # after a kink the motion is smooth on both sides: the next step need not start small
     counts[EVENTS] += aimed >= 0 or kinked
@@ -211,21 +215,21 @@ def located_step(method, trajectory, t, limit, counts):
 
 
 @inline_numba
-def record_step(step, g, passed, spacing, row, every, samples, out):
-    """Record the forces in the accepted step, and of the `passed` grid points past number g in it each `every`-th.
+def record_step(step, point, passed, spacing, row, every, samples, out):
+    """Record the forces in the accepted step, and of the `passed` grid points past number `point` each `every`-th.
 
     Returns the next free row of `samples`.
     """
     slots, drive, y, workspace = step.trajectory
     t, h = step.t, step.h
     ready = update_forces_in_step(step, False, out.log.peaks, out.counts)
-    for point in range(g + 1, g + 1 + passed):
-        if point % every == 0:
+    for p in range(point + 1, point + 1 + passed):
+        if p % every == 0:
             if not ready:
                 prepare_dense(step)
                 out.counts[EVALUATIONS] += DENSE_EVALUATIONS
                 ready = True
-            at = point * spacing
+            at = p * spacing
             interpolate(y, workspace, min(1.0, (at - t) / h))
             lost = force_free_loss(slots.account, slots, y, workspace.probe)
             add_to_account(slots.account, workspace.probe, 0.0, lost)
@@ -260,15 +264,15 @@ def run_dop853(method, trajectory, sample_range, samples, out):
     slots, drive, y, workspace = trajectory
     first, points, grid, every = sample_range
     bodies, period, spacing = slots.chain.inverse_mass.size, drive.period, drive.period / grid
-    g, done, row, events = first, 0, 1, 0
-    t = g * spacing
+    point, done, row, events = first, 0, 1, 0
+    t = point * spacing
     evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
     if every > 0:
         write_sample(slots, 0, y, workspace.k[0], workspace.forces.e, samples)
     while done < points:
         if out.stop[0] != 0:
             return CANCELLED, row if every > 0 else done
-        goal = min(grid, g + points - done)
+        goal = min(grid, point + points - done)
         limit = period if goal == grid else goal * spacing
         status, h, contact = located_step(method, trajectory, t, limit, out.counts)
         if status != DONE:
@@ -278,15 +282,15 @@ def run_dop853(method, trajectory, sample_range, samples, out):
         if events > EVENTS_PER_CONTACT * (bodies - 1):
             return CHATTER, row if every > 0 else done
         passed = 0
-        while done + passed < points and (g + passed + 1) * spacing <= end + PERIOD_END * period:
+        while done + passed < points and (point + passed + 1) * spacing <= end + PERIOD_END * period:
             passed += 1
         if every > 0:
-            row = record_step(Step(trajectory, t, h), g, passed, spacing, row, every, samples, out)
-        g, done = g + passed, done + passed
+            row = record_step(Step(trajectory, t, h), point, passed, spacing, row, every, samples, out)
+        point, done = point + passed, done + passed
         changed = accept(trajectory)
         t = end
         if end == period:
-            t, g, events = 0.0, 0, 0
+            t, point, events = 0.0, 0, 0
         if changed or end == period:
             evaluate(slots, drive.beta, t, y, workspace.k[0], workspace.forces)
         if first_not_finite(y, bodies) != 0:

@@ -11,7 +11,7 @@ from ..compiling.jit import by_type, inline_llvm, inline_numba, internal, kernel
 from ..effects.driver import driver_displacement, driver_velocity
 from ..effects.preload import overlap
 from ..equations.motion import motion
-from .bracket import Bracket, root_inside, top_inside, value_at
+from .bracket import Bracket, maximum_inside, root_inside, value_at
 from .tableau import ALL_STAGES, DENSE_WEIGHTS, E3, E5, STAGES, A, C
 
 #: Golden sections around a turning point of an overlap.
@@ -229,7 +229,7 @@ def _(quantity, step, x):
 @internal
 def turning_point(signed_overlap, step):
     """Fraction at which an overlap is largest inside the step."""
-    x, _ = top_inside(signed_overlap, step, 1.0, TURN_SECTIONS)
+    x, _ = maximum_inside(signed_overlap, step, 1.0, TURN_SECTIONS)
     return x
 
 

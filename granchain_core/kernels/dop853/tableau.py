@@ -1,8 +1,9 @@
 """Coefficients of the Dormand–Prince method of order 8 with error estimates of order 5 and 3 and dense output of
 order 7.
 
-Source: Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed., section II.5 and the
-published program DOP853. The sums that such numbers must satisfy are checked in the tests.
+Source: Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 2nd ed., sections II.5 (method and error
+estimates) and II.6 (dense output), and the published program DOP853. tests/kernels/dop853/test_tableau.py checks the
+order conditions that such numbers must satisfy.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ def _sparse(shape: tuple[int, ...], entries: dict[tuple[int, int], float]) -> np
     return matrix
 
 
-#: Stage times.
+#: Nodes c_i of the stages.
 C = np.array([
     0.0,
     0.05260015195876773,
@@ -43,8 +44,8 @@ C = np.array([
     0.7777777777777778,
 ])
 
-#: Stage weights; row 12 is the step itself (B), rows 13 to 15 belong to the dense output.
-A = _sparse((16, 16), {
+#: Runge–Kutta matrix a_ij; row 12 holds the weights b_j of the step, rows 13 to 15 the stages of the dense output.
+A = _sparse((ALL_STAGES, ALL_STAGES), {
     (1, 0): 0.05260015195876773,
     (2, 0): 0.0197250569845379,
     (2, 1): 0.0591751709536137,
@@ -129,7 +130,7 @@ A = _sparse((16, 16), {
     (15, 14): -9.15095847217987,
 })
 
-#: Step minus the embedded method of order 3; the last weight is that of the slope at the step's end.
+#: Error estimate of order 3: b minus the weights of the embedded method; the last is that of the slope at the end.
 E3 = np.array([
     -0.18980075407240762,
     0.0,
@@ -146,7 +147,7 @@ E3 = np.array([
     0.0,
 ])
 
-#: Error weights of order 5.
+#: Error estimate of order 5.
 E5 = np.array([
     0.01312004499419488,
     0.0,

@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.jit import inline_llvm, internal
-from ..dop853.bracket import top_inside, value_at
-from ..dop853.force_search import FORCE_SECTIONS, SEARCHED, WORTH, is_monotone
+from ..dop853.bracket import maximum_inside, value_at
+from ..dop853.force_search import FORCE_SECTIONS, SEARCHED, WORTH, is_monotone, may_hold_maximum
 from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import dashpot_force, dashpot_slope
 from ..effects.driver import driver_acceleration
@@ -16,7 +16,7 @@ from ..equations.body_forces import force_on_bead
 from ..equations.chain_in_vector import chain_values, load_row
 from ..forces.largest import cubic_top, update_largest
 from ..forces.peaks import row_of
-from ..simd.vector import at, blank, from_left, from_right, load, with_first
+from ..simd.vector import at, blank, from_left, from_right, load8, with_first
 from ..status import EVALUATIONS
 from .chain import Point, no_transform, rates_at
 from .step import point_inside
@@ -76,7 +76,7 @@ def in_xi(forces, pace):
 def forces_inside(slots, work, x, counts):
     """The three forces at fraction x of the step."""
     values, begin, width = chain_values(work.chain, slots), work.begin, work.chain.width
-    start = Point(load_row(width, begin.u, 0), load_row(width, begin.w, 0), load(begin.q, 0), load(begin.t, 0))
+    start = Point(load_row(width, begin.u, 0), load_row(width, begin.w, 0), load8(begin.q, 0), load8(begin.t, 0))
     rates = rates_at(values, slots.driver, no_transform(values, load_row(width, work.closed, 0)),
                      point_inside(work, start, x))
     counts[EVALUATIONS] += 1
@@ -107,8 +107,7 @@ def search_forces(slots, work, start, end, until, h, out):
     for q in range(3):
         update_largest(peaks, row_of(q), middle[q])
         guess = max(middle[q], cubic_top(start.values[q], start.slopes[q], end.values[q], end.slopes[q], h))
-        rising = start.slopes[q] > 0.0 or middle[q] > start.values[q]
-        falling = end.slopes[q] < 0.0 or middle[q] > end.values[q]
-        if rising and falling and guess > WORTH * peaks[row_of(q)]:
-            _, top = top_inside(ForceInside(q, out.counts), PreparedStep(slots, work), until, FORCE_SECTIONS)
+        turns = may_hold_maximum(start.values[q], start.slopes[q], middle[q], end.values[q], end.slopes[q])
+        if turns and guess > WORTH * peaks[row_of(q)]:
+            _, top = maximum_inside(ForceInside(q, out.counts), PreparedStep(slots, work), until, FORCE_SECTIONS)
             update_largest(peaks, row_of(q), top)

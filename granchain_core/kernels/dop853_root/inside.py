@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import internal
-from ..dop853.bracket import top_inside, value_at
+from ..dop853.bracket import maximum_inside, value_at
 from ..dop853.step import TURN_SECTIONS, interpolant
 from ..effects.preload import overlap
 
@@ -59,8 +59,8 @@ def _(quantity, step, x):
 def zero_between(p, low, high, f_low, f_high):
     """Where the polynomial passes from negative, f_low, to positive, f_high: secants within a bracket, else its middle.
 
-    They need fewer evaluations than `root_inside` (dop853/bracket.py), which halves a value at each end that stays. 60
-    evaluations are more than halving to rounding would take.
+    They need fewer evaluations than `root_inside` (dop853/bracket.py), which halves a value at each end that stays.
+    Where 60 do not suffice, the last estimate is returned.
     """
     last, x, f_last, f = low, high, f_low, f_high
     for _ in range(60):
@@ -81,7 +81,7 @@ def zero_between(p, low, high, f_low, f_high):
 @internal
 def turn_of(p, sign):
     """(fraction, value) where the polynomial times `sign` is largest, if it has one maximum in the step."""
-    return top_inside(Polynomial(p, sign), None, 1.0, TURN_SECTIONS)
+    return maximum_inside(Polynomial(p, sign), None, 1.0, TURN_SECTIONS)
 
 
 @internal

@@ -14,7 +14,7 @@ from ..effects.contact import positive_part
 from ..effects.dissipation import LAWS, unit_primitive
 from ..effects.preload import row_overlap, row_values
 from ..simd.functions import root
-from ..simd.vector import blank, from_left, from_right, load, load16, load32, with_first
+from ..simd.vector import blank, from_left, from_right, load8, load16, load32, with_first
 from .body_forces import force_on_bead
 
 
@@ -57,7 +57,7 @@ def load_row(width, array, row):
 
 @load_row.of(Width8)
 def _(width, array, row):
-    return load(array, row)
+    return load8(array, row)
 
 
 @load_row.of(Width16)

@@ -44,7 +44,11 @@ def next_release(slots, y, contacts):
 
 @inline_numba
 def locate_change(method, problem, time, h, c, counts):
-    """Repeat a step, first with size h, until it ends where contact c opens or closes; returns the size."""
+    """Repeat a step, first with size h, until it ends where contact c opens or closes; returns the size.
+
+    h is the root on the dense output, and Newton's method improves it. Where the bodies hardly move against each other,
+    near a grazing, Newton's method would lead away: the step then ends at the root as exact as the dense output has it.
+    """
     slots, _, _, workspace = problem.trajectory
     attempt_in_time(method, problem, time, h)
     counts[EVALUATIONS] += STAGES

@@ -22,7 +22,7 @@ from ..effects.contact import elastic_slope, positive_part
 from ..effects.dissipation import LAWS, damping
 from ..effects.preload import overlap
 from ..equations.body_forces import add_force_slope, add_force_trace
-from ..simd.vector import BLOCK_WIDTH, aligned, blank, load, store
+from ..simd.vector import BLOCK_WIDTH, aligned, blank, load8, store
 from ..step_ends import TINY
 from .attempt import record_stage
 from .event_time import rate_at
@@ -153,9 +153,9 @@ def _(law, dampings, c, d, rate, weight):
 @inline_llvm
 def stage_value(tangent, stage, i, first):
     """Row i of the block that begins at `first`, where slope `stage` of the step is taken."""
-    value, base = load(tangent.matrix, first + i), i * STAGES
+    value, base = load8(tangent.matrix, first + i), i * STAGES
     for earlier in range(stage):
-        value = value + load(tangent.slopes, base + earlier) * tangent.weights[stage, earlier]
+        value = value + load8(tangent.slopes, base + earlier) * tangent.weights[stage, earlier]
     return value
 
 
@@ -175,12 +175,12 @@ def block_slope(slots, tangent, stage, rate):
     """Slope of a block at its stage state."""
     inverse_mass, s, g, stages = slots.chain.inverse_mass, tangent.stiffness, tangent.damping[stage], tangent.stages
     n = tangent.state.shape[0] // 2
-    here = load(tangent.state, 0)
+    here = load8(tangent.state, 0)
     left = -here
     for i in range(n):
-        ahead = load(tangent.state, i + 1) if i + 1 < n else blank(here)
+        ahead = load8(tangent.state, i + 1) if i + 1 < n else blank(here)
         right, inverse = here - ahead, inverse_mass[i + 1]
-        moving = add_dashpot_slope(slots.dissipation, load(tangent.state, n + i) * rate, left, right, inverse, g, i)
+        moving = add_dashpot_slope(slots.dissipation, load8(tangent.state, n + i) * rate, left, right, inverse, g, i)
         pushed = left * (inverse * s[stage, i]) - right * (inverse * s[stage, i + 1])
         u, v = stages.u[stage, i + 1], stages.v[stage, i + 1]
         store(tangent.slopes, i * STAGES + stage, moving)

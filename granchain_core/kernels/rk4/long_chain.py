@@ -17,7 +17,7 @@ from ..effects.dissipation import LAWS, dashpot_force, primitive
 from ..effects.preload import batch_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.peaks import INPUT, OUTPUT, OUTPUT_ELASTIC, update_peak
-from ..simd.vector import BLOCK_WIDTH, from_left, from_right, load, positive_mask, splat8, store, with_first
+from ..simd.vector import BLOCK_WIDTH, from_left, from_right, load8, positive_mask, splat8, store, with_first
 from .step import tabulated_displacement, tabulated_velocity
 
 
@@ -71,8 +71,8 @@ def steps_without_events(simd, trajectory, j, count, peaks):
         later_stage(simd, slots, middle, simd.second, simd.first, h, 1.0, 1.0 / 3.0)
         later_stage(simd, slots, end, simd.first, simd.second, h, 0.0, 1.0 / 6.0)
         for b in range(2 * blocks):
-            store(before, b, load(now, b))
-            store(now, b, load(simd.acc, b))
+            store(before, b, load8(now, b))
+            store(now, b, load8(simd.acc, b))
         done += 1
 
 
@@ -80,25 +80,25 @@ def steps_without_events(simd, trajectory, j, count, peaks):
 def first_stage(simd, slots, u0, h):
     """The slope at the step's start: begins acc and the mid-step state; returns whether a contact changed since."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
-    here, e_before = with_first(load(now, 0), u0), splat8(0.0)
+    here, e_before = with_first(load8(now, 0), u0), splat8(0.0)
     G_before, changed = primitive(law, e_before), np.int64(0)
     half, sixth = 0.5 * h, h / 6.0
     for b in range(blocks):
-        ahead = load(now, b + 1) if b + 1 < blocks else splat8(0.0)
+        ahead = load8(now, b + 1) if b + 1 < blocks else splat8(0.0)
         overlap = batch_overlap(simd.preload, here, from_right(here, ahead), b)
         signs = positive_mask(overlap)
         changed |= signs ^ simd.signs[b]
         simd.signs[b] = signs
         d = positive_part(overlap)
-        e, G = elastic_force(load(simd.stiffness, b), d), primitive(law, d)
-        inverse = load(simd.inverse_mass, b)
-        du = long_chain_velocity(law, load(now, blocks + b), inverse, G_before, G)
+        e, G = elastic_force(load8(simd.stiffness, b), d), primitive(law, d)
+        inverse = load8(simd.inverse_mass, b)
+        du = long_chain_velocity(law, load8(now, blocks + b), inverse, G_before, G)
         dw = inverse * force_on_bead(slots, None, from_left(e_before, e) - e, here, du)
         store(simd.overlap, b, overlap)
         store(simd.velocity, b, du)
         store(simd.elastic, b, e)
         for row, slope in ((b, du), (blocks + b, dw)):
-            start = load(now, row)
+            start = load8(now, row)
             store(simd.first, row, start + half * slope)
             store(simd.acc, row, start + sixth * slope)
         here, e_before, G_before = ahead, e, G
@@ -109,19 +109,19 @@ def first_stage(simd, slots, u0, h):
 def later_stage(simd, slots, u0, y, out, h, forward, weight):
     """A later stage at state y: out = now + forward·h·slope, acc += weight·h·slope."""
     blocks, law, now = simd.inverse_mass.shape[0], slots.dissipation, simd.now
-    here, e_before = with_first(load(y, 0), u0), splat8(0.0)
+    here, e_before = with_first(load8(y, 0), u0), splat8(0.0)
     G_before = primitive(law, e_before)
     reach, share = forward * h, weight * h
     for b in range(blocks):
-        ahead = load(y, b + 1) if b + 1 < blocks else splat8(0.0)
+        ahead = load8(y, b + 1) if b + 1 < blocks else splat8(0.0)
         d = positive_part(batch_overlap(simd.preload, here, from_right(here, ahead), b))
-        e, G = elastic_force(load(simd.stiffness, b), d), primitive(law, d)
-        inverse = load(simd.inverse_mass, b)
-        du = long_chain_velocity(law, load(y, blocks + b), inverse, G_before, G)
+        e, G = elastic_force(load8(simd.stiffness, b), d), primitive(law, d)
+        inverse = load8(simd.inverse_mass, b)
+        du = long_chain_velocity(law, load8(y, blocks + b), inverse, G_before, G)
         dw = inverse * force_on_bead(slots, None, from_left(e_before, e) - e, here, du)
         for row, slope in ((b, du), (blocks + b, dw)):
-            store(out, row, load(now, row) + reach * slope)
-            store(simd.acc, row, load(simd.acc, row) + share * slope)
+            store(out, row, load8(now, row) + reach * slope)
+            store(simd.acc, row, load8(simd.acc, row) + share * slope)
         here, e_before, G_before = ahead, e, G
 
 

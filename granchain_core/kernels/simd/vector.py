@@ -2,7 +2,7 @@
 
 LLVM puts eight doubles into one register of 512 bits, two of 256 or four of 128, depending on the machine. Arithmetic,
 square root, maximum and comparison are single LLVM instructions with the same flags as in the scalar kernels; a NaN
-stays a NaN. `load`, `load16` and `load32` read one row of a C-ordered array (rows, 8), (rows, 16) or (rows, 32);
+stays a NaN. `load8`, `load16` and `load32` read one row of a C-ordered array (rows, 8), (rows, 16) or (rows, 32);
 `load_batch` reads a row of a batch, whose width depends on the machine (batch_size.py).
 """
 
@@ -100,7 +100,7 @@ for _kind in VECTORS.values():
 
 def aligned(rows: int, width: int = BLOCK_WIDTH) -> np.ndarray:
     """Zeros (rows, width) that begin on a cache line: a vector that lies across two lines costs two accesses."""
-    spare = 8
+    spare = 8  # doubles in a cache line of 64 bytes
     whole = np.zeros(rows * width + spare)
     first = -(whole.ctypes.data // 8) % spare
     return whole[first : first + rows * width].reshape(rows, width)
@@ -149,7 +149,7 @@ def loader(width):
     return load_row
 
 
-load, load16, load32 = (loader(width) for width in (BLOCK_WIDTH, 16, 32))
+load8, load16, load32 = (loader(width) for width in (BLOCK_WIDTH, 16, 32))
 #: Reads one row of the arrays of a batch.
 load_batch = loader(BATCH_SIZE)
 

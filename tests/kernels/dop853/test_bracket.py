@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from granchain_core.kernels.dop853.bracket import Bracket, root_inside, top_inside, value_at
+from granchain_core.kernels.dop853.bracket import Bracket, maximum_inside, root_inside, value_at
 
 
 class Cubic(NamedTuple):
@@ -59,6 +59,6 @@ def test_the_largest_value_inside_is_found(factor: float) -> None:
     quantity = Cubic((0.1, 0.8, 3.0) if factor > 0.0 else (-2.0, 0.1, 0.8), factor, [])
     turns = np.roots(np.poly1d(np.poly(quantity.roots)).deriv())
     turn = float(next(x for x in turns if 0.1 < x < 0.8))
-    x, top = top_inside.py_func(quantity, None, 1.0, 40)
+    x, top = maximum_inside.py_func(quantity, None, 1.0, 40)
     assert x == pytest.approx(turn, abs=1e-7)
     assert top == pytest.approx(value(quantity, None, turn), rel=1e-13)

@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.simd.functions import root_by_series
-from granchain_core.kernels.simd.vector import BLOCK_WIDTH, aligned, load, loader, store
+from granchain_core.kernels.simd.vector import BLOCK_WIDTH, aligned, load8, loader, store
 
 load4 = loader(4)
 
@@ -16,7 +16,7 @@ load4 = loader(4)
 def roots_of_eight(values, out):
     """√ of every row of eight."""
     for row in range(values.shape[0]):
-        store(out, row, root_by_series(load(values, row)))
+        store(out, row, root_by_series(load8(values, row)))
 
 
 @kernel

@@ -7,7 +7,7 @@ import pytest
 from numba.core.errors import TypingError
 
 from granchain_core.kernels.compiling.jit import kernel
-from granchain_core.kernels.simd.vector import aligned, load, store
+from granchain_core.kernels.simd.vector import aligned, load8, store
 
 pytestmark = pytest.mark.quick
 
@@ -15,13 +15,13 @@ pytestmark = pytest.mark.quick
 @kernel
 def first_row(array, out):
     """Copy the first row."""
-    store(out, 0, load(array, 0))
+    store(out, 0, load8(array, 0))
 
 
 @kernel
 def negative(array, out):
     """−x of eight values."""
-    store(out, 0, -load(array, 0))
+    store(out, 0, -load8(array, 0))
 
 
 @pytest.mark.parametrize("array", [

@@ -7,9 +7,9 @@ import pytest
 
 from granchain_core.kernels.compiling.jit import kernel
 from granchain_core.kernels.simd.sums import largest_of, moved_by_rows, repeat_like
-from granchain_core.kernels.simd.vector import aligned, load, load16, load32, store
+from granchain_core.kernels.simd.vector import aligned, load8, load16, load32, store
 
-LOADS = {8: load, 16: load16, 32: load32}
+LOADS = {8: load8, 16: load16, 32: load32}
 WEIGHTS = (0.5, 0.0, -2.0, 3.0)
 moved = moved_by_rows(WEIGHTS, 3)
 moved_by_latest = moved_by_rows((0.0, 0.0, 7.0), 2)
@@ -60,7 +60,7 @@ def test_eight_lanes_are_repeated_to_any_width(width: int) -> None:
 
     @kernel
     def repeat(eight, out):  # type: ignore[no-untyped-def]
-        store(out, 0, repeat_like(read(out, 0), load(eight, 0)))
+        store(out, 0, repeat_like(read(out, 0), load8(eight, 0)))
 
     eight, out = rows(1, 8), aligned(1, width)
     repeat(eight, out)
