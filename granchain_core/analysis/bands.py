@@ -17,6 +17,7 @@ import numpy as np
 from ..errors import BadInput
 from ..scene import Scene
 from ..scene.description import hertz_stiffness
+from ..scene.hertz import EXPONENT, OVERLAP_POWER
 
 
 def bands(scene: Scene) -> list[tuple[float, float]]:
@@ -55,7 +56,7 @@ def bands(scene: Scene) -> list[tuple[float, float]]:
     host = replace(scene, striker=1.0, impurity=1.0, impurities=())
     cell = [host.bead(2 * count + 1 + i) for i in range(count + 1)]
     mass = np.array([bead.mass for bead in cell[:count]])
-    spring = np.array([1.5 * hertz_stiffness(a, b) ** (2.0 / 3.0) * scene.F0 ** (1.0 / 3.0)
+    spring = np.array([EXPONENT * hertz_stiffness(a, b) ** OVERLAP_POWER * scene.F0 ** (1.0 - OVERLAP_POWER)
                        for a, b in itertools.pairwise(cell)])
     edges = np.sort([_frequencies(mass, spring, scene.k, phase) for phase in (1.0, -1.0)], axis=0)
     return [(float(low), float(high)) for low, high in edges.T]

@@ -31,6 +31,7 @@ from ..orbits.branch.special import BIFURCATIONS
 from ..orbits.stroboscopic_map import MULTIPLIER_ERROR, StroboscopicMap
 from ..parameter_map.grid import KNOBS
 from ..scene import Scene
+from ..scene.hertz import RATE_POWER
 from ..scene.quantities import QUANTITIES
 from ..scene.state import State
 
@@ -288,7 +289,7 @@ def _extrapolated(way: list[BifurcationPoint], y: float, x_knob: str, y_knob: st
     The line is one in logarithms, but on the way to or from a knob that is 0.
     """
     if len(way) == 1:
-        power = {("f", "A0"): 0.25, ("A0", "f"): 4.0}.get((x_knob, y_knob), 0.0)
+        power = {("f", "A0"): RATE_POWER, ("A0", "f"): 1.0 / RATE_POWER}.get((x_knob, y_knob), 0.0)
         return way[0].x * (y / way[0].y) ** power if y > 0.0 else way[0].x, way[0].state
     a, b = way[-2:]
     if min(y, a.y, b.y) <= 0.0:

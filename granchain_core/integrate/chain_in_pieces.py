@@ -21,6 +21,7 @@ from ..kernels.rk4.step import DriveTable, Rk4Split, Rk4Workspace
 from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.status import CANCELLED, NOT_FINITE
 from ..kernels.step_ends import END_ROWS
+from ..scene.hertz import RATE_POWER
 from ..scene.state import State
 from .counts import Counts
 from .methods import fixed_step_setting
@@ -50,7 +51,7 @@ class ChainInPieces:
         self._log = new_log()
         self._spans = np.diff(time) * scaled.scales.phi
         self._pieces = pieces
-        self._substeps = np.ceil(self._spans * max(1.0, overlap) ** 0.25 / scaled.step).astype(np.int64)
+        self._substeps = np.ceil(self._spans * max(1.0, overlap) ** RATE_POWER / scaled.step).astype(np.int64)
 
     @property
     def maxima(self) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 from ..inputs.checks import unknown_name
 from ..kernels.naive import Rk4Naive, VerletNaive
 from ..kernels.rk4.step import Rk4, Rk4Split
+from ..scene.hertz import EXPONENT
 from .dop853 import Dop853Stepper
 from .dop853_root import Dop853RootStepper
 from .fixed import SHORT_CHAIN, FixedStep, FixedStepInVelocity
@@ -289,7 +290,8 @@ def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.nd
         chain = scaled.slots.chain
         root_speeds = np.sqrt(jumps / scaled.slots.dissipation.coefficient)
         at_jump = jumps > AT_A_JUMP * maxima[:2]
-        least[:2] = at_jump * _JUMP_ERROR * step**2.5 * root_speeds * chain.stiffness.max() * chain.inverse_mass.max()
+        hardest = chain.stiffness.max() * chain.inverse_mass.max()
+        least[:2] = at_jump * _JUMP_ERROR * step ** (EXPONENT + 1.0) * root_speeds * hardest
     return least
 
 

@@ -27,6 +27,7 @@ from ..kernels.equations.body_forces import add_force_slope
 from ..kernels.equations.motion import Forces, Slots, evaluate_at_phase
 from ..scene import Scene
 from ..scene.effects import ACCOUNT, ALWAYS, EFFECTS, effects_of
+from ..scene.hertz import EXPONENT, RATE_POWER
 from ..scene.laws import LAWS, require_complete
 from ..scene.state import State
 
@@ -201,8 +202,8 @@ class ScaledChain:
 
 def scales_of(scene: Scene) -> Scales:
     """The scene's scales."""
-    phi = math.sqrt(scene.K * math.sqrt(scene.A0) / scene.bead(1).mass)
-    return Scales(scene.A0, phi, scene.K * scene.A0**1.5)
+    phi = math.sqrt(scene.K * scene.A0 ** (EXPONENT - 1.0) / scene.bead(1).mass)
+    return Scales(scene.A0, phi, scene.K * scene.A0**EXPONENT)
 
 
 def _dissipation(scene: Scene, scales: Scales) -> Any:
@@ -233,10 +234,10 @@ def _step_limits(scene: Scene, scales: Scales, slots: Slots) -> StepLimits:
     largest_inverse_mass = float(slots.chain.inverse_mass.max())
     stiffness, struck = slots.chain.stiffness, np.abs(scene.velocities_at_start()) / scales.velocity
     overlap = max(1.0, float(slots.preload.static.max()) if slots.preload is not None else 0.0)
-    if struck.any():  # all of a bead's energy in one contact: (2/5) K δ^{5/2} = m v²/2
+    if struck.any():  # all of a bead's energy in one contact: K δ^{p+1}/(p + 1) = m v²/2
         energy = 0.5 * float((struck**2 / slots.chain.inverse_mass[1 : scene.N + 1]).max())
-        overlap = max(overlap, (2.5 * energy / float(stiffness.min())) ** 0.4)
-    step, damping = _STEP / math.sqrt(largest_inverse_mass * float(stiffness.max())) / overlap**0.25, 0.0
+        overlap = max(overlap, ((EXPONENT + 1.0) * energy / float(stiffness.min())) ** (1.0 / (EXPONENT + 1.0)))
+    step, damping = _STEP / math.sqrt(largest_inverse_mass * float(stiffness.max())) / overlap**RATE_POWER, 0.0
     if slots.dissipation is not None:
         strength = slots.dissipation.coefficient * overlap ** exponent(slots.dissipation)
         damping = 4.0 * strength * largest_inverse_mass

@@ -12,6 +12,7 @@ from ..integrate.chain_in_pieces import ChainInPieces
 from ..integrate.scaling import scale_chain
 from ..kernels.effects.given_force import Sampled
 from ..scene import Scene
+from ..scene.hertz import OVERLAP_POWER
 from .record import ForceRecord
 
 
@@ -23,5 +24,5 @@ class PushedChain(ChainInPieces):
         scales = driven.scales
         scaled = replace(driven, slots=driven.slots._replace(driver=Sampled(np.zeros(4))))
         pieces = record.cubics() / scales.force / scales.phi ** np.arange(4)
-        overlap = (float(np.abs(record.force).max()) / scales.force) ** (2.0 / 3.0)
+        overlap = (float(np.abs(record.force).max()) / scales.force) ** OVERLAP_POWER
         super().__init__(scaled, record.time, pieces, overlap, stop, counts)

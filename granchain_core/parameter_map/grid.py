@@ -15,6 +15,7 @@ from ..errors import BadInput
 from ..inputs.checks import series_in, unknown_name
 from ..integrate.scaling import scale_chain
 from ..scene import Amplitude, Scene
+from ..scene.hertz import RATE_POWER
 from ..scene.quantities import QUANTITIES
 from ..scene.refusals import refuse_undriven
 
@@ -125,7 +126,7 @@ class Grid:
         """
         i, j = np.divmod(np.arange(self.size), self.shape[1])
         knob = {self.y.knob: self.y.array[i], self.x.knob: self.x.array[j]}
-        length = knob.get("A0", self.scene.A0) ** 0.25 / knob.get("f", self.scene.f)
+        length = knob.get("A0", self.scene.A0) ** RATE_POWER / knob.get("f", self.scene.f)
         return np.lexsort((-np.broadcast_to(length, i.shape), -self.spacing()))
 
 

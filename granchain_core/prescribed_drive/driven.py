@@ -24,6 +24,7 @@ from ..integrate.stated import or_whole_motion, relative_changes, relative_diffe
 from ..results.recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
 from ..results.run import RUN_ERRORS, Cost, ForceErrors, residual, said_forces
 from ..scene import Scene
+from ..scene.hertz import EXPONENT, OVERLAP_POWER
 from ..scene.laws import LAWS
 from ..scene.refusals import require_scene
 from ..scene.state import State, checked_start, rest
@@ -211,8 +212,9 @@ def formula_errors(scene: Scene, signal: Signal, growth: float, displacement: fl
     """
     behind = max(1.0, growth) * _FOLLOWED * signal.displacement_error
     stiffness = scene.contact_stiffness()[[0, -1, -1]]
-    overlap = (np.maximum(maxima, 0.0) / stiffness) ** (2.0 / 3.0)
-    change = 1.5 * stiffness * np.sqrt(overlap) * (behind + np.array([signal.displacement_error, 0.0, 0.0]))
+    overlap = (np.maximum(maxima, 0.0) / stiffness) ** OVERLAP_POWER
+    slope = EXPONENT * stiffness * overlap ** (EXPONENT - 1.0)
+    change = slope * (behind + np.array([signal.displacement_error, 0.0, 0.0]))
     if scene.has_dissipation:
         deep = (overlap[0] / scene.reference_overlap) ** LAWS[scene.dissipation].exponent
         change[0] += scene.D * deep * signal.velocity_error

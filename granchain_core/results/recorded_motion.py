@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..scene import Scene
+from ..scene.hertz import EXPONENT
 from ..tables import Column, Labelled, axis
 
 #: Most recorded values of one motion: samples times beads.
@@ -90,4 +91,4 @@ def motion_units(group: str) -> dict[str, str]:
 def elastic_output(scene: Scene, last: np.ndarray) -> np.ndarray:
     """Elastic force on the wall [N] for displacements of the last bead [m]."""
     overlap = np.maximum(last + scene.static_overlap()[-1], 0.0)
-    return np.asarray(scene.contact_stiffness()[-1] * overlap**1.5)
+    return np.asarray(scene.contact_stiffness()[-1] * overlap**EXPONENT)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import BadInput
+from .hertz import EXPONENT, OVERLAP_POWER
 from .laws import LAWS
 from .quantities import QUANTITIES, WALL_FACTORS
 
@@ -171,7 +172,7 @@ class Description:
 
     def static_overlap(self) -> np.ndarray:
         """Overlap of every contact under the preload alone (N+1,) [m]: (F0/K)^{2/3}."""
-        return (self.F0 / self.contact_stiffness()) ** (2.0 / 3.0)
+        return (self.F0 / self.contact_stiffness()) ** OVERLAP_POWER
 
     @property
     def K(self) -> float:
@@ -181,7 +182,7 @@ class Description:
     @property
     def kappa(self) -> float:
         """Dimensionless foundation stiffness κ = k/(K√A0)."""
-        return self.k / (self.K * math.sqrt(self.A0))
+        return self.k / (self.K * self.A0 ** (EXPONENT - 1.0))
 
     @property
     def period(self) -> float:

@@ -1,10 +1,17 @@
-"""Closed forms of Hertz's theory: the elastic collision of two spheres, and the solitary wave of a chain of spheres.
+"""Hertz's law F = K δ^p: its exponent, and closed forms of the elastic collision and of the solitary wave of a chain.
 
 K is the contact's stiffness, m* the reduced mass of two spheres, m the mass of a bead.
 """
 
 from __future__ import annotations
 
+#: The exponent p. Kernels state the law as K δ √δ (docs/design.md lists where).
+EXPONENT = 1.5
+#: The overlap as a power of the force, 1/p.
+OVERLAP_POWER = 1.0 / EXPONENT
+#: A contact's own rate as a power of the overlap, (p − 1)/2: (A0, f) → (sA0, s^{1/4} f) leaves the scaled motion as it
+#: is.
+RATE_POWER = (EXPONENT - 1.0) / 2.0
 #: Duration of a collision at relative velocity v, in units of (m*/K)^{2/5} v^{-1/5}.
 HERTZ_DURATION = 3.2180655
 #: Its peak force, (5/4)^{3/5}, in units of K^{2/5} (m* v²)^{3/5}.

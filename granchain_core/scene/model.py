@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import math
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -14,6 +13,7 @@ from .checked import checked_fields, checked_values
 from .description import Description
 from .docstring import with_knobs
 from .effects import effects_of, latex
+from .hertz import EXPONENT
 from .quantities import QUANTITIES
 from .validity import warnings
 
@@ -116,7 +116,7 @@ class Scene(Description):
                            f"{self.name!r}; the nearest valid value is {place}.")
         new = replace(self, **checked)  # type: ignore[arg-type]  # checked above against the table
         if kappa is not None:
-            k = float(kappa) * new.K * math.sqrt(new.A0)
+            k = float(kappa) * new.K * new.A0 ** (EXPONENT - 1.0)
             new = replace(new, k=QUANTITIES["k"].check(k))  # type: ignore[arg-type]
         return new
 

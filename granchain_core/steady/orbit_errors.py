@@ -9,24 +9,23 @@ from ..integrate.methods import jump_errors, typical_error
 from ..integrate.safety_factors import ORBIT_FORCES
 from ..integrate.scaling import ScaledChain
 from ..integrate.stated import relative_changes
-
-#: F ∝ δ^{3/2}: a relative change of the overlap is half as much again in the force.
-_FORCE_PER_OVERLAP = 1.5
+from ..scene.hertz import EXPONENT, OVERLAP_POWER
 
 
 def force_distances(distance: float, scaled: ScaledChain, maxima: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Relative changes (3,) of the largest forces over a relative `distance` of states.
 
-    The distance is relative to the largest displacement of the scaled state y, but a force depends on its overlap.
-    Where a contact of the first or last bead overlaps less than that, as in the stop band, the same distance changes
-    its force by a larger part. `maxima` are the scaled forces.
+    The distance is relative to the largest displacement of the scaled state y, but a force depends on its overlap as
+    F ∝ δ^p, and a relative change of the overlap is p times as large in the force. Where a contact of the first or last
+    bead overlaps less than the largest displacement, as in the stop band, the same distance changes its force by a
+    larger part. `maxima` are the scaled forces.
     """
     stiffness = scaled.slots.chain.stiffness
     largest = float(np.abs(scaled.rows(y)[0]).max())
-    overlaps = [(max(0.0, float(force)) / float(stiffness[c])) ** (1.0 / _FORCE_PER_OVERLAP)
+    overlaps = [(max(0.0, float(force)) / float(stiffness[c])) ** OVERLAP_POWER
                 for force, c in zip(maxima, (0, -1, -1), strict=True)]
     nearer = [largest / overlap if 0.0 < overlap < largest else 1.0 for overlap in overlaps]
-    return _FORCE_PER_OVERLAP * distance * np.array(nearer)
+    return EXPONENT * distance * np.array(nearer)
 
 
 def errors_of_map(change: np.ndarray, least: float, contraction: float) -> np.ndarray:

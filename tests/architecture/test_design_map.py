@@ -43,9 +43,7 @@ _WITHOUT_NUMBER = {
     ("kernels/rk4/contact_events.py", "add_quadrature_errors"), ("kernels/flow/event_time.py", "smooth_power"),
     ("kernels/batch/contact_correction.py", "impulse_error"), ("kernels/batch/contact_correction.py", "beside_closed"),
     ("kernels/batch/contact_correction.py", "three_halves_by_series"), ("kernels/batch/contact_correction.py", "correct_contacts"),
-    ("scene/description.py", "hertz_stiffness"), ("scene/description.py", "kappa"), ("scene/model.py", "evolve"),
-    ("steady/orbit_errors.py", "_FORCE_PER_OVERLAP"), ("bifurcation_curves/continuation.py", "_extrapolated"),
-    ("scene/validity.py", "peak_pressures"), ("scene/effects.py", "latex"), ("fit/parameters.py", "UNITS"),
+    ("scene/description.py", "hertz_stiffness"),     ("scene/validity.py", "peak_pressures"), ("scene/effects.py", "latex"), ("fit/parameters.py", "UNITS"),
     ("scene/hertz.py", "HERTZ_DURATION"), ("scene/hertz.py", "HERTZ_FORCE"), ("scene/hertz.py", "SOLITARY_BY_FORCE"),
     ("scene/hertz.py", "SOLITARY_BY_VELOCITY"), ("analysis/pulse.py", "CONTINUUM")}
 

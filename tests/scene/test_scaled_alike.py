@@ -13,7 +13,7 @@ def same(one: ScaledChain, other: ScaledChain) -> bool:
     """Whether both have the same scales and slots, to the last bit."""
     alike = (one.scene, one.scales, one.beta, one.steps_per_period()) == (
         other.scene, other.scales, other.beta, other.steps_per_period())
-    return alike and all(
+    return alike and one.slot_types == other.slot_types and all(
         type(mine) is type(its) and (mine is None or all(map(np.array_equal, mine, its)))
         for mine, its in zip(one.slots, other.slots, strict=True))
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from ...errors import BadInput
 from ...inputs.checks import unknown_name
 from ...scene import Amplitude, Scene
+from ...scene.hertz import EXPONENT, OVERLAP_POWER
 from ...scene.quantities import QUANTITIES
 
 #: Knobs that change a chain continuously; N and the laws are discrete, `accuracy` does not change the chain.
@@ -23,9 +24,6 @@ _LENGTH_OF_FACTOR_E = 10.0
 _LENGTH_OF_RANGE = 20.0
 #: The attribute `coordinate` of a file with a branch over F0.
 STATIC_OVERLAP = "static overlap"
-#: The chain depends on F0 through its static overlaps (F0/K)^{2/3} alone, and smoothly. Over F0 itself orbits have an
-#: infinite slope at F0 = 0.
-_OVERLAP_POWER = 2.0 / 3.0
 
 
 @dataclass(frozen=True)
@@ -85,8 +83,12 @@ class KnobAxis:
 
     @property
     def _power(self) -> float:
-        """The power of the knob in which p is linear, where it is not logarithmic."""
-        return _OVERLAP_POWER if self.by_overlap else 1.0
+        """The power of the knob in which p is linear, where it is not logarithmic.
+
+        The chain depends on F0 through its static overlaps (F0/K)^{2/3} alone, and smoothly. Over F0 itself orbits have
+        an infinite slope at F0 = 0.
+        """
+        return OVERLAP_POWER if self.by_overlap else 1.0
 
     @property
     def _range(self) -> tuple[float, float]:
@@ -109,7 +111,7 @@ class KnobAxis:
             low, unit = self._range
             value = low + p * unit
             if self.by_overlap:
-                value = max(value, 0.0) ** (1.0 / _OVERLAP_POWER)
+                value = max(value, 0.0) ** EXPONENT
         quantity = QUANTITIES[self.knob]
         return min(max(value, quantity.low), quantity.high)
 

@@ -59,7 +59,7 @@ def iter_curve(scene: Scene, frequencies: Sequence[float] | np.ndarray, start: s
     frequencies : sequence of float
         Drive frequencies [Hz].
     start : str
-        "rest": every point begins at rest, coarse first, on all cores; "up" or "down": each begins in the state of the
+        "rest": every point begins at rest, on all cores; "up" or "down": each begins in the state of the
         one before it.
     stop : Stop, optional
         When set, the curve ends and running points are abandoned.
