@@ -11,6 +11,7 @@ from granchain_core import CurvePoint
 
 from ..parts.stage.pinned_trains import DASHES
 from ..plots.theme import GREY
+from ..plots.themed import themed
 
 
 class PinnedCurves:
@@ -26,7 +27,6 @@ class PinnedCurves:
         self._lines: dict[int, ColumnDataSource] = {}
         self._source = ColumnDataSource({name: [] for name in ("frequency", "force", "name")})
         self._marks: list[GlyphRenderer] = []
-        self._ink = GREY
 
     @property
     def forces(self) -> list[float]:
@@ -40,18 +40,10 @@ class PinnedCurves:
         self._curves = [[point for point in points if np.isfinite(point.max_output_force)] for points in curves]
         return True
 
-    def ink(self, colour: str) -> None:
-        """The colour of circles and names."""
-        self._ink = colour
-        if self._marks:
-            circles, names = self._marks
-            circles.glyph.line_color, names.glyph.text_color = colour, colour
-
     def draw(self, factor: float) -> None:
         """Draw everything; one unit of the axis is `factor` newtons."""
         if self.places and not self._marks:
             self._marks = self._make_marks()
-            self.ink(self._ink)
         names, frequencies, forces = zip(*self.places, strict=True) if self.places else ((), (), ())
         self._source.data = {"name": list(names), "frequency": list(frequencies),
                              "force": [force / factor for force in forces]}
@@ -71,10 +63,9 @@ class PinnedCurves:
 
     def _make_marks(self) -> list[GlyphRenderer]:
         at = {"x": "frequency", "y": "force"}
-        return [
-            self._plot.add_glyph(self._source, Scatter(**at, marker="circle", size=17, fill_color=None, line_width=1.5,
-                                                       line_dash=[3, 2]), level="overlay"),
-            self._plot.add_glyph(self._source, Text(**at, text="name", text_align="center", text_baseline="top",
-                                                    y_offset=10, text_font_size="13px", text_font_style="bold"),
-                                 level="overlay"),
-        ]
+        circles = self._plot.add_glyph(self._source, Scatter(
+            **at, marker="circle", size=17, fill_color=None, line_width=1.5, line_dash=[3, 2]), level="overlay")
+        names = self._plot.add_glyph(self._source, Text(
+            **at, text="name", text_align="center", text_baseline="top", y_offset=10, text_font_size="13px",
+            text_font_style="bold"), level="overlay")
+        return [themed(circles, self._plot, line_color="ink"), themed(names, self._plot, text_color="ink")]

@@ -19,6 +19,7 @@ from ..plots.axes import knob_scale
 from ..plots.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
 from ..plots.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..plots.theme import GREY, OUTPUT_COLOUR
+from ..plots.themed import themed
 from ..serve.document.changes import set_properties
 from .pinned_curves import PinnedCurves
 
@@ -45,7 +46,6 @@ class CurveFigure:
         self._measurement: Measured | None = None
         self._renderers: dict[str, list[GlyphRenderer]] = {name: [] for name in DASHES}
         self._visible = set(DASHES)
-        self._ink = GREY
         self.figure = self._frame(choose)
         self._pinned = PinnedCurves(self.figure)
         self._grey_sources: dict[str, ColumnDataSource] = {}
@@ -93,8 +93,9 @@ class CurveFigure:
             line_cap="round"))
         plot.add_tools(HoverTool(renderers=[self._stated], line_policy="interp",
                                  tooltips=[("stated", "@label"), ("source", "@source")]))
-        self._dot = plot.add_glyph(self._motion_source, Scatter(x="frequency", y="force", size=15, fill_color=None,
-                                                      line_width=3), level="overlay")
+        ring = plot.add_glyph(self._motion_source, Scatter(x="frequency", y="force", size=15, fill_color=None,
+                                                           line_width=3), level="overlay")
+        self._dot = themed(ring, line_color="ink", size=15.0)
         self._bars: list[GlyphRenderer] = []
 
     def _measurement_marks(self) -> list[GlyphRenderer]:
@@ -104,19 +105,11 @@ class CurveFigure:
         dots = self.figure.add_glyph(self._measured, Scatter(x="frequency", y="force", marker="square", size=7,
                                                              fill_color=None, line_width=1.2), level="overlay")
         self.figure.add_tools(HoverTool(renderers=[dots], tooltips=TOOLTIPS))
-        return [bars, dots]
+        return [themed(marks, self.figure, line_color="ink") for marks in (bars, dots)]
 
     def set_compact(self, compact: bool) -> None:
         """Fewer numbers on the axis where there is little room."""
         self.figure.xaxis[0].ticker.desired_num_ticks = 3 if compact else 5
-
-    def ink(self, colour: str, thick: float) -> None:
-        """The colour of measured data and of the current point's ring: dark on light, light on dark."""
-        self._ink = colour
-        for renderer in (self._dot, *self._bars):
-            renderer.glyph.line_color = colour
-        self._dot.glyph.size = 15 * thick
-        self._pinned.ink(colour)
 
     def range(self, low: float, high: float) -> None:
         """Set the range of frequencies shown."""
@@ -237,8 +230,6 @@ class CurveFigure:
             return
         if not self._bars:
             self._bars = self._measurement_marks()
-            for renderer in self._bars:
-                renderer.glyph.line_color = self._ink
         found = self.difference
         self._measured.data = measured_columns(measured, self._scale[0], None if found is None else found.residuals)
 

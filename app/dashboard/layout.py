@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from bokeh.document import Document
-from bokeh.models import Range1d
+from bokeh.models import Plot, Range1d
 
 from granchain_core.experiment.formats import FORMATS
 
@@ -27,6 +27,7 @@ from ..parts.toolkit.component import text
 from ..plots.curve import KEY
 from ..plots.energies import ENERGY_COLOURS
 from ..plots.theme import Theme, style_sheet
+from ..plots.themed import follow_theme
 from ..scripts import INLINE_SCRIPTS, modules
 from ..serve.http.limits import LARGEST_UPLOAD
 from ..session.session import Session
@@ -73,9 +74,8 @@ class Views:
 
         The energy map has no colour or line of the theme of its own; its surroundings are styled by dashboard.css.
         """
-        self.curve.ink(theme.ink, theme.line)
-        self.trains.ink(theme.ink)
-        self.trains.thicken(theme.line)
+        for plot in self._plots:
+            follow_theme(plot, theme)
         for overlay in self.overlays.values():
             overlay.apply_theme(theme)
 
@@ -85,8 +85,11 @@ class Views:
             "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
             "curvebar": self.curve_bar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
         }
-        plots = self.trains.left, self.energy.figure, self.trains.right, self.curve.figure
-        put_into(document, parts, plots, *_page())
+        put_into(document, parts, self._plots, *_page())
+
+    @property
+    def _plots(self) -> tuple[Plot, ...]:
+        return self.trains.left, self.energy.figure, self.trains.right, self.curve.figure
 
 
 @cache

@@ -1,7 +1,7 @@
 // Terms that explain themselves: hover, focus or touch shows a term's definition from docs/glossary.md. In each text
 // only the first use of a term does so.
 
-import { hideMeaning, showMeaning } from "../parts/toolkit/bubble.js";
+import { explainSuccessor, hideMeaning, nowExplained, showMeaning } from "../parts/toolkit/bubble.js";
 import { element } from "../parts/toolkit/dom.js";
 
 const TEXTS = "p, h3, dd, .explained";
@@ -15,7 +15,8 @@ function termOf(words, name, meaning) {
   term.addEventListener("pointermove", ({ movementX, movementY }) => {
     if (movementX || movementY) show();
   });
-  for (const end of ["pointerleave", "blur"]) term.addEventListener(end, hideMeaning);
+  for (const end of ["pointerleave", "blur"])
+    term.addEventListener(end, () => nowExplained() === term && hideMeaning());
   return term;
 }
 
@@ -42,9 +43,14 @@ function inText(node, seen) {
   inText(rest, seen);
 }
 
+// Marks the terms of a text. Where it was made anew under a pointer that rests on a term, its meaning stays.
 export function explainTerms(root) {
-  hideMeaning();
   const seen = new Set();
   for (const text of root.querySelectorAll(TEXTS))
     for (const node of [...text.childNodes]) if (node.nodeType === Node.TEXT_NODE) inText(node, seen);
+  const before = nowExplained();
+  if (!before || before.isConnected) return;
+  const { meaning } = before.dataset;
+  const same = [...root.querySelectorAll("dfn")].filter((term) => term.dataset.meaning === meaning);
+  explainSuccessor(same, (term) => term.dataset.meaning);
 }

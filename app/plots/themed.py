@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import weakref
+from collections.abc import Mapping
 from typing import Any
 
-from bokeh.models import Model, Range1d
+from bokeh.models import Plot, Range1d
 from bokeh.plotting import figure
 
-from .theme import Theme
+from .theme import THEMES, Theme
+
+#: The theme of each figure that is made once and then changes its theme.
+_THEMES: weakref.WeakKeyDictionary[Plot, Theme] = weakref.WeakKeyDictionary()
 
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 
@@ -29,10 +33,29 @@ def empty_figure(tools: str = TOOLS, **options: Any) -> figure:
     return plot
 
 
-def themed(model: Any, **roles: str | float) -> Any:
-    """Mark what follows the theme: a string is a colour's role, a number a line width in pixels. Returns `model`."""
+def themed(model: Any, plot: Plot | None = None, **roles: str | float) -> Any:
+    """Mark what follows the theme: a string is a colour's role, a number a line width in pixels. Returns `model`.
+
+    With `plot`, a figure that is made once and changes its theme, the model gets the present one at once.
+    """
     model.tags = [*model.tags, {"theme": roles}]
+    if plot is not None:
+        _dress(model, roles, _THEMES.get(plot, THEMES["light"]))
     return model
+
+
+def follow_theme(plot: Plot, theme: Theme) -> None:
+    """Give all in a figure that `themed` has named the colours and widths of a theme, now and when it is added."""
+    _THEMES[plot] = theme
+    for model in (*plot.renderers, *plot.center):
+        for tag in model.tags:
+            if isinstance(tag, dict) and "theme" in tag:
+                _dress(model, tag["theme"], theme)
+
+
+def _dress(model: Any, roles: Mapping[str, str | float], theme: Theme) -> None:
+    getattr(model, "glyph", model).update(**{
+        name: getattr(theme, role) if isinstance(role, str) else role * theme.line for name, role in roles.items()})
 
 
 def apply_theme(plot: figure, theme: Theme) -> figure:
@@ -47,17 +70,8 @@ def apply_theme(plot: figure, theme: Theme) -> figure:
     for legend in plot.legend:
         legend.update(label_text_color=theme.ink, label_text_font_size=small, background_fill_color=theme.card,
                       border_line_color=None)
-    for model, roles in _followers(plot):
-        model.update(**{name: getattr(theme, role) if isinstance(role, str) else role * theme.line
-                        for name, role in roles.items()})
+    follow_theme(plot, theme)
     return plot
-
-
-def _followers(plot: figure) -> Iterator[tuple[Model, dict[str, str | float]]]:
-    for model in (*plot.renderers, *plot.center):
-        for tag in model.tags:
-            if isinstance(tag, dict) and "theme" in tag:
-                yield getattr(model, "glyph", model), tag["theme"]
 
 
 def span_of(low: float, high: float, room: float = 0.07) -> Range1d:

@@ -105,7 +105,8 @@ class Dop853Stepper:
         """None: steps have no number in their period."""
         return None
 
-    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
+                       stop: Stop) -> tuple[int, int | None]:
         """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
         row = self.scaled.bodies
         first = next((bead for bead in (first_not_finite(slope, row) for slope in self.work.k) if bead), 0)

@@ -49,16 +49,18 @@ class Dop853RootStepper(Dop853Stepper):
                                         samples, out)
         return status, rows
 
-    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
+                       stop: Stop) -> tuple[int, int | None]:
         """The bead is found by dop853, whose stages can be told apart, on the call repeated from its start."""
         if start is None:
-            return super().locate_failure(y, start, done)
+            return super().locate_failure(y, start, done, stop)
         before, _, first = start
         again, now = Dop853Stepper(self.method.tolerance, self.scaled, self.grid), before.copy()
         again.prepare(now)
         kept = empty_samples(self.scaled, round(self.grid * (done + 2.0)))
-        again.samples(now, first, kept, KernelIO(new_log(), np.zeros(4, dtype=np.int64), Stop().flag))
-        return again.locate_failure(now, start, done)
+        again.samples(now, first, kept, KernelIO(new_log(), np.zeros(4, dtype=np.int64), stop.flag))
+        stop.check()
+        return again.locate_failure(now, start, done, stop)
 
 
 def _workspace(scaled: ScaledChain) -> Dop853RootWorkspace:

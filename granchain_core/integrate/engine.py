@@ -223,7 +223,9 @@ class Engine:
         """
         if status == DONE:
             return
-        found = self.stepper.locate_failure(self.y, before, done) if status == NOT_FINITE else (0, None)
+        found = (0, None)
+        if status == NOT_FINITE:
+            found = self.stepper.locate_failure(self.y, before, done, self.stop)
         raise self._failure(status, done, *found).error
 
     def _remember(self) -> None:

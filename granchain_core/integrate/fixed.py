@@ -154,19 +154,23 @@ class FixedStep:
         """Number of the step in its period that begins there."""
         return grid_index
 
-    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
-        """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it."""
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
+                       stop: Stop) -> tuple[int, int | None]:
+        """Bead and step: repeat the call up to the last instant known to be good, then bisect the steps after it.
+
+        Raises `Cancelled`.
+        """
         n, row = self.grid, self.scaled.bodies
         if start is None:
             return first_not_finite(y, row), None
         here, slope, first = start
         low = first + round(done * n)
-        here, slopes = self._again(here, slope, first, low, vectors=True)
+        here, slopes = self._again(here, slope, first, low, stop, vectors=True)
         slope = slopes[0]
         high = min((low // n + 1) * n, low + self._every)
         while high - low > 1:
             middle = (low + high) // 2
-            there, slopes = self._again(here, slope, low, middle, vectors=True)
+            there, slopes = self._again(here, slope, low, middle, stop, vectors=True)
             if first_not_finite(there, row):
                 high = middle
             else:
@@ -174,8 +178,8 @@ class FixedStep:
         # each stage spreads to the next beads only: the earliest stage names the bead
         stages = self._stages(here, slope, low % n)
         if not any(first_not_finite(k, row) for k in stages):  # what failed is not in the equations, as in a table
-            _, slopes = self._again(here, slope, low, high)
-            end, _ = self._again(here, slope, low, high, vectors=True)
+            _, slopes = self._again(here, slope, low, high, stop)
+            end, _ = self._again(here, slope, low, high, stop, vectors=True)
             stages = [*slopes[1:], end]
         return next((b for b in (first_not_finite(k, row) for k in stages) if b), 0), low % n
 
@@ -193,7 +197,7 @@ class FixedStep:
             before = now
         return found
 
-    def _again(self, y: np.ndarray, slope: np.ndarray, first: int, last: int,
+    def _again(self, y: np.ndarray, slope: np.ndarray, first: int, last: int, stop: Stop,
                vectors: bool = False) -> tuple[np.ndarray, np.ndarray]:
         """State and slopes after steps `first` to `last`, counted through periods, by vectors or by scalar code."""
         n, now = self.grid, y.copy()
@@ -201,11 +205,12 @@ class FixedStep:
         work = self.work._replace(simd=self.new_simd_workspace() if vectors else None, k=np.zeros_like(self.work.k))
         work.k[0] = slope
         trajectory = self.trajectory(now)._replace(workspace=work)
-        kept, out = empty_samples(self.scaled, 2), KernelIO(new_log(), np.zeros(4, dtype=np.int64), Stop().flag)
+        kept, out = empty_samples(self.scaled, 2), KernelIO(new_log(), np.zeros(4, dtype=np.int64), stop.flag)
         j = first
         while j < last:
             stride = min(last, (j // n + 1) * n) - j
             run_steps(self.method, trajectory, j % n, stride, RunRecord(kept, *self._no_periods), out)
+            stop.check()
             j += stride
         return now, work.k
 

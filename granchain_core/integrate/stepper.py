@@ -7,6 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from ..execution.stop import Stop
 from ..kernels.equations.motion import Trajectory
 from ..kernels.samples import KernelIO, Samples
 from .scaling import ScaledChain
@@ -76,8 +77,12 @@ class Stepper(Protocol):
     def step_at(self, grid_index: int) -> int | None:
         """Number of the step in its period that begins there; None where steps are not counted."""
 
-    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float) -> tuple[int, int | None]:
-        """Bead and step in which the numbers failed, after `done` periods of a call from `start`, if that is known."""
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
+                       stop: Stop) -> tuple[int, int | None]:
+        """Bead and step in which the numbers failed, after `done` periods of a call from `start`, if that is known.
+
+        Raises `Cancelled`: the call may be repeated.
+        """
 
 
 def empty_samples(scaled: ScaledChain, rows: int) -> Samples:

@@ -121,3 +121,17 @@ def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:
     expect(tour).to_be_visible()
     page.keyboard.press("Escape")
     expect(tour).to_be_hidden()
+
+
+def test_a_meaning_stays_when_the_tab_is_made_anew_under_the_pointer(visit: Visit) -> None:
+    """A tab is made anew with every scene; within a second of a first visit, too."""
+    page = visit()
+    term = page.locator("#tabs dfn").first
+    term.hover()
+    expect(page.get_by_role("tooltip")).to_be_visible()
+    term.evaluate("(one) => { one.dataset.before = ''; }")
+    page.locator("select.scene").select_option("fig3b")
+    expect(page.locator("#tabs dfn[data-before]")).to_have_count(0)
+    expect(page.get_by_role("tooltip")).to_contain_text("a peak of the largest output force")
+    page.mouse.move(0, 0)
+    expect(page.get_by_role("tooltip")).to_be_hidden()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
-from granchain_core import NumbersFailed, run, scene
-from granchain_core.integrate import METHODS, Engine, Setting
+from granchain_core import Cancelled, NumbersFailed, Stop, run, scene
+from granchain_core.integrate import METHODS, Engine, Setting, dop853, fixed
 from granchain_core.integrate.failure import Failure
 from granchain_core.kernels.flow import run as flow
 from granchain_core.kernels.flow.attempt import FlowProblem
@@ -66,12 +68,41 @@ def test_the_kernel_of_whole_periods_looks_as_well(method):
         engine.periods(1)
 
 
+@pytest.mark.parametrize("method", [name for name in LOCATED if name != "dop853"])
+@pytest.mark.parametrize("periods", [False, True])
+def test_the_repeated_call_that_finds_the_bead_is_cancelled_as_any_other(method, periods, monkeypatch):
+    """It may take as long as the call that failed; dop853 repeats none."""
+    stop = Stop()
+    engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 8, stop=stop)
+    engine.periods(2)
+    break_contact(engine, 4)
+    before, flags, locate = engine.y.copy(), [], engine.stepper.locate_failure
+
+    def spied(kernel, *words):
+        flags.append(words[-1].stop)
+        return kernel(*words)
+
+    monkeypatch.setattr(fixed, "run_steps", partial(spied, fixed.run_steps))
+    monkeypatch.setattr(dop853, "_RUN_DOP853", partial(spied, dop853._RUN_DOP853))
+
+    def while_it_is_located(*words):
+        stop.set()
+        flags.clear()
+        return locate(*words)
+
+    monkeypatch.setattr(engine.stepper, "locate_failure", while_it_is_located)
+    with pytest.raises(Cancelled):
+        engine.periods(1) if periods else engine.record(8)
+    assert len(flags) == 1 and flags[0] is stop.flag, "the kernel reads the flag"
+    np.testing.assert_array_equal(engine.y, before)
+
+
 @pytest.mark.parametrize("method", LOCATED)
 def test_a_bead_that_is_not_found_is_not_named(method):
     """Where every number is finite, none is called the first that failed."""
     engine = Engine(scene("sec2"), Setting(method, tolerance=1e-6), 8)
     engine.record(8)
-    assert engine.stepper.locate_failure(engine.y, None, 0.0)[0] == 0
+    assert engine.stepper.locate_failure(engine.y, None, 0.0, Stop())[0] == 0
     problem = Failure(NOT_FINITE, 1.0, 0, None, {}, scene("sec2"), method).error
     assert isinstance(problem, NumbersFailed)
     assert problem.bead is None and problem.sentence.startswith("The motion stopped being a finite number at about")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from bokeh.models import ColumnDataSource, GlyphRenderer, Line, Plot
 
+from ...plots.themed import themed
 from .pinned_trains import MOST_POINTS, NO_TRAIN
 
 if TYPE_CHECKING:
@@ -20,9 +21,8 @@ _DRIVE = 2
 class MeasuredTrains:
     """The lines in both figures, made when there is a series for the first time."""
 
-    def __init__(self, left: Plot, right: Plot, ink: str) -> None:
+    def __init__(self, left: Plot, right: Plot) -> None:
         self._plots = left, right
-        self._ink = ink
         self._lines: dict[int, GlyphRenderer] = {}
         self._shown: Overlay | None = None
         self._last: tuple[float, ...] = (0.0, 1.0, 1.0, 1.0, 1.0)
@@ -67,19 +67,14 @@ class MeasuredTrains:
             return None
         return self._shown.displacement if series == _DRIVE else self._shown.forces.get(_FORCES[series])
 
-    def ink(self, colour: str) -> None:
-        """The colour of the theme."""
-        self._ink = colour
-        for line in self._lines.values():
-            line.glyph.line_color = colour
-
     def _draw(self, series: int, values: dict[str, np.ndarray]) -> None:
         line = self._lines.get(series)
         if line is None:
             if len(values["time"]):
-                glyph = Line(x="force", y="time", line_color=self._ink, line_width=1.3, line_dash=[4, 3])
+                glyph = Line(x="force", y="time", line_width=1.3, line_dash=[4, 3])
                 where = {"x_range_name": "drive"} if series == _DRIVE else {}
                 plot = self._plots[series % _DRIVE]  # the drive is on the left, over the input force
-                self._lines[series] = plot.add_glyph(ColumnDataSource(values), glyph, level="overlay", **where)
+                line = plot.add_glyph(ColumnDataSource(values), glyph, level="overlay", **where)
+                self._lines[series] = themed(line, plot, line_color="ink")
         elif len(values["time"]) or len(line.data_source.data["time"]):
             line.data_source.data = dict(values)

@@ -16,7 +16,7 @@ from granchain_core import Run
 from ...format import figures_of, prefixed, with_decimals, with_figures
 from ...frames import Extremes, Frames, round_up
 from ...plots.force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, force_columns
-from ...plots.theme import GREY
+from ...plots.themed import themed
 from ...serve.document.changes import set_properties
 from ..figures.figure_style import GAP, LEFT, bare_axis, bare_plot
 from .measured_trains import MeasuredTrains
@@ -58,10 +58,12 @@ class ForceTrains:
         self._factors = (1.0, 1.0)
         self.left = self._left_figure(time)
         self.right = self._right_figure(time)
+        for line, style in zip(self._lines, _LINES, strict=True):
+            themed(line, line_width=style.width)
         self._axes = [*self.left.xaxis, *self.right.xaxis]
         self._time_axis = self.left.yaxis[0]
         self._pinned = PinnedTrains(self.left, self.right)
-        self._measured = MeasuredTrains(self.left, self.right, GREY)
+        self._measured = MeasuredTrains(self.left, self.right)
 
     def _left_figure(self, time: Range1d) -> Plot:
         plot = bare_plot((LEFT, GAP), _TICKS, ("below", "left"), (1,), name="input force", y_range=time,
@@ -172,10 +174,6 @@ class ForceTrains:
         """Draw a measured series over the picture, or none."""
         self._measured.load(shown)
 
-    def ink(self, colour: str) -> None:
-        """The colour of what was measured: dark on light, light on dark."""
-        self._measured.ink(colour)
-
     def set_compact(self, compact: bool) -> None:
         """Fewer ticks and shorter titles where there is little room."""
         self._compact = compact
@@ -186,11 +184,6 @@ class ForceTrains:
     def _write_titles(self) -> None:
         for axis, style, unit in zip(self._axes, _AXES, self._units, strict=True):
             set_properties(axis, axis_label=style.label(unit, self._compact))
-
-    def thicken(self, factor: float) -> None:
-        """Wider lines for the projector."""
-        for line, style in zip(self._lines, _LINES, strict=True):
-            line.glyph.line_width = style.width * factor
 
 
 def _glyph(style: LineStyle, column: str = "force") -> Line:

@@ -13,9 +13,23 @@ export const hideMeaning = () => {
   bubble.hidden = true;
 };
 
+// The element whose meaning is shown, null if none is.
+export const nowExplained = () => (bubble.hidden ? null : explained);
+
+const isThere = (anchor) => {
+  const { top, left } = anchor.getBoundingClientRect();
+  return top === box.top && left === box.left;
+};
+
 function hideIfMoved() {
-  const now = explained?.getBoundingClientRect();
-  if (now && (now.top !== box.top || now.left !== box.left)) hideMeaning();
+  if (explained && !isThere(explained)) hideMeaning();
+}
+
+// The explained element is gone. Explains the one of `others` that has its place; without one the bubble goes.
+export function explainSuccessor(others, meaningOf) {
+  const successor = others.find(isThere);
+  if (successor) showMeaning(successor, meaningOf(successor));
+  else hideMeaning();
 }
 
 // Shows `words` below `anchor`, or above it if there is more room, with `controls` under the words.
