@@ -13,7 +13,7 @@ import numpy as np
 from ..errors import Cancelled, NumbersFailed
 from ..execution.stop import Stop
 from ..integrate import Counts
-from ..integrate.dop853 import LEAST_STEPS_PER_PERIOD
+from ..integrate.error_controlled import LEAST_STEPS_PER_PERIOD
 from ..integrate.scaling import ScaledChain, scale_chain
 from ..kernels.dop853.step import evaluate
 from ..kernels.status import EVALUATIONS

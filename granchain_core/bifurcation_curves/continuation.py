@@ -44,7 +44,7 @@ _MOST_ITERATIONS = 8
 #: Relative change of a knob for its difference quotient; the map is smooth to 1e-12.
 _DIFFERENCE = 1e-6
 #: First step along a branch, relative to the state and the knob.
-_FIRST_STEP = 1e-3
+_FIRST_ARC = 1e-3
 #: Longest secant step, in units of the last step.
 _LONGEST_SECANT = 6.0
 #: Secant steps at most.
@@ -185,7 +185,7 @@ def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y
         slope = branch.slope(guess)
         before, derivative = branch.solve(guess, along, slope)
         condition, mu = critical(derivative, kind, branch.near)
-        step = _FIRST_STEP * float(np.linalg.norm(before)) * branch.tangent(derivative, slope, along)
+        step = _FIRST_ARC * float(np.linalg.norm(before)) * branch.tangent(derivative, slope, along)
         for _ in range(_MOST_SECANTS):
             if _met(mu, kind):
                 return BifurcationPoint(float(before[-1]) * branch.unit, value_of(branch.scene, y), mu, before[:-1])

@@ -1,113 +1,42 @@
-"""Stepping with error control: contact events are located, and steps end there."""
+"""Stepping with error control by DOP853: contact events are located, and steps end there."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
-
 import numpy as np
 
-from ..execution.stop import Stop
-from ..kernels.compiling.entry import Entries, types_of
+from ..kernels.compiling.entry import Entries
 from ..kernels.dop853.run import SampleRange, run_dop853
-from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace, DriveCycle
-from ..kernels.equations.motion import Trajectory, evaluate_at_phase
-from ..kernels.forces.peaks import largest_forces, next_period
-from ..kernels.samples import KernelIO, Samples, first_not_finite
-from ..kernels.status import DONE
+from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace
+from ..kernels.samples import KernelIO, Samples
+from .error_controlled import ErrorControlledStepper, initial_step, largest_step
 from .scaling import ScaledChain
-from .stepper import CallStart, empty_samples
 
-#: At least this many steps are made in a period, so that the driver is never stepped over.
-LEAST_STEPS_PER_PERIOD = 16
-#: First step to try, in scaled time, in a period that is long enough.
-_FIRST_STEP = 0.01
-#: Least scale of displacements and of w, in which tolerances are measured.
-_LEAST_SCALE = 1e-3
-# Kernels that are called once a period.
+# A kernel that is called once a period.
 _RUN_DOP853 = Entries(run_dop853)
-_EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
 
 
-class Dop853Stepper:
-    """Dormand–Prince 8 in (u, w) at a relative tolerance per step."""
+def dop853_workspace(scaled: ScaledChain) -> Dop853Workspace:
+    """The workspace of DOP853, with its slopes and its dense output."""
+    size = scaled.size
+    return Dop853Workspace(
+        k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
+        slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2), next_step=np.array([initial_step(scaled)]),
+        forces=scaled.forces())
+
+
+class Dop853Stepper(ErrorControlledStepper):
+    """DOP853 in (u, w) at a relative tolerance per step."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
-        largest, size = scaled.period / LEAST_STEPS_PER_PERIOD, scaled.size
-        self.method: Any = Dop853(tolerance, largest)  # subclasses may put their own method slot here
-        self.scaled = scaled
-        self.grid = samples
-        self.pause: Callable[[], None] = Stop().pause
-        self.work = Dop853Workspace(
-            k=np.zeros((ALL_STAGES, size)), stage=np.zeros(size), end=np.zeros(size), probe=np.zeros(size),
-            slope=np.zeros(size), dense=np.zeros((7, size)), scale=np.zeros(2),
-            next_step=np.array([min(_FIRST_STEP, largest)]), forces=scaled.forces())
-        self.structure = self.kernel_types()
+        super().__init__(Dop853(tolerance, largest_step(scaled)), scaled, samples)
 
-    def kernel_types(self) -> Any:
-        """A key for the types of what kernels are given, by which their compiled versions are found."""
-        return types_of((self.method, self.scaled.slots, self.work))
-
-    @property
-    def slope(self) -> np.ndarray:
-        """The slope dy/dt at the present state."""
-        return np.asarray(self.work.k[0])
-
-    def use(self, scaled: ScaledChain) -> None:
-        """Go on with other values in the same slots, or with other effects."""
-        self.scaled = scaled
-        self.work = self.work._replace(forces=scaled.forces())
-        self.structure = self.kernel_types()
-
-    def prepare(self, y: np.ndarray) -> None:
-        """Begin from a new state: errors are measured on its scale."""
-        for i, values in enumerate(self.scaled.rows(y)):
-            self.work.scale[i] = max(_LEAST_SCALE, float(np.abs(values).max()))
-
-    def trajectory(self, y: np.ndarray) -> Trajectory:
-        """The state y with all that its kernels need."""
-        scaled = self.scaled
-        return Trajectory(scaled.slots, DriveCycle(scaled.beta, scaled.period), y, self.work)
-
-    def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
-        """Recompute driver state and dy/dt for y."""
-        slots, work = self.scaled.slots, self.work
-        _EVALUATE_AT_PHASE(self.structure, slots, theta, y, work.k[0], work.forces, from_velocity)
-
-    def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
-        """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
-        return self.run_range(y, first, len(samples.displacement) - 1, 1, samples, out)
-
-    def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
-                out: KernelIO) -> tuple[int, int]:
-        """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
-        keep, row = empty_samples(self.scaled, 2), self.scaled.bodies
-        strobes[0] = y[:row], self.work.k[0, :row]
-        for p in range(len(maxima)):
-            next_period(out.log.peaks)
-            status, _ = self.run_range(y, 0, self.grid, self.grid if watch else 0, keep, out)
-            if status != DONE:
-                return status, p
-            strobes[p + 1] = y[:row], self.work.k[0, :row]
-            self.pause()
-            if watch:
-                maxima[p] = largest_forces(out.log.peaks)
-        return DONE, len(maxima)
+    def new_workspace(self) -> Dop853Workspace:
+        """The workspace of DOP853."""
+        return dop853_workspace(self.scaled)
 
     def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
                   out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         wanted = SampleRange(first, points, self.grid, every)
-        status, rows = _RUN_DOP853(self.structure, self.method, self.trajectory(y), wanted, samples, out)
+        status, rows = _RUN_DOP853(self.type_key, self.method, self.trajectory(y), wanted, samples, out)
         return status, rows
-
-    def step_at(self, grid_index: int) -> int | None:
-        """None: steps have no number in their period."""
-        return None
-
-    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
-                       stop: Stop) -> tuple[int, int | None]:
-        """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
-        row = self.scaled.bodies
-        first = next((bead for bead in (first_not_finite(slope, row) for slope in self.work.k) if bead), 0)
-        return first or first_not_finite(y, row), None

@@ -11,13 +11,14 @@ from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.dop853.run import SampleRange
-from ..kernels.dop853.step import ALL_STAGES
+from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace
 from ..kernels.dop853_root.chain import STATE_ROWS, Dop853RootWorkspace, Stages
 from ..kernels.dop853_root.run import run_dop853_root
 from ..kernels.forces.largest import new_log
 from ..kernels.samples import KernelIO, Samples
 from ..kernels.simd.vector import BLOCK_WIDTH, aligned
-from .dop853 import Dop853Stepper
+from .dop853 import Dop853Stepper, dop853_workspace
+from .error_controlled import ErrorControlledStepper, largest_step
 from .fixed import SHORT_CHAIN, chain_width, short_chain_workspace
 from .scaling import ScaledChain
 from .stepper import CallStart, empty_samples
@@ -25,16 +26,20 @@ from .stepper import CallStart, empty_samples
 _RUN_DOP853_ROOT = Entries(run_dop853_root)
 
 
-class Dop853RootStepper(Dop853Stepper):
-    """Dormand–Prince 8 in (u, w) at a relative tolerance per step, in a transformed time next to contact events."""
+class Dop853RootStepper(ErrorControlledStepper):
+    """DOP853 in (u, w) at a relative tolerance per step, in a transformed time next to contact events."""
 
     def __init__(self, tolerance: float, scaled: ScaledChain, samples: int) -> None:
         self._vectors = _workspace(scaled)
-        super().__init__(tolerance, scaled, samples)
+        super().__init__(Dop853(tolerance, largest_step(scaled)), scaled, samples)
 
-    def kernel_types(self) -> Any:
+    def new_workspace(self) -> Dop853Workspace:
+        """The workspace of DOP853, of which these kernels use a part; the rest is in `_vectors`."""
+        return dop853_workspace(self.scaled)
+
+    def new_type_key(self) -> Any:
         """A key for the types of what kernels are given, the chain's vectors included."""
-        return super().kernel_types(), types_of(self._vectors)
+        return super().new_type_key(), types_of(self._vectors)
 
     def use(self, scaled: ScaledChain) -> None:
         """Go on with other values in the same slots, or with other effects. Raises `BadInput`."""
@@ -45,7 +50,7 @@ class Dop853RootStepper(Dop853Stepper):
                 out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
         wanted = SampleRange(first, points, self.grid, every)
-        status, rows = _RUN_DOP853_ROOT(self.structure, self.method, self._vectors, self.trajectory(y), wanted,
+        status, rows = _RUN_DOP853_ROOT(self.type_key, self.method, self._vectors, self.trajectory(y), wanted,
                                         samples, out)
         return status, rows
 

@@ -43,8 +43,8 @@ class Failure:
                                  f"{self.scene.accuracy:g}, or on the command line for --method rk4-split.",
                                  "step-too-small", time=time, cost=self.cost)
         if self.status == TOO_MANY_STEPS:
-            return NumbersFailed(f"A drive period takes {self.method} millions of steps {when}; raise the frequency f.",
-                                 "too-many-steps", time=time, cost=self.cost)
+            return NumbersFailed(f"One drive period needs millions of steps of {self.method} {when}; raise the "
+                                 f"frequency f.", "too-many-steps", time=time, cost=self.cost)
         if self.status == CHATTER:
             return NumbersFailed(f"Contacts open and close endlessly {when}; the chain chatters: raise the damping "
                                  f"D, or on the command line use --method rk4-split.", "chatter", time=time,

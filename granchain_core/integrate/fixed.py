@@ -60,7 +60,7 @@ class FixedStep:
         self._no_samples = empty_samples(scaled, 0)
         self._no_periods = np.zeros((0, 2, 0)), np.zeros((0, 3))
         self._work: Any = None
-        self._structure: Any = None
+        self._type_key: Any = None
         self.drive = self._driver_table(scaled)
         self.work = Rk4Workspace(np.zeros((4, scaled.size)), np.zeros(scaled.size), np.zeros(scaled.size),
                                  np.zeros((END_ROWS, scaled.bodies - 1)), scaled.forces(), self.new_simd_workspace())
@@ -74,7 +74,7 @@ class FixedStep:
     def work(self, work: Any) -> None:
         """Use another workspace, maybe of another type: another version of the kernels is called then."""
         self._work = work
-        self._structure = types_of((self.method, self.scaled.slots, work))
+        self._type_key = types_of((self.method, self.scaled.slots, work))
 
     def _driver_table(self, scaled: ScaledChain) -> np.ndarray:
         """Displacement and velocity of the driver at every half step (2n + 1, 2)."""
@@ -124,8 +124,11 @@ class FixedStep:
 
     def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
         """Recompute driver state and dy/dt for y."""
-        slots, work = self.scaled.slots, self.work
-        _EVALUATE_AT_PHASE(self._structure, slots, theta, y, work.k[0], work.forces, from_velocity)
+        self._evaluate_slope(theta, y, self.work.k[0], from_velocity)
+
+    def _evaluate_slope(self, theta: float, y: np.ndarray, slope: np.ndarray, from_velocity: bool) -> None:
+        """Recompute the driver's state in y, and write dy/dt into `slope`."""
+        _EVALUATE_AT_PHASE(self._type_key, self.scaled.slots, theta, y, slope, self.work.forces, from_velocity)
 
     def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """Advance from step `first`, filling the samples; returns status and number of rows filled."""
@@ -141,13 +144,13 @@ class FixedStep:
         if self.grid > part:
             return periods_in_parts(self, y, part, strobes, maxima, out)
         record = RunRecord(self._no_samples, strobes, maxima)
-        status, done = _RUN_STEPS(self._structure, self.method, self.trajectory(y), 0, self.grid, record, out)
+        status, done = _RUN_STEPS(self._type_key, self.method, self.trajectory(y), 0, self.grid, record, out)
         return status, done
 
     def run(self, y: np.ndarray, first: int, stride: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
         """One call of the kernel from step `first`, keeping every `stride`-th state; returns status and rows filled."""
         record = RunRecord(samples, *self._no_periods)
-        status, done = _RUN_STEPS(self._structure, self.method, self.trajectory(y), first, stride, record, out)
+        status, done = _RUN_STEPS(self._type_key, self.method, self.trajectory(y), first, stride, record, out)
         return status, done
 
     def step_at(self, grid_index: int) -> int | None:
@@ -176,23 +179,23 @@ class FixedStep:
             else:
                 low, here, slope = middle, there, slopes[0]
         # each stage spreads to the next beads only: the earliest stage names the bead
-        stages = self._stages(here, slope, low % n)
+        stages = self._rk4_slopes(here, slope, low % n)
         if not any(first_not_finite(k, row) for k in stages):  # what failed is not in the equations, as in a table
             _, slopes = self._again(here, slope, low, high, stop)
             end, _ = self._again(here, slope, low, high, stop, vectors=True)
             stages = [*slopes[1:], end]
         return next((b for b in (first_not_finite(k, row) for k in stages) if b), 0), low % n
 
-    def _stages(self, y: np.ndarray, slope: np.ndarray, step: int) -> list[np.ndarray]:
-        """Slopes of the later three stages of a step that is not split.
+    def _rk4_slopes(self, y: np.ndarray, slope: np.ndarray, step: int) -> list[np.ndarray]:
+        """Slopes of the later three stages of a step of RK4 that is not split, in the variables of the method.
 
-        A method that splits its step at events writes the stages of each part over those of the part before.
+        They stand for the stages of any method: each spreads to the next beads only. A method's own stages are not
+        all kept: one that splits its step at events writes those of each part over those of the part before.
         """
-        slots, forces, found, before = self.scaled.slots, self.work.forces, [], slope
+        found, before = [], slope
         for part in (0.5, 0.5, 1.0):
             stage, now = y + part * self.h * before, np.zeros_like(slope)
-            _EVALUATE_AT_PHASE(self._structure, slots, 2.0 * np.pi * (step + part) / self.grid, stage, now, forces,
-                               False)
+            self._evaluate_slope(2.0 * np.pi * (step + part) / self.grid, stage, now, False)
             found.append(now)
             before = now
         return found
@@ -218,11 +221,11 @@ class FixedStep:
 class FixedStepInVelocity(FixedStep):
     """Steps of a method in (u, v), whose equations have no energy account."""
 
-    def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
-        """Put the slope in step with y; velocities are part of it."""
+    def _evaluate_slope(self, theta: float, y: np.ndarray, slope: np.ndarray, from_velocity: bool) -> None:
+        """Recompute the driver's state in y, and write dy/dt into `slope`; velocities are part of y."""
         slots = self.scaled.slots
         displacement, velocity = driver_displacement(slots.driver, theta), driver_velocity(slots.driver, theta)
-        naive_motion(slots, displacement, velocity, y, self.work.k[0], self.work.forces)
+        naive_motion(slots, displacement, velocity, y, slope, self.work.forces)
 
 
 @functools.lru_cache(maxsize=_TABLES_KEPT)

@@ -108,7 +108,7 @@ class Method:
     """A method of integration: a row of `METHODS`.
 
     `tests/numerics/test_orders.py` derives the orders in theory and measures the observed ones: the smallest of all
-    damping laws, and of adaptive methods per mean step. `observed_with_cut` of the naive methods is not measured.
+    damping laws, and of adaptive methods per mean step.
 
     Attributes
     ----------
@@ -118,8 +118,8 @@ class Method:
         Orders in theory with damping: where no contact opens or closes, and across contact events.
     observed_smooth, observed_order, observed_with_cut : float
         Observed orders where no contact opens or closes; across contact events, at the accuracies the method is used
-        for; and where tension is cut, NaN for a method that refuses it. Only dop853 ends its steps at the kink of a
-        cut force, F = 0.
+        for; and where tension is cut, NaN where that is not measured or the method refuses the cut. Only dop853 ends
+        its steps at the kink of a cut force, F = 0.
     adaptive : bool
         Whether an error control sets the steps.
     symplectic : bool
@@ -155,7 +155,7 @@ class Method:
     usual_error: float = 0.0
     converges_regularly: bool = False
     variables: str = "uw"
-    observed_with_cut: float = 1.0
+    observed_with_cut: float = math.nan
     has_account: bool = True
 
 
@@ -185,7 +185,8 @@ METHODS: dict[str, Method] = {
             adaptive=False, symplectic=False,
             restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, and the "
                          "jump of its force is taken from the ends of the step",
-            reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9)),
+            reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9),
+            observed_with_cut=1.0),
         Method(
             name=FIXED_STEP, title="RK4 in (u, w), steps split at contact events, quadrature corrected there",
             order=4.0, order_at_events=3.5, observed_smooth=4.0, observed_order=3.9,
@@ -193,7 +194,8 @@ METHODS: dict[str, Method] = {
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; in chains of "
                          f"more than {SHORT_CHAIN} beads two changes of one inner contact within a step are not seen",
             reference="Kutta 1901; w-variables and events: docs/method.md", stepper=_fixed(Rk4Split, simd=True),
-            cost=StepCost(450e-9, 45e-9), usual_error=_FIXED_STEP_ERROR, converges_regularly=True),
+            cost=StepCost(450e-9, 45e-9), usual_error=_FIXED_STEP_ERROR, converges_regularly=True,
+            observed_with_cut=1.0),
         Method(
             name="rk4-naive", title="RK4 in (u, v), the obvious first attempt",
             order=4.0, order_at_events=1.0, observed_smooth=4.0, observed_order=1.0,
@@ -210,20 +212,20 @@ METHODS: dict[str, Method] = {
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
             variables="uv", has_account=False),
         Method(
-            name=ADAPTIVE, title="Dormand–Prince 8 in (u, w), contact events located",
+            name=ADAPTIVE, title="DOP853, Dormand–Prince 8(5,3), in (u, w), contact events located",
             order=8.0, order_at_events=7.0, observed_smooth=8.5, observed_order=7.5,
             adaptive=True, symplectic=False, restrictions="errors down to about 1e-12",
             reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Dop853Stepper),
             cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, observed_with_cut=7.5),
         Method(
-            name="dop853-root", title="Dormand–Prince 8 in (u, w), in the root of an overlap next to contact events",
+            name="dop853-root", title="DOP853 in (u, w), in the root of an overlap next to contact events",
             order=8.0, order_at_events=7.0, observed_smooth=8.0, observed_order=7.0,
             adaptive=True, symplectic=False,
             restrictions=f"errors down to about 1e-12; no energy account; only chains of up to {SHORT_CHAIN} beads, "
                          "with a driver that is harmonic or at rest, and without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/method.md",
             stepper=_adaptive(Dop853RootStepper), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
-            usual_error=1.0, observed_with_cut=math.nan, has_account=False),
+            usual_error=1.0, has_account=False),
     )
 }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,6 +21,8 @@ _ROUNDING_NEGLIGIBLE_ABOVE = 1e-10
 _LARGEST_USEFUL_ERROR = 0.05
 #: What is stated then, relative to the largest displacement: two motions that have parted differ by at most twice it.
 _WHOLE_MOTION = 2.0
+#: Order assumed where tension is cut and the method's order there is not measured: the lowest that was measured.
+_ORDER_WITH_CUT = 1.0
 
 
 def relative_difference(one: np.ndarray, other: np.ndarray) -> float:
@@ -120,4 +123,6 @@ class Computations:
         if method.adaptive:
             return coarser.tolerance / finer.tolerance
         order = method.observed_with_cut if self.cuts_tension else method.observed_order
+        if math.isnan(order):
+            order = _ORDER_WITH_CUT
         return float((finer.refine / coarser.refine) ** order)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from granchain_core import NumbersFailed, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.samples import first_not_finite
 
 
@@ -40,3 +43,23 @@ def test_the_time_of_a_failure_inside_a_call_counts_from_the_start() -> None:
     with pytest.raises(NumbersFailed, match=r"\(20 drive periods\)") as caught:
         engine.periods(2)
     assert caught.value.time == pytest.approx(20.0 * engine.scaled.scene.period, rel=1e-12)
+
+
+def test_an_overflow_in_velocities_is_found_by_the_equations_in_velocities() -> None:
+    """The bead in which a stage of the method itself overflows first; each call makes one step, so its stages are kept.
+
+    The equations in (u, w) overflow at another bead of this state.
+    """
+    chain = scene("sec2").evolve(f=340.0)
+    setting = Setting("rk4-naive")
+    grid = setting.steps_per_period(scale_chain(chain), 8)
+    engine = Engine(chain, setting, grid)
+    engine.record(31 * grid // 8)
+    slots = engine.scaled.slots
+    stiff = slots._replace(dissipation=type(slots.dissipation)(1e305))  # type: ignore[call-arg, union-attr]
+    engine.use(replace(engine.scaled, slots=stiff))
+    with pytest.raises(NumbersFailed) as caught:
+        for _ in range(grid):
+            engine.record(1)
+    stages = [first_not_finite(slope, engine.scaled.bodies) for slope in engine.stepper.work.k[1:]]
+    assert caught.value.bead == next(bead for bead in stages if bead) == 4

@@ -68,9 +68,10 @@ def difference(found: np.ndarray, true: np.ndarray) -> float:
 
 
 def of_its_order(setting: Setting, one: Scene) -> float:
-    """A step to the power of the order that the method's row states for such a chain."""
+    """A step to the power of the order that the method's row states for such a chain, or 1 where it states none."""
     method = METHODS[setting.method]
     order = method.observed_with_cut if one.cuts_tension else method.observed_order
+    order = 1.0 if np.isnan(order) else order
     return setting.step(scale_chain(one), _SAMPLES) ** order
 
 

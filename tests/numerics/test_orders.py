@@ -116,6 +116,12 @@ def test_the_table_of_methods_claims_no_more_than_is_measured(method):
 
 
 @pytest.mark.parametrize("method", METHODS)
+def test_an_order_with_a_tension_cut_is_stated_exactly_where_it_is_measured(method):
+    """A new row, or one whose method refuses the cut, states none."""
+    assert np.isfinite(METHODS[method].observed_with_cut) == ((method, "cut") in THEORY)
+
+
+@pytest.mark.parametrize("method", METHODS)
 def test_the_table_of_methods_has_the_orders_of_theory(method):
     """Where no contact opens, and the least of all damping laws across contact events."""
     with_events = [found for (name, smoothness), found in THEORY.items() if name == method and smoothness in LAWS]

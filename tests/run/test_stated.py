@@ -12,8 +12,9 @@ from numba.core import event
 
 from granchain_core import run, scene
 from granchain_core.execution.stopwatch import COMPILER_CLOCK, CompilerClock, Stopwatch
-from granchain_core.integrate import Setting
+from granchain_core.integrate import METHODS, Setting
 from granchain_core.integrate.methods import typical_error
+from granchain_core.integrate.safety_factors import IRREGULAR
 from granchain_core.integrate.stated import Computations
 from granchain_core.run import to_accuracy
 from tests.numerics.forces.located import located
@@ -41,6 +42,19 @@ def test_where_the_order_is_seen_the_last_difference_decides() -> None:
     """Differences that fall by 16 are a fourth-order method's: little more than the last one is stated then."""
     last = 1e-3 / 16.0
     assert 1.5 * last <= shown([1e-3, last]).stated[0] <= 1.1 * 1.5 * last
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_difference_before_counts_with_every_method_where_tension_is_cut(method: str) -> None:
+    """With the order observed there, or 1 where none is stated; with error control the ratio of the tolerances."""
+    coarse = Setting(method, 1.0, 1e-6)
+    fine = coarse.finer()
+    found = Computations(cuts_tension=True)
+    found.begin(coarse)
+    for setting, difference in ((fine, 1e-3), (fine.finer(), 0.0)):
+        found.add(setting, STEPS, np.array([difference]), np.zeros(1))
+    ratio = 64.0 if METHODS[method].adaptive else 2.0
+    assert found.stated[0] == pytest.approx(max(IRREGULAR * 1e-3 / ratio, found.rounding))
 
 
 def test_no_less_is_stated_than_is_typical_of_the_steps() -> None:

@@ -1,0 +1,127 @@
+"""What methods with error control have in common: steps in (u, w) from one grid point to the next."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..execution.stop import Stop
+from ..kernels.compiling.entry import Entries, types_of
+from ..kernels.dop853.step import DriveCycle
+from ..kernels.equations.motion import Trajectory, evaluate_at_phase
+from ..kernels.forces.peaks import largest_forces, next_period
+from ..kernels.samples import KernelIO, Samples, first_not_finite
+from ..kernels.status import DONE
+from .scaling import ScaledChain
+from .stepper import CallStart, empty_samples
+
+#: At least this many steps are made in a period, so that the driver is never stepped over.
+LEAST_STEPS_PER_PERIOD = 16
+#: First step to try, in scaled time, in a period that is long enough.
+_INITIAL_STEP = 0.01
+#: Least scale of displacements and of w, in which tolerances are measured.
+_LEAST_SCALE = 1e-3
+# A kernel that is called once a period.
+_EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
+
+
+def largest_step(scaled: ScaledChain) -> float:
+    """The largest step of a method with error control, in scaled time."""
+    return scaled.period / LEAST_STEPS_PER_PERIOD
+
+
+def initial_step(scaled: ScaledChain) -> float:
+    """The first step that it tries, in scaled time."""
+    return min(_INITIAL_STEP, largest_step(scaled))
+
+
+class ErrorControlledStepper(ABC):
+    """Steps of a method in (u, w) with error control: all of a `Stepper` but its workspace and its kernel.
+
+    `method` is the slot that the kernel takes. The workspace has the slopes of all stages in `k` (stages, M), with the
+    slope at the present state in k[0], `forces`, and the parts of `ErrorControl`.
+    """
+
+    def __init__(self, method: Any, scaled: ScaledChain, samples: int) -> None:
+        self.method = method
+        self.scaled = scaled
+        self.grid = samples
+        self.pause: Callable[[], None] = Stop().pause
+        self.work: Any = self.new_workspace()
+        self.type_key = self.new_type_key()
+
+    @abstractmethod
+    def new_workspace(self) -> Any:
+        """The workspace of the method's kernel, a named tuple."""
+
+    @abstractmethod
+    def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
+                  out: KernelIO) -> tuple[int, int]:
+        """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled.
+
+        Every `every`-th point is kept as a sample, and largest forces are searched; neither where `every` is 0.
+        """
+
+    def new_type_key(self) -> Any:
+        """A key for the types of what kernels are given, by which their compiled code is found."""
+        return types_of((self.method, self.scaled.slots, self.work))
+
+    @property
+    def slope(self) -> np.ndarray:
+        """The slope dy/dt at the present state."""
+        return np.asarray(self.work.k[0])
+
+    def use(self, scaled: ScaledChain) -> None:
+        """Go on with other values in the same slots, or with other effects."""
+        self.scaled = scaled
+        self.work = self.work._replace(forces=scaled.forces())
+        self.type_key = self.new_type_key()
+
+    def prepare(self, y: np.ndarray) -> None:
+        """Begin from a new state: errors are measured on its scale."""
+        for i, values in enumerate(self.scaled.rows(y)):
+            self.work.scale[i] = max(_LEAST_SCALE, float(np.abs(values).max()))
+
+    def trajectory(self, y: np.ndarray) -> Trajectory:
+        """The state y with all that its kernels need."""
+        scaled = self.scaled
+        return Trajectory(scaled.slots, DriveCycle(scaled.beta, scaled.period), y, self.work)
+
+    def evaluate_at_phase(self, theta: float, y: np.ndarray, from_velocity: bool) -> None:
+        """Recompute driver state and dy/dt for y."""
+        slots, work = self.scaled.slots, self.work
+        _EVALUATE_AT_PHASE(self.type_key, slots, theta, y, work.k[0], work.forces, from_velocity)
+
+    def samples(self, y: np.ndarray, first: int, samples: Samples, out: KernelIO) -> tuple[int, int]:
+        """Advance from sample `first`, filling the samples; returns status and number of rows filled."""
+        return self.run_range(y, first, len(samples.displacement) - 1, 1, samples, out)
+
+    def periods(self, y: np.ndarray, strobes: np.ndarray, maxima: np.ndarray, watch: bool,
+                out: KernelIO) -> tuple[int, int]:
+        """Advance whole periods, filling strobes and, with `watch`, largest forces; returns status and periods done."""
+        keep, row = empty_samples(self.scaled, 2), self.scaled.bodies
+        strobes[0] = y[:row], self.work.k[0, :row]
+        for p in range(len(maxima)):
+            next_period(out.log.peaks)
+            status, _ = self.run_range(y, 0, self.grid, self.grid if watch else 0, keep, out)
+            if status != DONE:
+                return status, p
+            strobes[p + 1] = y[:row], self.work.k[0, :row]
+            self.pause()
+            if watch:
+                maxima[p] = largest_forces(out.log.peaks)
+        return DONE, len(maxima)
+
+    def step_at(self, grid_index: int) -> int | None:
+        """None: steps have no number in their period."""
+        return None
+
+    def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
+                       stop: Stop) -> tuple[int, int | None]:
+        """The bead is found stage by stage: in one stage a failure spreads to the next beads only."""
+        row = self.scaled.bodies
+        first = next((bead for bead in (first_not_finite(slope, row) for slope in self.work.k) if bead), 0)
+        return first or first_not_finite(y, row), None
