@@ -36,6 +36,10 @@ if TYPE_CHECKING:
     from granchain_core.experiment import Difference, Measured
     from granchain_core.steady.curve.request import CurveRequest
 
+#: The numbers behind the regime of a point that the JSON has.
+_EVIDENCE = ("decay", "distance", "multiplier", "lyapunov", "lyapunov_periods", "return_distance", "return_limit",
+             "window_ratios")
+
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `curve`."""
@@ -163,9 +167,18 @@ def _curve_json(swept: Any) -> dict[str, Any]:
         "status": [p.status for p in swept.points], "failure": [p.failure or None for p in swept.points],
         "error_estimate": [p.force_errors.output for p in swept.points],
         "error_estimate_elastic": [p.force_errors.elastic for p in swept.points],
-        "error_estimate_input": [p.force_errors.input for p in swept.points], "wall_s": swept.wall_s,
+        "error_estimate_input": [p.force_errors.input for p in swept.points],
+        **{name: [_plain(getattr(p.regime, name)) for p in swept.points] for name in _EVIDENCE},
+        "wall_s": swept.wall_s,
         **({} if swept.amplitude is None else {"drive_amplitude": [float(a) for a in swept.drive_amplitude]}),
     }
+
+
+def _plain(value: float | tuple[float, ...] | None) -> float | list[float | None] | None:
+    """A number, or several, of a regime as JSON has them."""
+    if isinstance(value, tuple):
+        return [finite_or_null(one) for one in value]
+    return None if value is None else finite_or_null(value)
 
 
 def _show_curve(swept: Any) -> None:

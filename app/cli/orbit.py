@@ -11,7 +11,7 @@ from granchain_core import BadInput, Scene
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 from granchain_core.scene.state import State
 
-from .common import chosen_scene, in_background, show_json
+from .common import chosen_scene, in_background, say, show_json
 from .compiling import compiling_beside
 from .options import add_json, add_out, add_scene, whole
 from .picture import add_option as add_picture
@@ -99,4 +99,17 @@ def _start(chosen: Scene, name: str, seed: int) -> State | None:
     if run.displacement.shape[1] != chosen.N:
         raise BadInput(f"--start {name} holds a chain of {run.displacement.shape[1]} beads and the scene has "
                        f"{chosen.N}; add --set N={run.displacement.shape[1]}.")
-    return State(run.displacement[-1], run.velocity[-1])
+    if others := _other_values(chosen, run.scene):
+        say(f"--start {name} was recorded with {others}: its last state is only where Newton's method begins.")
+    phase = round(float(run.time[-1]) * run.scene.f * run.samples) % run.samples / run.samples
+    return State(run.displacement[-1], run.velocity[-1], phase)
+
+
+def _other_values(chosen: Scene, recorded: Scene) -> str:
+    """In which values a recorded chain differs from the chosen one, in words; empty where it does not move otherwise.
+    """
+    names = [f"{name} = {value:g}" if isinstance(value, float) else f"{name} = {value}"
+             for name, value in {**recorded.knobs, "reference_overlap": recorded.reference_overlap}.items()
+             if value != getattr(chosen, name) and name not in ("accuracy", "kappa")]  # kappa follows from k and A0
+    others = ["other beads"] if (recorded.pattern, recorded.impurities) != (chosen.pattern, chosen.impurities) else []
+    return ", ".join(others + names)

@@ -269,11 +269,15 @@ def _first_tolerance(accuracy: float) -> float:
 
 
 def typical_error(setting: Setting) -> float:
-    """The relative error that few scenes exceed with this setting; 0 for methods of which none is known."""
+    """The relative error that few scenes exceed with this setting; 0 for methods of which none is known.
+
+    With fixed steps it falls by the observed order: of 80 random chains 13 to 21 exceed it at 1 to 32 times the default
+    steps, most of them chaotic. By the order of theory where no contact opens or closes it would be 15 to 25.
+    """
     method = METHODS[setting.method]
     if method.adaptive:
         return _ERROR_SPREAD * method.usual_error * setting.tolerance
-    return _ERROR_SPREAD * method.usual_error / setting.refine**method.order
+    return _ERROR_SPREAD * method.usual_error / setting.refine**method.observed_order
 
 
 def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.ndarray,

@@ -34,6 +34,7 @@ class Effect:
     come back when it is switched on, and `usual` their values where neither the visitor nor the scene has set them.
     `latex` puts its term into the equation. `label` names it in a scene, `key` in the name of a compiled kernel, which
     names the law too. `source` is the publication to cite for it. Where it is not `possible`, `refusal` says why.
+    `dissipates` is False for an effect that only stores energy, or acts on a force that another effect dissipates by.
     """
 
     name: str
@@ -50,6 +51,7 @@ class Effect:
     possible: Callable[[Description], bool] = lambda scene: True
     refusal: str = ""
     source: str = ""
+    dissipates: bool = True
 
     def __post_init__(self) -> None:
         for knob in (*self.knobs, *self.off, *self.usual):
@@ -93,17 +95,17 @@ EFFECTS = (
     Effect("tension", "tension", "tension cut", "A damped contact may not pull while it opens.",
            lambda scene: scene.cuts_tension, _cut, ("tension",), {"tension": "allowed"}, {"tension": "cut"},
            key_of=lambda scene: "cut", possible=lambda scene: scene.has_dissipation,
-           refusal="Without contact damping no contact can pull: switch that on first."),
+           refusal="Without contact damping no contact can pull: switch that on first.", dissipates=False),
     Effect("foundation", "foundation", "foundation", "A spring from every bead to the ground.",
-           lambda scene: scene.k > 0.0, _founded, ("k",), {"k": 0.0}, {"kappa": 0.001}),
+           lambda scene: scene.k > 0.0, _founded, ("k",), {"k": 0.0}, {"kappa": 0.001}, dissipates=False),
     Effect("preload", "preload", "preload",
            "A static force presses the chain together; without it: sonic vacuum.",
-           lambda scene: scene.F0 > 0.0, _pressed, ("F0",), {"F0": 0.0}, {"F0": 1.0}),
+           lambda scene: scene.F0 > 0.0, _pressed, ("F0",), {"F0": 0.0}, {"F0": 1.0}, dissipates=False),
 )
 #: The one effect that is not a knob of a scene: it does not change the motion.
 ACCOUNT = Effect("account", "account", "energy account",
                  "Work, loss and stored energy are integrated alongside; the status line shows how well they balance.",
-                 lambda scene: False)
+                 lambda scene: False, dissipates=False)
 #: Slots that every scene fills, with what they hold.
 ALWAYS = {"chain": "Hertz contact", "driver": "driver"}
 

@@ -173,7 +173,7 @@ _TABLE = (
              choices=DISSIPATION_LAWS, numeric=False, short="law"),
     Quantity("tension", "", "", "", "tension", "Whether the dashpot may pull while a contact opens "
              "(the paper's law) or the contact force is cut at zero.", choices=TENSION, numeric=False),
-    Quantity("accuracy", "ε", "1", r"\varepsilon", "accuracy", "Relative error of the displacements asked for.",
+    Quantity("accuracy", "ε", "1", r"\varepsilon", "accuracy", "Requested relative error of the displacements.",
              1e-12, 0.1, "log", 0.0, main=True, changes_motion=False),
 )
 

@@ -13,10 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import h5py
+import numpy as np
 import pytest
 
 from app.cli import main
-from granchain_core import Curve, bifurcation_curves
+from granchain_core import Curve, State, bifurcation_curves, orbit, run, save, scene
 from granchain_core.steady.curve.request import CurveRequest
 from granchain_core.store.diagrams import load_diagram
 
@@ -237,3 +238,29 @@ def test_words_say_whether_the_accuracy_was_reached_and_count_one_iteration(caps
     assert main(["orbit", *chain]) == 0
     count = re.search(r"after (\d+) Newton (iterations?)$", capsys.readouterr().out.splitlines()[0])
     assert count is not None and count[2] == ("iteration" if count[1] == "1" else "iterations")
+
+
+def test_an_orbit_starts_in_the_last_state_of_a_run_at_its_phase(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
+                                                                 capsys: pytest.CaptureFixture[str]) -> None:
+    """A run that began at phase 0.25 ends there; one of another chain is taken, and its values are said."""
+    chain, file = scene("sec2").evolve(N=2, f=2000.0), str(tmp_path / "run.h5")
+    save(run(chain, periods=20, record=1, samples=8, start=State(np.zeros(2), np.zeros(2), 0.25)), file)
+    starts = []
+    monkeypatch.setattr("granchain_core.orbits.periodic_orbit", lambda *given: starts.append(given[2]) or orbit(*given))
+    assert main(["orbit", "sec2", "--set", "N=2", "--set", "f=2000", "--start", file]) == 0
+    assert starts[0].phase == 0.25 and capsys.readouterr().err == ""
+    assert main(["orbit", "sec2", "--set", "N=2", "--set", "f=1990", "--set", "D=90", "--start", file]) == 0
+    assert "was recorded with f = 2000, D = 100: its last state is only where" in capsys.readouterr().err
+    assert main(["orbit", "rig", "--set", "N=2", "--set", "f=140", "--start", file]) in (0, 3)
+    assert "was recorded with other beads, " in capsys.readouterr().err
+
+
+def test_the_json_of_a_curve_has_the_numbers_behind_a_regime(capsys: pytest.CaptureFixture[str]) -> None:
+    """Those of a quasi-periodic point decide what it is called (docs/regimes.md)."""
+    assert main(["curve", "sec2", "--from", "1700", "--to", "1700", "--points", "1", "--json"]) == 0
+    said = {name: values[0] for name, values in json.loads(capsys.readouterr().out).items() if isinstance(values, list)}
+    assert said["regime"] == "quasi-periodic" and said["decay"] is None
+    assert said["return_distance"] < said["return_limit"]
+    smallest, largest = said["window_ratios"]
+    assert 0.9 < smallest <= largest < 1.1
+    assert abs(said["lyapunov"][0]) < 0.01 and said["lyapunov_periods"] >= 220

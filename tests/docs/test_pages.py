@@ -50,12 +50,22 @@ def test_links_to_headings_lead_to_one(page: Path):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_named_in_short_exist(page: Path):
-    """Where a page names a file without the top folder, it is one of the core or of the app; a bare name is one there.
+    """Where a page names a file without the top folder, it is one of the core or of the app; a bare name is the only one
+    there, or the table names its folder: in its head, or at the beginning of the row.
     """
-    for name in re.findall(r"`([\w./-]+\.(?:py|js|css))`", page.read_text(encoding="utf-8")):
-        if not re.match(f"{_FOLDERS}/", name):
-            tops = [ROOT / "granchain_core", ROOT / "app"]
-            assert [top for top in tops if (any(top.rglob(name)) if "/" not in name else (top / name).exists())], name
+    tops, head = [ROOT / "granchain_core", ROOT / "app"], ""
+    for line in page.read_text(encoding="utf-8").splitlines():
+        if named := re.match(r"\| module of `([\w/]+)` \|", line):
+            head = named[1]
+        elif not line.startswith("|"):
+            head = ""
+        row = re.match(r"\| `([\w/]+)` \|", line)
+        for name in re.findall(r"`([\w./-]+\.(?:py|js|css))`", line):
+            if re.match(f"{_FOLDERS}/", name):
+                continue
+            places = [place / (row[1] if row else head) / name for place in (ROOT, *tops)]
+            found = [top / name for top in tops if (top / name).exists()] or [p for top in tops for p in top.rglob(name)]
+            assert any(place.exists() for place in places) or len(found) == 1, f"{name}: {len(found)} files"
 
 
 def test_files_named_in_the_source_exist():

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -17,6 +20,7 @@ from granchain_core.orbits import (
     periodic_orbit,
     switch_to_doubled,
 )
+from granchain_core.orbits.branch.walk import Arm, Walk
 
 #: What the settled picture is asked for; its converged orbit then agrees with a branch's to some multiples of it.
 _ASKED = 1e-8
@@ -191,6 +195,30 @@ def test_an_isola_closes_on_itself() -> None:
     assert [arm.ended for arm in found.arms] == ["closed"] and check_branch(found) == []
     assert "the orbit there is the seed's" in found.arms[0].reason
     assert sum(s.kind == "fold" for s in found.special) % 2 == 0
+
+
+@pytest.mark.parametrize("slow", [1, -1])
+def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """That with fewer orbits, also where it takes longer; and it is the one that is kept where both go on alternately.
+    """
+    shown, frequency, period = closed_loop()
+    begun = begin_branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
+    copies = [replace(begun, arms=tuple(Arm(arm.direction, list(arm.points)) for arm in begun.arms)) for _ in range(2)]
+    alternately = Continuation(copies[0])
+    for _ in alternately:
+        pass
+    step = Walk.__next__
+
+    def slowed(walk: Walk) -> BranchPoint:
+        if walk.arm.direction == slow:
+            time.sleep(0.05)
+        return step(walk)
+
+    monkeypatch.setattr(Walk, "__next__", slowed)
+    found = Continuation(copies[1]).run()
+    kept, = found.arms
+    assert kept.direction == alternately.branch.arms[0].direction
+    assert [p.knob for p in kept.points] == [p.knob for p in alternately.branch.arms[0].points]
 
 
 def test_the_error_for_a_seed_that_is_no_orbit_has_its_residuals() -> None:

@@ -16,6 +16,7 @@ from chains import LAWS
 
 from granchain_core import run, scene
 from granchain_core.integrate import Engine, Setting
+from granchain_core.scene.effects import EFFECTS, Effect
 
 COMBINATIONS = [c for c in itertools.product(LAWS, ("allowed", "cut"), (0.0, 0.002), (0.0, 2.0))
                 if not (c[0] == "none" and c[1] == "cut")]
@@ -126,3 +127,14 @@ def test_a_record_of_little_energy_has_its_own_account() -> None:
     for periods in (1, 3):
         found = run(struck, periods=periods, record=2)
         assert found.kinetic_energy.max() < 1e-9 * 0.5 * struck.beads[0].mass * 0.05**2 and found.energy_residual < 1e-4
+
+
+@pytest.mark.parametrize("effect", EFFECTS, ids=lambda effect: effect.name)
+def test_an_effect_dissipates_if_its_row_says_so(effect: Effect) -> None:
+    """The energy lost in a chain with this effect alone; where tension is cut the dashpot loses it."""
+    alone = scene("sec2").evolve(N=2, dissipation="none")
+    if not effect.possible(alone):
+        pytest.skip(effect.refusal)
+    engine = Engine(alone.evolve(**effect.usual), Setting("rk4-split"), 16, account=True)
+    _, work, lost = engine.record(16 * 2).energy.T
+    assert (lost[-1] > 1e-3 * np.abs(work).max()) == effect.dissipates

@@ -157,3 +157,9 @@ def test_kernels_that_are_compiled_on_the_way_do_not_exhaust_the_budget(monkeypa
     found = run(scene("sec2"), periods=20, record=1, samples=8, budget=budget)
     assert found.status == "done" and len(computed) >= 3
     assert found.cost.wall_s == pytest.approx(0.01 * budget * len(computed))  # as printed: nothing of the compiler
+
+
+def test_typical_errors_fall_as_the_differences_are_expected_to() -> None:
+    """One order for both terms of a stated error: that which is observed."""
+    coarse, fine = Setting("rk4-split", 1.0), Setting("rk4-split", 8.0)
+    assert typical_error(coarse) / typical_error(fine) == pytest.approx(Computations(False)._falls(coarse, fine), rel=1e-12)

@@ -13,8 +13,6 @@ from ...format import in_words
 _MOST_INSTANTS = 25
 #: A value below this part of the largest of its series is a rounded zero, such as the sine of a full turn.
 _LARGEST_ROUNDED_ZERO = 1e-12
-#: Effects with which contacts alone lose energy: the others store it, or cut the damped force.
-_ONLY_CONTACTS_LOSE = {"dashpot", "tension", "foundation", "preload"}
 #: Most beads of a table; the file has all.
 _MOST_BEADS = 200
 
@@ -52,8 +50,8 @@ def _where_energy_goes(run: Run) -> str:
 
     The wall takes none, because it does not move.
     """
-    effects = {effect.name for effect in effects_of(run.scene)}
-    if not run.scene.is_driven or "dashpot" not in effects or effects - _ONLY_CONTACTS_LOSE:
+    dissipating = [effect.name for effect in effects_of(run.scene) if effect.dissipates]
+    if not run.scene.is_driven or dissipating != ["dashpot"]:
         return ""
     return " On average, the damping of the contacts takes all the energy from the driver; the wall takes none."
 

@@ -9,6 +9,7 @@ by one from a `Continuation`, which can be paused at any time, saved, and contin
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -126,8 +127,10 @@ class Continuation(Iterator[BranchPoint]):
     """A branch as it grows: each `next` is one more orbit; `branch` holds those found so far.
 
     Of two arms the shorter one grows, so both go on alternately; `run` follows both at once. Iteration may be left and
-    continued at any time. Where the stop flag is set, `Cancelled` ends the present step only. An arm that closes on
-    itself is the whole branch: the other is dropped.
+    continued at any time. Where the stop flag is set, `Cancelled` ends the present step only.
+
+    An arm that closes on itself is the whole branch, and the other is dropped once it is as long: that it could not
+    have closed with fewer orbits must be known, or the threads would decide which of the two is kept.
     """
 
     def __init__(self, branch: Branch, stop: Stop | None = None) -> None:
@@ -136,7 +139,7 @@ class Continuation(Iterator[BranchPoint]):
         self._walks = [Walk(BranchEquations(branch.axis, branch.period, self.stop), arm) for arm in branch.arms]
 
     def __next__(self) -> BranchPoint:
-        while left := [walk for walk in self._walks if not self._closed and not walk.arm.ended]:
+        while left := [walk for walk in self._walks if self._grows(walk)]:
             shorter: Walk = min(left, key=lambda walk: len(walk.arm.points))
             point = next(shorter, None)
             if point is not None:
@@ -148,7 +151,7 @@ class Continuation(Iterator[BranchPoint]):
         """Follow all arms to their ends, each in a thread, or until one has `most_points`."""
 
         def follow(walk: Walk) -> None:
-            while not self._closed and len(walk.arm.points) < most_points and next(walk, None) is not None:
+            while self._grows(walk) and len(walk.arm.points) < most_points and next(walk, None) is not None:
                 if on_point is not None:
                     on_point(walk.arm)
 
@@ -158,14 +161,19 @@ class Continuation(Iterator[BranchPoint]):
         self._drop_double()
         return self.branch
 
+    def _grows(self, walk: Walk) -> bool:
+        """Whether an arm has not ended, and is shorter than every arm that has closed."""
+        return not walk.arm.ended and len(walk.arm.points) < min(map(len, self._closed), default=math.inf)
+
     @property
-    def _closed(self) -> bool:
-        return any(walk.arm.ended == "closed" for walk in self._walks)
+    def _closed(self) -> list[list[BranchPoint]]:
+        return [walk.arm.points for walk in self._walks if walk.arm.ended == "closed"]
 
     def _drop_double(self) -> None:
-        closed = next((arm for arm in self.branch.arms if arm.ended == "closed"), None)
-        if closed is not None:
-            self.branch = replace(self.branch, arms=(closed,))
+        """Keep the arm that has closed with the fewest orbits, the first of two, when no other can do so any more."""
+        closed = [arm for arm in self.branch.arms if arm.ended == "closed"]
+        if closed and not any(self._grows(walk) for walk in self._walks):
+            self.branch = replace(self.branch, arms=(min(closed, key=lambda arm: len(arm.points)),))
 
 
 def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int | None = None,
