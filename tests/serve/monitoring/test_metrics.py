@@ -33,7 +33,7 @@ def test_every_count_of_every_thread_is_kept() -> None:
         thread.start()
     for thread in threads:
         thread.join()
-    assert metrics.cancelled == 8000 and "granchain_cancelled_total 8000\n" in metrics.text()
+    assert metrics.counted["cancelled"] == 8000 and "granchain_cancelled_total 8000\n" in metrics.text()
 
 
 def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> None:
@@ -55,7 +55,7 @@ def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> No
 
 def shown(name: str) -> float:
     """A number of `/metrics`."""
-    server._count_what_is_shared()
+    server.add_shared_metrics()
     found = re.search(rf"^granchain_{re.escape(name)} (\S+)$", METRICS.text(), re.MULTILINE)
     assert found is not None
     return float(found[1])
