@@ -23,7 +23,7 @@ from .serve.compiling.compiler import COMPILER
 from .serve.computing.queues import COMPUTING, QUEUES
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
-from .serve.http.guard import Rules, guard_setting, is_guarded
+from .serve.http.guard import Readiness, Rules, guard_setting, is_guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.http.sessions import TOKEN_LIFETIME, Sessions
 from .serve.monitoring import logs
@@ -116,7 +116,7 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
         {"/": _guarded_page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
         websocket_max_message_size=LARGEST_MESSAGE,
-        extra_patterns=[(r"/liveness", Liveness), (r"/metrics", MetricsHandler)],
+        extra_patterns=[(r"/liveness", Liveness), (r"/readiness", Readiness), (r"/metrics", MetricsHandler)],
         http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
                             "max_body_size": LARGEST_BODY, "xheaders": access.proxy},
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,

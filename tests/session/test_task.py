@@ -7,6 +7,7 @@ import threading
 import time
 import weakref
 from collections.abc import Callable
+from functools import partial
 from itertools import count
 
 import pytest
@@ -154,11 +155,15 @@ def test_what_is_started_again_and_again_is_kept_once(share: int | None, host: S
 
     queue, leave = Queue("test", 1, share=share), threading.Event()
     queue.submit(leave.wait, 120)
+
+    def read_file(file: File, _: Job) -> None:
+        read.append(type(file).__name__)
+
     task, files = Task(host, queue, host.say), [File() for _ in range(50)]
     kept, read = weakref.WeakSet(files), list[str]()
     while files:
         one = files.pop()
-        task.start(lambda _, file=one: read.append(type(file).__name__))
+        task.start(partial(read_file, one))
     del one
     gc.collect()
     assert len(kept) == 1 and queue.waiting + queue.held <= (50 if share is None else 2)

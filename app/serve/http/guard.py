@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import logging
+import random
 import re
 import secrets
 import time
@@ -53,6 +54,8 @@ NEEDED = (
 _UNUSED_ADDRESSES = re.compile(r"/(autoload.js|metadata)/?")
 #: The name of the setting that has an application's `Rules`.
 _SETTING = "granchain_rules"
+#: After how long a page that was refused because there are too many tries again, at least and at most [s].
+_TRY_AGAIN = (20, 60)
 #: Whether the request that is being answered has passed a guard. A page is made in the context of its request.
 _IS_GUARDED: ContextVar[bool] = ContextVar("is_guarded", default=False)
 
@@ -142,7 +145,16 @@ class Guard(RequestHandler):
         sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
                      503: "This server has as many visitors as it can serve; please try again in a minute.",
                      500: "Something went wrong inside granchain."}
-        self.finish(f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n")
+        sentence = f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n"
+        if status_code == 503:
+            # Pages that wait do not all come back at once.
+            seconds = random.randint(*_TRY_AGAIN)
+            self.set_header("Retry-After", seconds)
+            if self.request.path == "/":
+                self.set_header("Content-Type", "text/html; charset=UTF-8")
+                sentence = (f'<!doctype html><html lang="en"><title>granchain</title><meta http-equiv="refresh" '
+                            f'content="{seconds}"><p>{sentence}<p>This page tries again by itself.\n')
+        self.finish(sentence)
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
         """Write the error to the log, with the request's id."""
@@ -274,11 +286,23 @@ class GuardedSocket(Guard):
         return json.dumps({"text": f"The message could not be handled (request {self.request_id}).", "traceback": None})
 
 
+class Readiness(RequestHandler):
+    """`/readiness`: whether one more page can be opened."""
+
+    rules: Rules
+
+    def get(self) -> None:
+        """Answer `{"/readiness": true}`, or status 503."""
+        if self.rules.sessions.full:
+            raise HTTPError(503, "there are %d visitors", self.rules.sessions.most)
+        self.write({"/readiness": True})
+
+
 def _opens_page(handler: RequestHandler) -> bool:
     """Whether a request may open a page; without Bokeh's class of such handlers, of all that are not known not to."""
     if SessionHandler is not None:
         return isinstance(handler, SessionHandler)
-    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, Liveness, MetricsHandler))
+    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, Liveness, MetricsHandler, Readiness))
 
 
 def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:

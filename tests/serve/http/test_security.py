@@ -197,14 +197,19 @@ def test_a_page_that_is_only_fetched_starts_no_compiler(dashboard: Listening, mo
 
 
 def test_there_are_at_most_so_many_visitors() -> None:
-    one = Listening(Access(secret=SECRET, most_visitors=2))
+    one, before = Listening(Access(secret=SECRET, most_visitors=2)), METRICS.opened
     try:
         there = [one.open(one.token()) for _ in range(2)]
         assert [status for status, _ in there] == [101, 101] and one.ask()[0] == 503
-        assert "try again in a minute" in one.ask()[2]
-        assert one.ask("/liveness")[0] == 200
+        _, headers, text = one.ask()
+        seconds = int(headers["Retry-After"])
+        assert "try again in a minute" in text and 20 <= seconds <= 60
+        assert headers["Content-Type"].startswith("text/html") and f'http-equiv="refresh" content="{seconds}"' in text
+        assert one.ask("/liveness")[0] == 200 and one.ask("/readiness")[0] == 503
         for _, each in there:
             each.close()
+        waiting.until(lambda: one.ask("/readiness")[0] == 200)
+        assert METRICS.opened == before + 2, "neither address makes a page"
     finally:
         one.stop()
 
