@@ -20,13 +20,13 @@ class Sessions:
     """The sessions of one server.
 
     A session is *loading* from the request of its page until its websocket connects. A client that fetches pages and
-    never connects would soon have all places, so only a quarter of them are for loading pages: the oldest of these
-    makes room for a newer one.
+    never connects would soon have all places, so only half of them are for loading pages: the oldest of these makes
+    room for a newer one. With fewer places for them, many who open the page in the same seconds would lose theirs.
     """
 
     def __init__(self, most: int) -> None:
         self.most = most
-        self.most_loading = max(1, most // 4)
+        self.most_loading = max(1, most // 2)
         #: Set when the server is there; requests come later.
         self.server: Server | None = None
         #: Ids of the sessions that have had their connection, or may have none any more, and since when [s].

@@ -58,7 +58,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                                f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
         "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; one counts once more for every {FRAME_UNIT // 1000} kB "
                             "of it; beyond that the connection is closed (1008)",
-        "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most a quarter of the pages at once",
+        "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the pages at once",
         "a link": f"{LONGEST} characters",
         "pages at once": f"{Access().most_visitors}",
         "long computations of a visitor at once": f"{LONG.share} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
@@ -214,12 +214,12 @@ def test_there_are_at_most_so_many_visitors() -> None:
         one.stop()
 
 
-def test_pages_that_are_fetched_and_never_connect_leave_three_quarters_of_the_places(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pages_that_are_fetched_and_never_connect_leave_half_of_the_places(monkeypatch: pytest.MonkeyPatch) -> None:
     """One client that fetches the page again and again: the oldest page that is still loading makes room."""
     monkeypatch.setattr(server, "SESSION_CHECK_MS", 20)
     one = Listening(Access(secret=SECRET, most_visitors=8))
     try:
-        there = [one.open(one.token()) for _ in range(6)]
+        there = [one.open(one.token()) for _ in range(3)]
         first = one.token()
         for _ in range(12):
             assert one.ask()[0] == 200
@@ -227,7 +227,7 @@ def test_pages_that_are_fetched_and_never_connect_leave_three_quarters_of_the_pl
         token = one.token()
         assert one.connect(first) in (403, 503), "it has lost its place"
         assert one.connect(token) == 101
-        assert [status for status, _ in there] == [101] * 6
+        assert [status for status, _ in there] == [101] * 3
         for _, each in there:
             each.close()
     finally:
