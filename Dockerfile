@@ -54,8 +54,10 @@ EXPOSE 5006
 HEALTHCHECK --interval=10s --timeout=5s --start-period=30s --retries=3 \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:5006/liveness', timeout=4)"]
 
-# Browsers may reach it as localhost; for another name add --allow-websocket-origin NAME:PORT to the run command. Nothing is
-# written outside /tmp and the folder of the kernels, so the container may run read-only:
+# Browsers may reach it as localhost; for another name add --allow-websocket-origin NAME:PORT to the run command, and a
+# --secret-file, which is then taken in place of --generate-secret (docs/deployment.md). The health check asks at port
+# 5006, so give it another one outside with -p.
+# Nothing is written outside /tmp and the folder of the kernels, so the container may run read-only:
 #     docker run --rm -p 127.0.0.1:5006:5006 --read-only --tmpfs /tmp --cap-drop ALL --security-opt no-new-privileges granchain
 ENTRYPOINT ["granchain", "serve", "--address", "0.0.0.0", "--port", "5006", "--generate-secret", \
             "--allow-websocket-origin", "localhost:5006", "--allow-websocket-origin", "127.0.0.1:5006"]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import gc
 import ipaddress
 import secrets
@@ -24,10 +23,11 @@ from .serve.compiling.compiler import COMPILER
 from .serve.computing.queues import COMPUTING, QUEUES
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
-from .serve.http.guard import Rules, guard_setting, is_guarded
+from .serve.http.guard import Readiness, Rules, guard_setting, is_guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
+from .serve.http.sessions import TOKEN_LIFETIME, Sessions
 from .serve.monitoring import logs
-from .serve.monitoring.metrics import METRICS, Gauge, Liveness, MetricsHandler
+from .serve.monitoring.metrics import METRICS, Liveness, Metric, MetricsHandler
 from .serve.opening.bokeh_defaults import remember_defaults
 from .serve.opening.panel_resources import remember_resources
 from .session.session import Session
@@ -35,8 +35,7 @@ from .session.session import Session
 #: The largest message a page sends is an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
 #: How long a thread may keep the interpreter from the event loop [s]; Python's default is 5 ms. The answer to a moved
-#: knob needs it some ten times. p95 of the answers to 60 visitors: 0.84 s with 0.5 ms, 1.55 s with 5 ms (2026-11-24,
-#: before answers became as fast as in docs/reliability.md; not measured since).
+#: knob needs it some ten times. Measurements are in docs/reliability.md, "Many visitors".
 SWITCH_INTERVAL = 5e-4
 #: Time until a connection that sends nothing is closed [s]; a request's head must have come by then.
 IDLE_TIME = 60
@@ -47,7 +46,7 @@ LARGEST_BODY = 100_000
 #: Between two pings of a websocket, and until the answer must have come [s].
 PING_INTERVAL = 20
 #: Time in which a loaded page must open its websocket [ms].
-UNCONNECTED_MS = 60_000
+UNCONNECTED_MS = 30_000
 #: Between two checks for sessions that have ended [ms].
 SESSION_CHECK_MS = 1000
 
@@ -80,15 +79,15 @@ def is_loopback(address: str) -> bool:
 
 
 def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = None, log_level: str = "warning",
-          before: Callable[[], None] = lambda: None) -> None:
+          on_ready_to_listen: Callable[[], None] = lambda: None) -> None:
     """Serve the page until interrupted; `/liveness` answers health checks.
 
-    Raises `OSError` for a taken port and `MissingPart` for a library whose release lacks what is needed. `before` is
-    called when the server is about to listen.
+    Raises `OSError` for a taken port and `MissingPart` for a library whose release lacks what is needed.
+    `on_ready_to_listen` is called when everything is imported, just before the server takes the port.
     """
     logs.configure(log_level)
     check_releases()
-    before()
+    on_ready_to_listen()
     server = server_at(port, address, access)
     shown = "localhost" if address in ("0.0.0.0", "127.0.0.1", "") else _in_url(address)
     print(f"granchain is at http://{shown}:{port}/ (stop it with Ctrl+C)", flush=True)
@@ -102,7 +101,7 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
     gc.enable()
     server.start()
-    server.io_loop.add_callback(lambda: asyncio.ensure_future(METRICS.watch()))
+    server.io_loop.spawn_callback(METRICS.watch)
     server.io_loop.start()  # until a signal ends the process (app/cli/ending.py); Bokeh's own waits for its threads
 
 
@@ -112,18 +111,19 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
     names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
     hosts = frozenset(_name_of(origin) for origin in names)
     secret = access.secret or secrets.token_bytes(32)
-    rules = Rules(hosts, access.most_visitors, access.embedding, secret, frozenset(filter(_is_ipv6, names)))
-    server = rules.server = pn.serve(
+    rules = Rules(hosts, Sessions(access.most_visitors), access.embedding, secret, frozenset(filter(_is_ipv6, names)))
+    server = rules.sessions.server = pn.serve(
         {"/": _guarded_page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
         websocket_max_message_size=LARGEST_MESSAGE,
-        extra_patterns=[(r"/liveness", Liveness), (r"/metrics", MetricsHandler)],
+        extra_patterns=[(r"/liveness", Liveness), (r"/readiness", Readiness), (r"/metrics", MetricsHandler)],
         http_server_kwargs={"idle_connection_timeout": IDLE_TIME, "body_timeout": BODY_TIME,
                             "max_body_size": LARGEST_BODY, "xheaders": access.proxy},
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
         unused_session_lifetime_milliseconds=UNCONNECTED_MS, check_unused_sessions_milliseconds=SESSION_CHECK_MS,
+        session_token_expiration=TOKEN_LIFETIME,
         sign_sessions=True, secret_key=secret, **guard_setting(rules), **dict(access.sign_in))
-    _count_what_is_shared()
+    add_shared_metrics()
     return server
 
 
@@ -134,29 +134,29 @@ def _guarded_page() -> None:
     page()
 
 
-def _count_what_is_shared() -> None:
+def add_shared_metrics() -> None:
     """The queues and caches of all visitors, for `/metrics`."""
     METRICS.turn_wait = lambda: TURNS.wait
-    METRICS.gauges.update(
-        queue=Gauge("Work that waits: for a thread of any queue, for its owner's share, or for a turn.",
-                    lambda: TURNS.waiting + sum(queue.waiting + queue.held for queue in QUEUES)),
-        computing=Gauge("Computations that have a turn, and work under way in the queues "
-                        f"{', '.join(queue.name for queue in COMPUTING)}.",
-                        lambda: TURNS.running + sum(queue.busy_threads for queue in COMPUTING)),
-        turns_waiting=Gauge("Computations that wait for a turn; each also keeps a thread of its queue busy.",
-                            lambda: TURNS.waiting),
-        queue_waiting=Gauge("Work that waits for a thread of the queue or for its owner's share.",
-                            lambda: {queue.name: queue.waiting + queue.held for queue in QUEUES}, "queue"),
-        queue_busy=Gauge("Threads of the queue that have work, even if it waits for a turn or another queue.",
-                         lambda: {queue.name: queue.busy_threads for queue in QUEUES}, "queue"))
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
-    for name, cache in shared.items():
-        METRICS.gauges.update({
-            f"{name}_cache_hits_total": Gauge(
-                f"Requests of a {name} that was there or under way.", partial(getattr, cache, "hits")),
-            f"{name}_cache_misses_total": Gauge(
-                f"Requests of a {name} that had to be computed.", partial(getattr, cache, "misses")),
-            f"{name}_cache_bytes": Gauge(f"Memory of the {name}s that are kept.", partial(getattr, cache, "used"))})
+    METRICS.added = (
+        Metric("queue", "gauge", "Work that waits: for a thread of any queue, for its owner's share, or for a turn.",
+               lambda: TURNS.waiting + sum(queue.waiting + queue.held for queue in QUEUES)),
+        Metric("computing", "gauge", "Computations that have a turn, and work under way in the queues "
+                                     f"{', '.join(queue.name for queue in COMPUTING)}.",
+               lambda: TURNS.running + sum(queue.busy_threads for queue in COMPUTING)),
+        Metric("turns_waiting", "gauge",
+               "Computations that wait for a turn; each also keeps a thread of its queue busy.", lambda: TURNS.waiting),
+        Metric("queue_waiting", "gauge", "Work that waits for a thread of the queue or for its owner's share.",
+               lambda: {queue.name: queue.waiting + queue.held for queue in QUEUES}, "queue"),
+        Metric("queue_busy", "gauge", "Threads of the queue that have work, even if it waits for a turn or another "
+                                      "queue.", lambda: {queue.name: queue.busy_threads for queue in QUEUES}, "queue"),
+        *(metric for name, cache in shared.items() for metric in (
+            Metric(f"{name}_cache_hits_total", "counter", f"Requests of a {name} that was there or under way.",
+                   partial(getattr, cache, "hits")),
+            Metric(f"{name}_cache_misses_total", "counter", f"Requests of a {name} that had to be computed.",
+                   partial(getattr, cache, "misses")),
+            Metric(f"{name}_cache_bytes", "gauge", f"Memory of the {name}s that are kept.",
+                   partial(getattr, cache, "used")))))
 
 
 def _in_url(address: str) -> str:

@@ -1,5 +1,6 @@
 """Lists that follow from tables in the code: knobs (docs/model.md), methods (docs/method.md), scenes and commands that
-draw (README.md), drives by a formula (docs/scenes.md), and what is used of libraries (docs/libraries.md).
+draw (README.md), drives by a formula (docs/scenes.md), what is used of libraries (docs/libraries.md), and metrics
+(docs/deployment.md).
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ from importlib import import_module
 
 from app import needed
 from app.cli.commands import COMMANDS
+from app.serve.monitoring.metrics import HISTOGRAM, HISTOGRAM_HELP, METRICS
+from app.server import add_shared_metrics
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
 from granchain_core.prescribed_drive.formulas import FORMULAS
@@ -82,3 +85,11 @@ def table_of_libraries() -> str:
     rows = [f"| `{row.owner}`: {', '.join(f'`{name}`' for name in row.names)} | `app/{module.replace('.', '/')}.py` | {row.without} |"
             for module, table in needed.tables().items() for row in table]
     return "\n".join(["| what | where | without it |", "|---|---|---|", *rows])
+
+
+def table_of_metrics() -> str:
+    """The table of docs/deployment.md: every metric of the server, its kind and its help text."""
+    add_shared_metrics()
+    rows = [f"| `granchain_{metric.name}`{f', label `{metric.label}`' if metric.label else ''} | {metric.kind} | {metric.help} |"
+            for metric in METRICS.table()]
+    return "\n".join(["| metric | kind | what it is |", "|---|---|---|", *rows, f"| `{HISTOGRAM}` | histogram | {HISTOGRAM_HELP} |"])

@@ -4,7 +4,7 @@
 
 - tables in the docs: thresholds (docs/regimes.md, orbits.md, branches.md, accuracy.md), methods (docs/method.md), knobs
   (docs/model.md), scenes and the list of commands with pictures (README.md), drives by a formula (docs/scenes.md), what
-  is used of libraries (docs/libraries.md);
+  is used of libraries (docs/libraries.md), metrics (docs/deployment.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -24,6 +24,7 @@ from tools.lists import (
     table_of_drives,
     table_of_knobs,
     table_of_libraries,
+    table_of_metrics,
     table_of_orders,
     table_of_scenes,
 )
@@ -53,6 +54,7 @@ _TABLES = (
     ("README.md", "commands with pictures", commands_with_pictures),
     ("docs/scenes.md", "drives", table_of_drives),
     ("docs/libraries.md", "libraries", table_of_libraries),
+    ("docs/deployment.md", "metrics", table_of_metrics),
 )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import gc
+import hmac
 import os
 import secrets
 from collections.abc import Callable
@@ -29,11 +30,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--port", type=whole, default=5006)
     parser.add_argument("--address", default="127.0.0.1")
     parser.add_argument("--allow-websocket-origin", action="append", metavar="HOST",
-                        help="host name under which browsers may reach a dashboard behind a proxy")
+                        help="a host name, with its port if that is not 80 or 443, under which browsers reach the "
+                             "dashboard; again for another; *.example.org is allowed")
     parser.add_argument("--secret-file", metavar="FILE",
                         help="a file whose content signs sessions; BOKEH_SECRET_KEY in the environment does the same")
     parser.add_argument("--generate-secret", action="store_true",
-                        help="sign sessions with a secret of this process's own")
+                        help="if no other secret is given, sign sessions with one of this process's own")
     parser.add_argument("--allow-embedding", action="append", metavar="ORIGIN",
                         help="an origin, such as https://courses.example.org, whose pages may show it in a frame")
     parser.add_argument("--most-visitors", type=whole, default=USUAL_VISITORS, help="pages that may be open at once")
@@ -58,8 +60,8 @@ def do(arguments: argparse.Namespace) -> None:
         _serve(arguments, waiting.close)
 
 
-def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
-    """Import the dashboard and serve it; `before` is called when it is about to listen."""
+def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]) -> None:
+    """Import the dashboard and serve it; `on_ready_to_listen` is called just before it takes the port."""
     gc.disable()  # an import makes nothing but what stays, and a tenth of its time was the search for garbage
     from ..needed import MissingPart, missing_in_import
 
@@ -71,7 +73,8 @@ def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
             raise BadInput(str(lack)) from None
         raise
 
-    secret, sign_in = _secret(arguments), _sign_in(arguments)
+    secret = _secret(arguments)
+    sign_in = _sign_in(arguments, secret)
     exposed = arguments.behind_proxy or not is_loopback(arguments.address)
     if exposed and not (arguments.allow_websocket_origin and secret):
         reached = "A server behind a proxy" if arguments.behind_proxy else f"The address {arguments.address}"
@@ -82,7 +85,8 @@ def _serve(arguments: argparse.Namespace, before: Callable[[], None]) -> None:
     access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.most_visitors,
                     tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()))
     try:
-        serve_dashboard(arguments.port, arguments.address, access=access, log_level=arguments.log_level, before=before)
+        serve_dashboard(arguments.port, arguments.address, access=access, log_level=arguments.log_level,
+                        on_ready_to_listen=on_ready_to_listen)
     except MissingPart as lack:
         raise BadInput(str(lack)) from None
     except OSError as problem:
@@ -114,11 +118,16 @@ def _content(name: str) -> bytes:
         raise BadInput(f"The file {name} cannot be read: {problem.strerror or problem}.") from None
 
 
-def _sign_in(arguments: argparse.Namespace) -> dict[str, str]:
-    """What Panel's `serve` is told of signing in; its cookies are signed with a secret of their own."""
+def _sign_in(arguments: argparse.Namespace, secret: bytes | None) -> dict[str, str]:
+    """What Panel's `serve` is told of signing in.
+
+    Its cookies are signed with a secret of their own. If none is given, it follows from that of the sessions, so that
+    all processes with one secret accept each other's cookies, also after a restart.
+    """
     if arguments.basic_auth is None and arguments.oauth_provider is None:
         return {}
-    found = {"cookie_secret": os.environ.get("PANEL_COOKIE_SECRET") or secrets.token_hex(32)}
+    derived = hmac.new(secret or secrets.token_bytes(32), b"cookies of granchain", "sha256").hexdigest()
+    found = {"cookie_secret": os.environ.get("PANEL_COOKIE_SECRET") or derived}
     if arguments.basic_auth is not None:
         _content(arguments.basic_auth)
         return {**found, "basic_auth": arguments.basic_auth}

@@ -14,7 +14,6 @@ from ..curve.controller import CurveController
 from ..plots.theme import Theme
 from ..serve.compiling.compiler import COMPILER
 from ..serve.document.socket_tuning import disable_nagle
-from ..serve.monitoring.metrics import METRICS
 from ..session.activities import Activity, account_activity, picture_activities
 from ..session.message_checks import quoted
 from ..session.page import Actions, Page, all_actions
@@ -49,8 +48,6 @@ class Controller:
         self._document = document
         self._calls = make_calls(document, self.failed)
         self._initial_state = initial_state
-        METRICS.visitor_came()
-        self.on_close(METRICS.visitor_left)
         self.session = session
         self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
         self.sentences = Sentences(session, views.status_line, self._compute)

@@ -19,8 +19,8 @@ async function base64Of(file) {
 
 async function sendFile(model, [chosen]) {
   if (!chosen) return;
-  if (chosen.size > model.state.largest_file) model.send_msg({ do: "csv-too-large", name: chosen.name });
-  else model.send_msg({ do: "csv", name: chosen.name, content: await base64Of(chosen) });
+  if (chosen.size > model.state.largest_file) model.send_msg({ do: "measurement-too-large", name: chosen.name });
+  else model.send_msg({ do: "measurement", name: chosen.name, content: await base64Of(chosen) });
 }
 
 // Has the browser save the server's sample file.
@@ -115,7 +115,7 @@ function questionForm(model, question) {
       quantity ? [[quantity, question.columns[i][0], unit]] : [],
     );
     model.send_msg({
-      do: "csv-answer",
+      do: "measurement-answer",
       columns: about("columns") ? columns : [],
       decimal: about("decimal") ? kept.decimal : "",
       dataset: about("dataset") ? kept.dataset : "",
@@ -144,11 +144,11 @@ export function dataTab(model) {
     await sendFile(model, file.files);
     file.value = "";
   });
-  const remove = button("remove", () => model.send_msg({ do: "csv-remove" }));
-  const sample = button("sample file", () => model.send_msg({ do: "csv-sample" }), {
+  const remove = button("remove", () => model.send_msg({ do: "measurement-remove" }));
+  const sample = button("sample file", () => model.send_msg({ do: "measurement-sample" }), {
     title: "A curve computed with noise, to try this with",
   });
-  const virtual = button("virtual experiment", () => model.send_msg({ do: "csv-virtual" }), {
+  const virtual = button("virtual experiment", () => model.send_msg({ do: "measurement-virtual" }), {
     title: "What sensors with noise and bandwidth would record of the present motion: computed, and marked so",
   });
   const choice = element("div", { className: "row" }, file, sample, virtual, ...(understood ? [remove] : []));

@@ -11,6 +11,7 @@ from bokeh.core.properties import validate
 from bokeh.document import Document
 
 from ..serve.document.leaving import when_left
+from ..serve.monitoring.metrics import METRICS
 from ..session.session import Session
 from .addresses import apply_address
 from .controller import Controller
@@ -33,6 +34,8 @@ def page() -> None:
         controller.show_message(" ".join(sentences))
     when_left(document, controller.leave)
     pn.state.on_session_destroyed(controller.close)
+    METRICS.visitor_came()  # counted when the page is sure to be told that it was left
+    controller.on_close(METRICS.visitor_left)
 
 
 def _handler(controller: Controller) -> Callable[[Exception], None]:

@@ -34,6 +34,7 @@ from ..format import given_in_words, in_words, signed_in_words
 from ..serve.compiling.compiler import PICTURE_PIECES
 from ..serve.computing.queues import ANALYSES, FILES, LONG
 from ..serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
+from ..serve.http.message_rules import UPLOAD
 from ..session.budget import WHOLE_PICTURE, check_first_picture
 from ..session.host import Host
 from ..session.page import Actions
@@ -81,9 +82,9 @@ class MeasurementActions:
         #: The file, for as long as a question about it is open.
         self._content = b""
         curves.on_compared(self._compared)
-        self.actions: Actions = {"csv": self._read, "csv-answer": self._answer, "csv-too-large": self._too_large,
-                                 "csv-remove": self._remove, "csv-sample": self._sample,
-                                 "csv-virtual": self._virtual}
+        self.actions: Actions = {UPLOAD: self._read, "measurement-answer": self._answer,
+                                 "measurement-too-large": self._too_large, "measurement-remove": self._remove,
+                                 "measurement-sample": self._sample, "measurement-virtual": self._virtual}
 
     def picture_ready(self, settled: Settled) -> None:
         """Lay the series over the new picture; over a preview, no difference is stated."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import Any
 
 from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
@@ -103,6 +104,7 @@ class Task:
         self._title = title
         self._tell_host = tell_host
         self._job: Job | None = None
+        self._queued: Future[None] | None = None
         host.on_close(self.cancel)
 
     @property
@@ -114,13 +116,19 @@ class Task:
         """Queue `work`, in place of what was started before."""
         self.cancel()
         self._job = job = Job(self._host, self._say)
-        self._queue.submit(self._run, work, job, owner=self._host)
+        self._queued = self._queue.submit(self._run, work, job, owner=self._host)
 
     def cancel(self) -> bool:
-        """Cancel the work under way, so that nothing more of it arrives; return whether there was any."""
+        """Cancel the work under way, so that nothing more of it arrives; return whether there was any.
+
+        Work that has not begun leaves the queue, with all that it would have worked on.
+        """
         job, self._job = self._job, None
+        queued, self._queued = self._queued, None
         if job is not None:
             job.stop.set()
+        if queued is not None:
+            queued.cancel()
         return job is not None
 
     def _run(self, work: Callable[[Job], None], job: Job) -> None:

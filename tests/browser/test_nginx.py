@@ -28,8 +28,19 @@ http {{
     fastcgi_temp_path {folder}/fastcgi; uwsgi_temp_path {folder}/uwsgi; scgi_temp_path {folder}/scgi;
     add_header X-Process $upstream_addr always;
     {configuration}
+    {below_a_path}
 }}
 """
+
+
+def below_a_path(port: int) -> str:
+    """A second server with the locations that docs/deployment.md has for a path."""
+    page = (ROOT / "docs" / "deployment.md").read_text(encoding="utf-8")
+    (locations,) = re.findall(r"```nginx\n(.+?)```", page, re.DOTALL)
+    whole = (ROOT / "docs" / "nginx.conf").read_text(encoding="utf-8")
+    headers = "\n".join(re.findall(r"^    proxy_.+;$", whole, re.MULTILINE))
+    (busy,) = re.findall(r"^    location @busy \{.+?^    \}$", whole, re.MULTILINE | re.DOTALL)
+    return f"server {{ listen 127.0.0.1:{port};\n{headers}\n{locations}\n{busy}\n}}"
 
 
 def adapted(port: int, processes: list[int]) -> str:
@@ -44,20 +55,37 @@ def adapted(port: int, processes: list[int]) -> str:
 
 def answers(port: int, path: str, source: str = "127.0.0.1") -> http.client.HTTPResponse:
     """The answer to somebody at the address `source`, which this machine has like all of 127.0.0.0/8."""
+    return asked(port, path, source).getresponse()
+
+
+def asked(port: int, path: str, source: str) -> http.client.HTTPConnection:
+    """A request that has been sent."""
     connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60, source_address=(source, 0))
     connection.request("GET", path)
-    return connection.getresponse()
+    return connection
 
 
 @pytest.fixture(scope="module")
-def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
+def port(ports: tuple[int, int]) -> int:
     """The port of nginx, behind which two processes answer."""
+    return ports[0]
+
+
+@pytest.fixture(scope="module")
+def path(ports: tuple[int, int]) -> str:
+    """The address of the page below a path."""
+    return f"http://127.0.0.1:{ports[1]}/tools/granchain"
+
+
+@pytest.fixture(scope="module")
+def ports(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[int, int]]:
+    """The ports of nginx: one with the page alone, one with the page below a path."""
     folder = tmp_path_factory.mktemp("nginx")
-    outside, *processes = free_port(), free_port(), free_port()
+    outside, below, *processes = free_port(), free_port(), free_port(), free_port()
     (folder / "secret").write_text("0123456789abcdef0123456789abcdef")
-    (folder / "nginx.conf").write_text(AROUND.format(folder=folder, configuration=adapted(outside, processes)))
+    (folder / "nginx.conf").write_text(AROUND.format(folder=folder, configuration=adapted(outside, processes), below_a_path=below_a_path(below)))
     commands = [[sys.executable, "-m", "app.cli", "serve", "--port", str(one), "--behind-proxy", "--allow-websocket-origin",
-                 f"127.0.0.1:{outside}", "--secret-file", str(folder / "secret")] for one in processes]
+                 f"127.0.0.1:{outside}", "--allow-websocket-origin", f"127.0.0.1:{below}", "--secret-file", str(folder / "secret")] for one in processes]
     commands.append([str(NGINX), "-c", str(folder / "nginx.conf"), "-e", str(folder / "error.log")])
     with ExitStack() as stack, (folder / "log").open("wb") as log:
         for command in commands:
@@ -68,7 +96,7 @@ def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
             while not alive(one):
                 assert time.monotonic() < end, (folder / "log").read_text()
                 time.sleep(0.1)
-        yield outside
+        yield outside, below
 
 
 def alive(port: int) -> bool:
@@ -86,6 +114,33 @@ def test_a_page_behind_nginx_has_its_pictures_and_answers_a_knob(visit: Visit, p
     settled(page)
     expect(page.locator("#foot b")).to_contain_text("period 1")
     expect(page.locator("#lost")).to_be_hidden()
+
+
+def test_a_page_below_a_path_has_its_pictures_and_answers_a_knob(visit: Visit, path: str) -> None:
+    page = visit("?v=1&scene=sec2&f=1130", url=f"{path}/")
+    settled(page)
+    type_into(page, "f", "380")
+    settled(page)
+    expect(page.locator("#foot b")).to_contain_text("period 1")
+    expect(page.locator("#lost")).to_be_hidden()
+    assert "/tools/granchain/?" in page.evaluate("granchain.address.url().href"), "its links stay below the path"
+
+
+def test_the_path_without_a_slash_leads_to_the_page_and_keeps_the_link(ports: tuple[int, int]) -> None:
+    answer = answers(ports[1], "/tools/granchain?v=1&scene=sec2")
+    assert answer.status == 301 and str(answer.headers["Location"]).endswith("/tools/granchain/?v=1&scene=sec2")
+    assert [answers(ports[1], f"/tools/granchain/{name}").status for name in ("liveness", "readiness", "metrics")] == [200, 200, 404]
+
+
+def test_pages_beyond_the_rate_are_asked_to_try_again_and_none_waits(port: int) -> None:
+    """A burst of sixty is answered at once; what is beyond it gets a page that opens itself again."""
+    source = "127.2.2.2"
+    connections = [asked(port, "/", source) for _ in range(90)]
+    found = [one.getresponse() for one in connections]
+    refused = [one for one in found if one.status == 503]
+    assert refused and all(one.headers["Retry-After"] == "10" for one in refused)
+    assert b"http-equiv=refresh content=10" in refused[0].read()
+    assert answers(port, "/liveness", source).status == 200
 
 
 def test_a_visitor_always_reaches_the_same_process_and_not_all_the_same_one(port: int) -> None:

@@ -26,18 +26,20 @@ BLANK = """<!doctype html><div id="dashboard">
 
 
 class Answers:
-    """What the address of the scripts answers: modules, the blank page, and `alive` for the server's health."""
+    """What the address of the scripts answers: modules, the blank page, and `readiness` for whether there is room."""
 
-    alive = False
+    readiness = 502
 
     def __init__(self) -> None:
         self.opened: list[str] = []
+        self.asked = 0
 
     def __call__(self, route: Route) -> None:
         """Answer a request."""
         path = route.request.url.removeprefix(ORIGIN).partition("?")[0]
-        if path == "liveness":
-            route.fulfill(status=200 if self.alive else 502, body="")
+        if path == "readiness":
+            self.asked += 1
+            route.fulfill(status=self.readiness, body="")
         elif path.endswith(".js"):
             route.fulfill(path=APP / path, content_type="text/javascript")
         else:
@@ -211,7 +213,7 @@ def test_what_the_page_before_a_reload_kept_is_taken_once(page: Page) -> None:
 
 def test_a_silent_server_is_asked_counted_as_lost_and_taken_back(page: Page) -> None:
     page.evaluate("window.pings = 0; granchain.connection.connect(() => { pings += 1; })")
-    page.clock.run_for(500)
+    page.clock.run_for(700)
     assert page.evaluate("pings") == 1, "one ping is unanswered, and no other follows"
     page.clock.run_for(1000)
     assert not page.evaluate("granchain.connection.lost")
@@ -221,7 +223,7 @@ def test_a_silent_server_is_asked_counted_as_lost_and_taken_back(page: Page) -> 
     page.evaluate("granchain.connection.answerReceived()")
     assert page.evaluate("[granchain.connection.lost, stage.inert, lost.hidden]") == [False, False, True]
     for _ in range(4):
-        page.clock.run_for(500)
+        page.clock.run_for(700)
         page.evaluate("granchain.connection.answerReceived()")
     assert not page.evaluate("granchain.connection.lost") and page.evaluate("pings") == 5
 
@@ -238,6 +240,19 @@ def test_a_hidden_window_asks_nothing_and_a_closed_socket_is_lost_at_once(page: 
     assert page.evaluate("granchain.connection.lost")
 
 
+@pytest.mark.parametrize("status", [502, 503])
+def test_a_page_asks_ever_more_rarely_and_opens_nothing_while_there_is_no_room(status: int, page: Page, answers: Answers) -> None:
+    """All pages of a server that was started again would otherwise come at once, and those beyond its limit be lost."""
+    answers.readiness = status
+    page.evaluate("() => { granchain.connection.connect(() => {}); closeSocket(); }")
+    for _ in range(60):
+        page.clock.run_for(500)
+    assert 3 <= answers.asked <= 20, "in 30 s; every 0.4 s it would be 75 times"
+    assert len(answers.opened) == 1 and page.evaluate("granchain.connection.lost")
+    answers.readiness = 200
+    until(page, lambda: page.clock.run_for(500) is None and len(answers.opened) == 2)
+
+
 def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(page: Page, answers: Answers) -> None:
     page.evaluate("""() => {
       granchain.connection.connect(() => {});
@@ -247,7 +262,7 @@ def test_a_page_that_lost_its_server_opens_its_own_link_when_that_answers_again(
     }""")
     page.clock.run_for(1000)
     assert len(answers.opened) == 1, "it does not answer yet"
-    answers.alive = True
+    answers.readiness = 200
     until(page, lambda: page.clock.run_for(500) is None and len(answers.opened) == 2)
     assert answers.opened[-1] == f"{ORIGIN}?v=1&scene=sec2&f=616"
     until(page, lambda: page.evaluate("window.granchain?.connection?.again?.playing") is False)

@@ -38,9 +38,9 @@ def listens(port: int) -> bool:
 def test_the_command_answers_before_its_server_and_leaves_it_the_port(monkeypatch: pytest.MonkeyPatch) -> None:
     port, seen = free_port(), []
 
-    def served(place: int, address: str, before: Callable[[], None], **_: Any) -> None:
+    def served(place: int, address: str, on_ready_to_listen: Callable[[], None], **_: Any) -> None:
         seen.extend([asked(place), asked(place, "/liveness")])
-        before()
+        on_ready_to_listen()
         assert not listens(place)
         with socket.socket() as server:  # as Tornado binds
             server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -50,7 +50,7 @@ def test_the_command_answers_before_its_server_and_leaves_it_the_port(monkeypatc
     assert main(["serve", "--port", str(port)]) == 0
     (status, page), (health, _) = seen
     assert (status, health) == (503, 503), "a health check waits"
-    assert "granchain is starting" in page and 'id="dashboard" class="starting"' in page and "/liveness" in page
+    assert "granchain is starting" in page and 'id="dashboard" class="starting"' in page and 'fetch("liveness"' in page
     assert not listens(port)
 
 

@@ -59,7 +59,7 @@ def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str
     read = measurement.read_data
     monkeypatch.setattr(measurement, "read_data",
                         lambda *given, **named: (threads.append(threading.current_thread().name), read(*given, **named))[1])
-    dashboard.received({"do": "csv", "name": "mine.csv", "content": base64.b64encode(text.encode()).decode()})
+    dashboard.received({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text.encode()).decode()})
     assert not dashboard.views.tabs.state.get("understood")
     dashboard.run_callbacks_until(lambda: bool(dashboard.session.sentence or dashboard.views.tabs.state.get("understood")))
     assert sentence in dashboard.session.sentence
@@ -293,7 +293,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
     class Served:
         """A server that ends at once."""
 
-        io_loop = SimpleNamespace(start=lambda: None, add_callback=lambda _: None)
+        io_loop = SimpleNamespace(start=lambda: None, spawn_callback=lambda _: None)
         _tornado = SimpleNamespace(wildcard_router=SimpleNamespace(rules=[]), websocket_origins=set())
 
         def start(self) -> None:
@@ -305,7 +305,7 @@ def test_the_servers_websocket_takes_the_largest_upload(monkeypatch: pytest.Monk
     monkeypatch.setattr(server.gc, "freeze", lambda: None)
     monkeypatch.setattr(server.settings.perform_document_validation, "set_value", lambda value: None)
     server.serve()
-    message = json.dumps({"do": "csv", "name": "x" * 1000, "content": base64.b64encode(bytes(LARGEST_UPLOAD)).decode()})
+    message = json.dumps({"do": "measurement", "name": "x" * 1000, "content": base64.b64encode(bytes(LARGEST_UPLOAD)).decode()})
     assert len(message) < given["websocket_max_message_size"] < 3_000_000
     assert given["websocket_ping_interval"] == given["websocket_ping_timeout"] == 20
     assert given["http_server_kwargs"]["idle_connection_timeout"] == 60 and given["http_server_kwargs"]["body_timeout"] == 30
@@ -345,12 +345,12 @@ def test_a_step_of_the_history_ends_in_the_browser_even_if_a_page_fails(dashboar
 
 def test_a_picture_that_is_overtaken_before_it_is_sent_is_not_counted(dashboard: Dashboard) -> None:
     dashboard.session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
-    found, counted = settle(chain, samples=8), METRICS.pictures
+    found, counted = settle(chain, samples=8), METRICS.counted["pictures"]
     for _ in range(5):
         dashboard.pictures._accept(found)
-    assert METRICS.pictures - counted == 2
+    assert METRICS.counted["pictures"] - counted == 2
     dashboard.pictures.painted(1)
-    assert METRICS.pictures - counted == 3
+    assert METRICS.counted["pictures"] - counted == 3
 
 
 def test_the_figures_of_the_page_and_of_its_pages_follow_a_theme(dashboard: Dashboard) -> None:

@@ -36,7 +36,7 @@ FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
 
 def sent(content: bytes) -> dict[str, Any]:
     """The message with a file."""
-    return {"do": "csv", "name": "mine.csv", "content": base64.b64encode(content).decode()}
+    return {"do": "measurement", "name": "mine.csv", "content": base64.b64encode(content).decode()}
 
 
 def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
@@ -49,7 +49,7 @@ def after(dashboard: Dashboard, message: dict[str, Any], name: str) -> Any:
 def test_every_byte_of_a_file_arrives(dashboard: Dashboard) -> None:
     text = "Frequenz [kHz];Kraft [µN]\r\n0,04;5\r\n".encode("utf-16")
     assert "UTF-16" in after(dashboard, sent(text), "understood")
-    dashboard.received({"do": "csv", "content": "???"})
+    dashboard.received({"do": "measurement", "content": "???"})
     assert "did not arrive" in dashboard.session.sentence
 
 
@@ -89,10 +89,10 @@ def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> N
     question = after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
     assert question["about"] == ["columns"] and question["rows"][0] == [1, ["1.100", "2,5"]]
     assert question["columns"][0] == [1, "", "frequency", "Hz"] and "kHz" in question["units"]["frequency"]
-    answer = {"do": "csv-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "", "dataset": ""}
+    answer = {"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "", "dataset": ""}
     dashboard.received(answer)
     dashboard.run_callbacks_until(lambda: dashboard.views.tabs.state["question"]["about"] == ["decimal"])
-    understood = after(dashboard, {"do": "csv-answer", "columns": [], "decimal": "comma"}, "understood")
+    understood = after(dashboard, {"do": "measurement-answer", "columns": [], "decimal": "comma"}, "understood")
     assert "1100 to 1200 Hz" in understood and dashboard.views.tabs.state["question"] is None
 
 
@@ -102,7 +102,7 @@ def test_a_question_is_shown_and_its_answers_are_kept(dashboard: Dashboard) -> N
     ({"columns": [[None, 1, "N"]]}, "Unknown quantity"), ({"columns": [], "decimal": "both"}, "Unknown decimal mark"),
 ])
 def test_an_answer_from_a_browser_is_not_trusted(dashboard: Dashboard, message: dict[str, Any], sentence: str) -> None:
-    dashboard.received({"do": "csv-answer", **message})
+    dashboard.received({"do": "measurement-answer", **message})
     assert sentence in dashboard.session.sentence
 
 
@@ -154,7 +154,7 @@ def test_the_sample_file_is_read_and_says_what_it_is(dashboard: Dashboard) -> No
     assert found.repeats is not None and found.repeats.max() == 3
     told: list[dict[str, Any]] = []
     dashboard.views.tabs.send = lambda **message: told.append(message)  # type: ignore[method-assign]
-    dashboard.received({"do": "csv-sample"})
+    dashboard.received({"do": "measurement-sample"})
     assert told[0]["type"] == "sample" and told[0]["text"].startswith("# Not measured")
 
 
@@ -169,7 +169,7 @@ def with_series(dashboard: Dashboard, chain: Scene) -> str:
     """The tab's sentence on a series of `chain` over the settled picture of 340 Hz."""
     text = virtual_series_csv(chain, 12, Sensors(rate=256.0 * chain.f, noise=0.005)).encode()
     show(dashboard)
-    dashboard.received({"do": "csv", "name": "mine.csv", "content": base64.b64encode(text).decode()})
+    dashboard.received({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text).decode()})
     dashboard.run_callbacks_until(lambda: "series" in str(dashboard.views.tabs.state.get("misfit")) or "rms" in str(dashboard.views.tabs.state.get("misfit")))
     return str(dashboard.views.tabs.state["misfit"]["sentence"])
 
@@ -188,7 +188,7 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     assert dashboard.views.tabs.state["misfit"] is None
     dashboard.files.picture_ready(dashboard.session.settled)
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
-    dashboard.received({"do": "csv-remove"})
+    dashboard.received({"do": "measurement-remove"})
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
 
 
@@ -218,7 +218,7 @@ def test_a_measured_displacement_goes_over_the_drive(dashboard: Dashboard) -> No
 
 def test_a_virtual_experiment_is_recorded_of_the_present_scene_and_says_so(dashboard: Dashboard) -> None:
     show(dashboard)
-    assert "virtual experiment, nothing measured" in after(dashboard, {"do": "csv-virtual"}, "understood")
+    assert "virtual experiment, nothing measured" in after(dashboard, {"do": "measurement-virtual"}, "understood")
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state.get("misfit")))
 
 
@@ -233,14 +233,14 @@ def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkey
     for name in ("settling", "read_data"):
         monkeypatch.setattr(measurement, name, partial(noting, name, getattr(measurement, name)))
     show(dashboard)
-    assert "virtual experiment" in after(dashboard, {"do": "csv-virtual"}, "understood")
+    assert "virtual experiment" in after(dashboard, {"do": "measurement-virtual"}, "understood")
     assert threads == {"settling": "long", "read_data": "files"}
 
 
 def test_a_virtual_experiment_that_does_not_settle_is_given_up(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(measurement, "WHOLE_PICTURE", -1.0)
     show(dashboard)
-    assert after(dashboard, {"do": "csv-virtual"}, "understood").endswith("so the virtual experiment was not made.")
+    assert after(dashboard, {"do": "measurement-virtual"}, "understood").endswith("so the virtual experiment was not made.")
 
 
 def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -252,7 +252,7 @@ def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, 
         return settling(*words, **named)
 
     monkeypatch.setattr(measurement, "settling", slow)
-    dashboard.received({"do": "csv-virtual"})
+    dashboard.received({"do": "measurement-virtual"})
     assert begun.wait(20)
     assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: ")
     read.set()
@@ -268,9 +268,9 @@ def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard
         return any(isinstance(value, bytes) and len(value) > 0 for one in found for value in vars(one).values())
 
     assert after(dashboard, sent(FILE), "understood") and not kept()
-    dashboard.received({"do": "csv-remove"})
+    dashboard.received({"do": "measurement-remove"})
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question") and kept()
-    dashboard.received({"do": "csv-remove"})
+    dashboard.received({"do": "measurement-remove"})
     assert not kept()
 
 
@@ -278,11 +278,11 @@ def test_a_question_about_other_data_is_not_answered(dashboard: Dashboard) -> No
     """The bytes of the file asked about would be read under the name of the virtual experiment."""
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
     show(dashboard)
-    dashboard.received({"do": "csv-virtual"})
+    dashboard.received({"do": "measurement-virtual"})
     assert dashboard.views.tabs.state["question"] is None
-    answer = {"do": "csv-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"}
+    answer = {"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"}
     assert "virtual experiment, nothing measured" in after(dashboard, answer, "understood")
-    dashboard.received({"do": "csv-remove"})
+    dashboard.received({"do": "measurement-remove"})
     dashboard.received(answer)
     dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
     assert not dashboard.views.tabs.state["understood"] and not dashboard.session.sentence
@@ -290,8 +290,8 @@ def test_a_question_about_other_data_is_not_answered(dashboard: Dashboard) -> No
 
 def test_a_file_that_is_refused_leaves_the_one_that_is_asked_about(dashboard: Dashboard) -> None:
     assert after(dashboard, sent(b"1.100;2,5\n1.200;3,5\n"), "question")
-    dashboard.received({"do": "csv", "name": "other.csv", "content": "???"})
-    dashboard.received({"do": "csv-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"})
+    dashboard.received({"do": "measurement", "name": "other.csv", "content": "???"})
+    dashboard.received({"do": "measurement-answer", "columns": [["frequency", 1, "Hz"], ["force", 2, "mN"]], "decimal": "comma"})
     dashboard.run_callbacks_until(lambda: bool(dashboard.views.tabs.state.get("understood")))
     assert dashboard.views.tabs.state["understood"].startswith("mine.csv: ")
 

@@ -28,7 +28,7 @@ class Listening:
     def _run(self, access: Access, started: threading.Event) -> None:
         asyncio.set_event_loop(asyncio.new_event_loop())
         self.loop = IOLoop.current()
-        one = server_at(0, self.address, access)
+        one = self.server = server_at(0, self.address, access)
         self.port = one.port
         one.start()
         self.loop.add_callback(started.set)

@@ -19,8 +19,10 @@ from missing_attribute import hide
 from waiting import until
 
 from app.dashboard.controller import Controller
+from app.dashboard.layout import Views
 from app.serve.computing.queues import PICTURES, VISITORS
 from app.serve.document import leaving
+from app.serve.monitoring.metrics import METRICS
 from app.server import Access
 from granchain_core import OverBudget, scene
 from granchain_core.run.budget import refuse_long_picture
@@ -59,6 +61,23 @@ def test_pages_that_were_left_are_forgotten(caplog: pytest.LogCaptureFixture) ->
             until(lambda: not alive(Controller, Document) - before - weakref.WeakSet([curstate().document]),
                   pause=lambda: time.sleep(0.1))  # what other tests have left may go meanwhile
         assert not [record for record in caplog.records if record.levelno >= logging.ERROR]
+    finally:
+        one.stop()
+
+
+def test_a_page_that_could_not_be_made_is_no_visitor(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody would ever count it as left."""
+    def fails(*_: object) -> None:
+        raise ZeroDivisionError
+
+    one, before = Listening(Access()), METRICS.visitors
+    try:
+        monkeypatch.setattr(Views, "put_into", fails)
+        assert 'id="knobs"' not in one.ask()[2]
+        assert METRICS.visitors == before
+        monkeypatch.undo()
+        assert one.connect(one.token()) == 101
+        until(lambda: METRICS.visitors == before, pause=lambda: time.sleep(0.05))
     finally:
         one.stop()
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import threading
 import time
+import weakref
 from collections.abc import Callable
+from functools import partial
 from itertools import count
 
 import pytest
@@ -142,6 +145,31 @@ def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: SayingHost) -
     assert queue.submit(lambda: True).result(20)
     host.run_callbacks_until(lambda: not host.callbacks)
     assert host.said == [] and host.failures == []
+
+
+@pytest.mark.parametrize("share", [None, 1])
+def test_what_is_started_again_and_again_is_kept_once(share: int | None, host: SayingHost) -> None:
+    """A visitor who uploads file after file while all threads are busy: only the last one waits."""
+    class File:
+        """What is uploaded."""
+
+    queue, leave = Queue("test", 1, share=share), threading.Event()
+    queue.submit(leave.wait, 120)
+
+    def read_file(file: File, _: Job) -> None:
+        read.append(type(file).__name__)
+
+    task, files = Task(host, queue, host.say), [File() for _ in range(50)]
+    kept, read = weakref.WeakSet(files), list[str]()
+    while files:
+        one = files.pop()
+        task.start(partial(read_file, one))
+    del one
+    gc.collect()
+    assert len(kept) == 1 and queue.waiting + queue.held <= (50 if share is None else 2)
+    leave.set()
+    host.run_callbacks_until(lambda: not task.running)
+    assert read == ["File"] and host.said == [("done", "")]
 
 
 def test_work_gives_way_to_a_moving_knob(monkeypatch: pytest.MonkeyPatch) -> None:

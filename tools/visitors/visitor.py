@@ -16,6 +16,8 @@ from tornado.websocket import WebSocketClientConnection, WebSocketClosedError, w
 _TOKEN = re.compile(r'"token":"([^"]+)"')
 _ESM_MODEL = re.compile(r'"name":"[^"]*ReactiveESM[^"]*","id":"([^"]+)"')
 _NUMBER = re.compile(r'"number",(\d+)')
+#: Time between two pings of a visible page [s], as in app/parts/inline_scripts/connection.js.
+_PING_EVERY = 0.6
 #: Largest message that a page may get [bytes]: the chain of 10,000 beads.
 _LARGEST = 200_000_000
 
@@ -35,6 +37,7 @@ class Visitor:
         self._model = ""
         self._socket: WebSocketClientConnection | None = None
         self._reader: asyncio.Task[None] | None = None
+        self._pings: asyncio.Task[None] | None = None
         self._last = 0
 
     async def open(self, patience: float = 120.0) -> None:
@@ -51,6 +54,7 @@ class Visitor:
         request = HTTPRequest(f"ws://{place.netloc}/ws", request_timeout=patience, connect_timeout=patience,
                               headers={"Origin": self.address})
         self._socket = await websocket_connect(request, subprotocols=["bokeh", token], max_message_size=_LARGEST)
+        self._socket.protocol.set_nodelay(True)  # as browsers do; otherwise a move after a ping waits 40 ms in this client
         self._reader = asyncio.create_task(self._read())
         await asyncio.wait_for(self._picture.wait(), patience)
         self.opened_in = time.perf_counter() - began
@@ -73,6 +77,8 @@ class Visitor:
 
     async def leave(self) -> None:
         """Close the page."""
+        if self._pings is not None:
+            self._pings.cancel()
         if self._socket is not None:
             self._socket.close()
         if self._reader is not None:
@@ -82,6 +88,12 @@ class Visitor:
     async def say(self, **message: Any) -> None:
         """Send a message as a part of the page does."""
         await self._event("data_event", [["model", {"id": self._model}], ["data", _as_map(message)]])
+
+    async def _ping(self) -> None:
+        """Ask again and again whether the server answers, as a visible page does."""
+        while True:
+            await asyncio.sleep(_PING_EVERY)
+            await self.say(do="ping")
 
     async def _event(self, name: str, entries: list[Any]) -> None:
         event = {"type": "event", "name": name, "values": {"type": "map", "entries": entries}}
@@ -115,6 +127,7 @@ class Visitor:
             self._model = found.group(1)
             await self._event("document_ready", [])
             await self.say(do="ready", compact=False, theme="light")
+            self._pings = asyncio.create_task(self._ping())
         elif kind == "PATCH-DOC":
             await self._changed(content)
 

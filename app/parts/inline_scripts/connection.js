@@ -5,9 +5,10 @@
   // All in milliseconds. For PING_EVERY + PING_TIMEOUT a page without its server still looks alive, so this stays below
   // 2 s; it is no shorter because a server that is only busy must not count as lost.
   const TICK = 100, // how often the state is checked
-    PING_EVERY = 300, // from an answer to the next ping
+    PING_EVERY = 600, // from an answer to the next ping
     PING_TIMEOUT = 1300, // silence after a ping that counts as a lost connection
-    RETRY_EVERY = 400, // between attempts to reach a lost server
+    RETRY_FIRST = 400, // between the first two attempts to reach a lost server
+    RETRY_LONGEST = 5000, // between two attempts at most
     SILENT_SOCKET = 3000; // how long the socket may stay silent once the server answers HTTP again
   const LOST = "Connection lost – trying again … The pictures may be out of date.";
   const BACK = "Connected again – restoring your settings …";
@@ -67,7 +68,9 @@
     // Times in milliseconds.
     #sincePing = null; // since the ping that is unanswered; null if there is none
     #sinceAnswer = 0; // since the last answer
-    #sinceTry = RETRY_EVERY; // since the last attempt to reach a lost server
+    #sinceTry = Infinity; // since the last attempt to reach a lost server
+    #pause = RETRY_FIRST; // until the next attempt at most
+    #retryAfter = 0; // until the next attempt
     #sinceReached = null; // since a lost server answered HTTP again; null while it does not
 
     constructor() {
@@ -135,7 +138,7 @@
       if (!this.#lost) return;
       if (this.#sinceReached !== null) this.#sinceReached += passed;
       this.#sinceTry += passed;
-      if (this.#sinceTry >= RETRY_EVERY) this.#tryAgain();
+      if (this.#sinceTry >= this.#retryAfter) this.#tryAgain();
     }
 
     // Sends the next ping, or counts how long the last one has been unanswered.
@@ -150,6 +153,7 @@
 
     #setLost(lost) {
       this.#lost = lost;
+      this.#pause = RETRY_FIRST;
       document.getElementById("dashboard").classList.toggle("lost", lost);
       for (const part of PARTS) document.getElementById(part).inert = lost;
       showBanner(lost ? LOST : "");
@@ -160,6 +164,9 @@
       this.#sinceTry = -Infinity; // no second attempt while this one is under way
       const alive = await Connection.#reach();
       this.#sinceTry = 0;
+      // Ever later and not all pages at the same time: the server would get them all at once.
+      this.#pause = alive ? RETRY_FIRST : Math.min(1.6 * this.#pause, RETRY_LONGEST);
+      this.#retryAfter = this.#pause * (0.5 + 0.5 * Math.random());
       if (!alive) this.#sinceReached = null;
       else if (this.#closed || this.#sinceReached > SILENT_SOCKET) this.#reload();
       else this.#sinceReached ??= 0;
@@ -190,11 +197,12 @@
 
     static async #reach() {
       try {
-        const { status } = await fetch(new URL("liveness", location.href), {
+        const { status } = await fetch(new URL("readiness", location.href), {
           cache: "no-store",
           signal: AbortSignal.timeout(2 * PING_TIMEOUT),
         });
-        // A server without health checks answers 404, which will do; a proxy whose server is down answers 502.
+        // A server with too many pages answers 503, and a proxy whose server is down 502. A server without health checks
+        // answers 404, which will do.
         return status < 500;
       } catch {
         return false;

@@ -14,6 +14,7 @@ import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future
+from functools import partial
 from itertools import count
 from queue import SimpleQueue
 from typing import TypeVar
@@ -71,19 +72,29 @@ class Queue:
     def submit(self, work: Callable[..., Result], *arguments: object, owner: object = None) -> Future[Result]:
         """Call `work` as soon as a thread is free; the future has what it returns or raises.
 
-        Work without an `owner` counts to nobody's share.
+        Work without an `owner` counts to nobody's share. If the future is cancelled before the work has begun, the work
+        is not done, and nothing keeps it or its arguments any longer.
         """
         future: Future[Result] = Future()
         shared = self.share is not None and owner is not None
+        piece = [partial(work, *arguments)]
 
         def do() -> None:
             try:
-                future.set_result(work(*arguments))
+                if future.set_running_or_notify_cancel():
+                    future.set_result(piece.pop()())
             except BaseException as error:
                 future.set_exception(error)
             finally:
                 if shared:
                     self._ended(owner)
+
+        def forget(ended: Future[Result]) -> None:
+            if ended.cancelled():
+                piece.clear()
+                self._let_go(owner, do)
+
+        future.add_done_callback(forget)
 
         with self._lock:
             if shared and self._taken[owner] == self.share:
@@ -102,6 +113,15 @@ class Queue:
             self._begin()
         else:
             self.waiting += 1
+
+    def _let_go(self, owner: object, do: Callable[[], None]) -> None:
+        """Work that was cancelled no longer waits for its owner's share; if it waits for a thread, it does nothing."""
+        with self._lock:
+            held = self._held.get(owner)
+            if held is not None and do in held:
+                held.remove(do)
+                if not held:
+                    del self._held[owner]
 
     def _ended(self, owner: object) -> None:
         """Work of this owner has ended: its next work joins the queue."""
@@ -154,8 +174,9 @@ VISITORS = Queue("visitors", 1000)
 PICTURES = Queue("pictures", 200)
 #: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
 ANALYSES = Queue("analyses", 8, low_priority=True)
-#: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody.
-FILES = Queue("files", 2)
+#: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody. One visitor's
+#: files are read one by one, so that they cannot take both threads.
+FILES = Queue("files", 2, share=1)
 #: Loading kernels before a visitor asks.
 LOADING = Queue("loading", 1)
 #: One thread for each visitor whose resonance curve is awaited. A map waits for a curve that is under way; in one queue

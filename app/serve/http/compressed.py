@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import functools
 import gzip
+import re
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,18 @@ def compressed(path: str, modified: int, size: int) -> bytes | None:
     return packed if len(packed) < len(whole) else None
 
 
+def accepts_gzip(wanted: str) -> bool:
+    """Whether the header `Accept-Encoding` names gzip with another weight than 0 (RFC 9110, section 12.5.3).
+
+    `*` alone is not taken for gzip: a client that names nothing gets the file as it is.
+    """
+    for one in wanted.lower().split(","):
+        coding, _, weight = one.replace(" ", "").partition(";")
+        if coding == "gzip":
+            return re.fullmatch(r"q=0(\.0*)?", weight) is None
+    return False
+
+
 class CompressedFiles(StaticFileHandler):
     """Mixed into a handler of files: compresses a file for a browser that accepts that and asks for all of it."""
 
@@ -47,7 +60,7 @@ class CompressedFiles(StaticFileHandler):
 
     def _packed(self) -> bytes | None:
         wanted = self.request.headers.get("Accept-Encoding", "")
-        if "gzip" not in wanted or "Range" in self.request.headers or self.absolute_path is None:
+        if not accepts_gzip(wanted) or "Range" in self.request.headers or self.absolute_path is None:
             return None
         found = Path(self.absolute_path).stat()
         return compressed(self.absolute_path, found.st_mtime_ns, found.st_size)

@@ -9,19 +9,20 @@ from __future__ import annotations
 
 import json
 import logging
+import random
+import re
 import secrets
 import time
 from collections.abc import Awaitable
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
-from typing import Any
+from typing import Any, NoReturn
 from urllib.parse import urlsplit
 
-from bokeh.protocol.exceptions import ProtocolError
-from bokeh.server.server import Server
 from bokeh.server.tornado import BokehTornado
 from bokeh.util.token import check_token_signature, get_session_id
+from tornado.iostream import IOStream, StreamClosedError
 from tornado.web import Application, HTTPError, RequestHandler, StaticFileHandler
 from tornado.websocket import WebSocketHandler
 
@@ -30,8 +31,10 @@ from ..document.leaving import leave
 from ..document.part_messages import dispatch
 from ..monitoring.metrics import METRICS, Liveness, MetricsHandler
 from .compressed import CompressedFiles
+from .frames import FrameBucket
 from .limits import USUAL_VISITORS
 from .message_rules import LARGEST_HEADER, RefusedMessage, checked_content
+from .sessions import Sessions
 
 log = logging.getLogger("granchain.requests")
 
@@ -46,36 +49,30 @@ NEEDED = (
            "a server with as many visitors as it may have also refuses to sign visitors in or out"),
 )
 
-#: Websocket frames that a visitor may send, over a long time [1/s]: the rate at which the token bucket of a connection
-#: is filled. A drag sends 60 messages a second, and a message is three frames.
-FRAME_RATE = 600.0
-#: Frames that a visitor may send at once: what the bucket holds.
-FRAME_BURST = 3000.0
+#: Addresses of Bokeh's that our page does not use; the first would make a session. The dot is any letter in Bokeh's
+#: pattern, too.
+_UNUSED_ADDRESSES = re.compile(r"/(autoload.js|metadata)/?")
 #: The name of the setting that has an application's `Rules`.
 _SETTING = "granchain_rules"
+#: After how long a page that was refused because there are too many tries again, at least and at most [s].
+_TRY_AGAIN = (20, 60)
 #: Whether the request that is being answered has passed a guard. A page is made in the context of its request.
 _IS_GUARDED: ContextVar[bool] = ContextVar("is_guarded", default=False)
-#: Time in which a session's id is remembered, longer than Bokeh's tokens live [s].
-_SESSIONS_REMEMBERED = 600.0
 
 
-@dataclass
+@dataclass(frozen=True)
 class Rules:
-    """What is allowed: hosts (all if empty), most visitors at once, and the origins whose pages may embed this one."""
+    """What is allowed: hosts (all if empty), sessions, and the origins whose pages may embed this one."""
 
     hosts: frozenset[str] = frozenset()
-    most_visitors: int = USUAL_VISITORS
+    sessions: Sessions = field(default_factory=lambda: Sessions(USUAL_VISITORS))
     embedding: tuple[str, ...] = ()
     #: Signs sessions.
     secret: bytes = b""
     #: Origins that Bokeh's own option refuses: those at addresses of IPv6.
     origins: frozenset[str] = frozenset()
-    #: The server that is guarded, when it is there.
-    server: Server | None = None
     #: The class with a guard for each class of handlers.
     handlers: dict[type[RequestHandler], type[RequestHandler]] = field(default_factory=dict)
-    #: Ids of sessions that had their connection, and when [s].
-    connected: dict[str, float] = field(default_factory=dict)
 
     def headers(self) -> dict[str, str]:
         """The headers of every answer.
@@ -101,29 +98,6 @@ class Rules:
         """Whether requests for this host are answered; the names may have Bokeh's wildcards, such as *.example.org."""
         plain = host.lower().strip("[]")  # Tornado leaves the brackets of IPv6, which are a set of letters in a pattern
         return not self.hosts or any(fnmatchcase(plain, name) for name in self.hosts)
-
-    @property
-    def visitors(self) -> int:
-        """The pages that are open."""
-        assert self.server is not None  # requests come when the server is there
-        return len(self.server.get_sessions())
-
-    def session(self, session_id: str) -> Any:
-        """Bokeh's session with this id; None if there is none."""
-        assert self.server is not None
-        try:
-            return self.server.get_session("/", session_id)
-        except (ProtocolError, ValueError):
-            return None
-
-    def claim_connection(self, session: str) -> bool:
-        """Give the session its one connection; False if it had one before."""
-        now = time.monotonic()
-        for old in [session_id for session_id, at in self.connected.items() if at < now - _SESSIONS_REMEMBERED]:
-            del self.connected[old]
-        first = session not in self.connected
-        self.connected[session] = now
-        return first
 
 
 class Guard(RequestHandler):
@@ -155,9 +129,15 @@ class Guard(RequestHandler):
         if any(name in self.request.arguments for name in ("bokeh-session-id", "bokeh-token")) \
                 or "Bokeh-Session-Id" in self.request.headers:
             raise HTTPError(403, "a session id of the client's own")
-        if _opens_page(self) and self.rules.visitors >= self.rules.most_visitors:
-            METRICS.count("refused_visitors")
-            raise HTTPError(503, "there are %d visitors", self.rules.most_visitors)
+        if _UNUSED_ADDRESSES.fullmatch(self.request.path):
+            raise HTTPError(404)
+        if _opens_page(self) and not self.rules.sessions.make_room():
+            self.refuse_visitor()
+
+    def refuse_visitor(self) -> NoReturn:
+        """Refuse a request for which there is no place."""
+        METRICS.count("refused_visitors")
+        raise HTTPError(503, "there are %d visitors", self.rules.sessions.most)
 
     def write_error(self, status_code: int, **_: Any) -> None:
         """Answer with a line for the visitor; the log has the details under the same id."""
@@ -165,7 +145,16 @@ class Guard(RequestHandler):
         sentences = {404: "There is no such page.", 403: "This is not allowed.", 421: "This host is not served here.",
                      503: "This server has as many visitors as it can serve; please try again in a minute.",
                      500: "Something went wrong inside granchain."}
-        self.finish(f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n")
+        sentence = f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n"
+        if status_code == 503:
+            # Pages that wait do not all come back at once.
+            seconds = random.randint(*_TRY_AGAIN)
+            self.set_header("Retry-After", seconds)
+            if self.request.path == "/":
+                self.set_header("Content-Type", "text/html; charset=UTF-8")
+                sentence = (f'<!doctype html><html lang="en"><title>granchain</title><meta http-equiv="refresh" '
+                            f'content="{seconds}"><p>{sentence}<p>This page tries again by itself.\n')
+        self.finish(sentence)
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
         """Write the error to the log, with the request's id."""
@@ -178,15 +167,12 @@ class Guard(RequestHandler):
 
 
 class GuardedSocket(Guard):
-    """The guard of a websocket: one connection for a session, not too many messages, and only those that pages send.
+    """The guard of a websocket: one connection for a session, not too many frames, only messages of pages."""
 
-    The rate of frames is limited by a token bucket.
-    """
-
-    _tokens = FRAME_BURST
-    _refilled_at = 0.0
-    #: Frames of a message that is not whole yet: header, metadata and content come one by one.
-    _frames: tuple[str, ...] = ()
+    #: Whether the frames that come are counted.
+    _counted = False
+    #: Fragments of a message that is not whole yet, as Bokeh calls them: header, metadata and content.
+    _fragments: tuple[str, ...] = ()
     _refused = False
     _left = False
     _session_id = ""
@@ -205,8 +191,10 @@ class GuardedSocket(Guard):
             session = None
         if session is None:
             raise HTTPError(403, "no token of ours")
-        if not self.rules.claim_connection(session):
-            raise HTTPError(403, "a second connection to one session")
+        if not self.rules.sessions.has_place(session):
+            self.refuse_visitor()
+        if not self.rules.sessions.claim_connection(session):
+            raise HTTPError(403, "a second connection to one session, or a page that has lost its place")
         self._session_id = session
 
     def check_origin(self, origin: str) -> bool:
@@ -217,38 +205,53 @@ class GuardedSocket(Guard):
     @property
     def session(self) -> Any:
         """Bokeh's session of this connection; None before the handshake, and when Bokeh has dropped it."""
-        return self.rules.session(self._session_id) if self._session_id else None
+        return self.rules.sessions.find(self._session_id) if self._session_id else None
+
+    def detach(self) -> IOStream:
+        """The stream from which Tornado reads frames; they are counted, and too many close the connection."""
+        stream: IOStream = super().detach()
+        read, bucket = stream.read_bytes, FrameBucket(time.monotonic())
+
+        async def read_and_count(*words: Any, **named: Any) -> bytes:
+            data = await read(*words, **named)
+            self._counted = True
+            if not bucket.pay(data, time.monotonic()):
+                self._refuse("too many frames")
+                raise StreamClosedError
+            return data
+
+        stream.read_bytes = read_and_count  # type: ignore[method-assign]
+        return stream
 
     def on_message(self, fragment: str | bytes) -> Awaitable[None] | None:
-        """Pass whole messages on, unless there are too many or one is not of a page; that closes the connection."""
-        if self._refused:  # frames may still arrive after the connection was closed
+        """Pass whole messages on, unless one is not of a page; that closes the connection."""
+        if self._refused:  # fragments may still arrive after the connection was closed
             return None
-        now = time.monotonic()
-        self._tokens = min(FRAME_BURST, self._tokens + (now - self._refilled_at) * FRAME_RATE) - 1.0
-        self._refilled_at = now
         try:
-            if self._tokens < 0.0:
-                raise RefusedMessage("too many messages")
+            if not self._counted:
+                raise RefusedMessage("frames that were not counted")
             if not isinstance(fragment, str):
                 raise RefusedMessage("binary data")
-            self._frames = (*self._frames, fragment)
-            if len(self._frames) < 3:
+            self._fragments = (*self._fragments, fragment)
+            if len(self._fragments) < 3:
                 if len(fragment) > LARGEST_HEADER:
                     raise RefusedMessage("too long a header")
                 return None
-            frames, self._frames = self._frames, ()
-            content = checked_content(frames[0], frames[2])
+            fragments, self._fragments = self._fragments, ()
+            content = checked_content(fragments[0], fragments[2])
         except RefusedMessage as reason:
             self._refuse(str(reason))
             return None
-        return None if dispatch(self.session, content) else self._to_bokeh(frames)
+        return None if dispatch(self.session, content) else self._to_bokeh(fragments)
 
-    async def _to_bokeh(self, frames: tuple[str, ...]) -> None:
-        for frame in frames:
-            await super().on_message(frame)  # type: ignore[misc]
+    async def _to_bokeh(self, fragments: tuple[str, ...]) -> None:
+        for fragment in fragments:
+            await super().on_message(fragment)  # type: ignore[misc]
 
     def _refuse(self, reason: str) -> None:
-        self._refused, self._frames = True, ()
+        if self._refused:
+            return
+        self._refused, self._fragments = True, ()
         METRICS.count("refused_messages")
         log.warning("refused: %s", reason, extra={"request": self.request_id, "remote": self.request.remote_ip})
         self.close(1008, reason)  # type: ignore[attr-defined]
@@ -283,11 +286,23 @@ class GuardedSocket(Guard):
         return json.dumps({"text": f"The message could not be handled (request {self.request_id}).", "traceback": None})
 
 
+class Readiness(RequestHandler):
+    """`/readiness`: whether one more page can be opened."""
+
+    rules: Rules
+
+    def get(self) -> None:
+        """Answer `{"/readiness": true}`, or status 503."""
+        if self.rules.sessions.full:
+            raise HTTPError(503, "there are %d visitors", self.rules.sessions.most)
+        self.write({"/readiness": True})
+
+
 def _opens_page(handler: RequestHandler) -> bool:
     """Whether a request may open a page; without Bokeh's class of such handlers, of all that are not known not to."""
     if SessionHandler is not None:
         return isinstance(handler, SessionHandler)
-    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, Liveness, MetricsHandler))
+    return not isinstance(handler, (StaticFileHandler, WebSocketHandler, Liveness, MetricsHandler, Readiness))
 
 
 def guarded(handler: type[RequestHandler], rules: Rules) -> type[RequestHandler]:

@@ -25,7 +25,7 @@ LARGEST_PLAIN_CONTENT = 100_000
 #: Most characters of a header and of metadata, which BokehJS fills with an id and a kind.
 LARGEST_HEADER = 1000
 #: What a message with a file of the visitor says in `do`.
-UPLOAD = "csv"
+UPLOAD = "measurement"
 #: Deepest nesting of lists and dictionaries that is read; our page nests six.
 DEEPEST = 20
 
@@ -70,10 +70,14 @@ def _object(what: str, text: str) -> dict[str, Any]:
 
 
 def _is_upload(given: dict[str, Any]) -> bool:
+    """Whether this is one event of a part, with a file and its name and nothing else."""
     match given:
         case {"events": [{"kind": "MessageSent", "msg_data": {"values": {"entries": [
-                ["model", _], ["data", {"entries": [["do", do], ["name", str()], ["content", str()]]}]]}}}]}:
-            return bool(do == UPLOAD)
+                ["model", _], ["data", {"entries": [*entries]}]]}}}]}:
+            match entries:
+                case [[str(), str()], [str(), str()], [str(), str()]]:
+                    words = dict(entries)
+                    return words.keys() == {"do", "name", "content"} and bool(words["do"] == UPLOAD)
     return False
 
 

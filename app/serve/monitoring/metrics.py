@@ -11,6 +11,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Literal, NamedTuple
 
@@ -18,6 +19,9 @@ from tornado.web import HTTPError, RequestHandler
 
 #: Upper bounds of the histogram of answers [s].
 BUCKETS = (0.025, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 30.0)
+#: The name and the help text of this histogram.
+HISTOGRAM = "granchain_answer_seconds"
+HISTOGRAM_HELP = "From a moved knob to its first picture."
 #: Time between two measurements of the event loop's lag [s].
 _LAG_INTERVAL = 0.25
 #: Number of these measurements that are kept: those of ten seconds.
@@ -25,17 +29,27 @@ _LAGS_KEPT = 40
 #: The server is called busy when a knob's message, or the computation for it, waits longer than this [s].
 _BUSY_WAIT = 0.3
 
-#: What `Metrics.count` counts.
-Counter = Literal["pictures", "cancelled", "refused_visitors", "refused_pictures", "refused_messages", "errors"]
+#: What `Metrics.count` counts: the name of each counter, without `_total`, and its help text.
+COUNTERS = {
+    "pictures": "Pictures sent, steps of live runs included. Pictures that were replaced before they were sent are not "
+                "counted.",
+    "cancelled": "Computations of pictures that were cancelled.",
+    "refused_visitors": "Visitors refused because there were as many as `--most-visitors`.",
+    "refused_pictures": "Pictures refused because they would take too long.",
+    "refused_messages": "Messages that no page sends, and too many frames; each closed its connection.",
+    "errors": "Unexpected failures; each is in the log.",
+}
 
 
-class Gauge(NamedTuple):
-    """A number that is read when somebody asks: what it means, and how it is read.
+class Metric(NamedTuple):
+    """A metric as Prometheus has it; its name begins with `granchain_`, and that of a counter ends with `_total`.
 
-    With a `label`, `read` gives a number for each of its values.
+    `read` is called when somebody asks. With a `label` it gives a number for each of the label's values.
     """
 
-    meaning: str
+    name: str
+    kind: Literal["counter", "gauge"]
+    help: str
     read: Callable[[], float | Mapping[str, float]]
     label: str = ""
 
@@ -47,23 +61,19 @@ class Metrics:
         self._lock = threading.Lock()
         self.visitors = 0
         self.opened = 0
-        self.pictures = 0
-        self.cancelled = 0
-        self.refused_visitors = 0
-        self.refused_pictures = 0
-        self.refused_messages = 0
-        self.errors = 0
+        self.counted = dict.fromkeys(COUNTERS, 0)
         self.answers = [0] * (len(BUCKETS) + 1)
         self.answers_total = 0.0
         self._lags: deque[float] = deque(maxlen=_LAGS_KEPT)
-        self.gauges: dict[str, Gauge] = {}
+        #: Metrics of other modules, which the server adds.
+        self.added: tuple[Metric, ...] = ()
         #: How long computations wait before they can begin [s]; the server puts it there.
         self.turn_wait: Callable[[], float] = lambda: 0.0
 
-    def count(self, name: Counter) -> None:
-        """Add one to a counter."""
+    def count(self, name: str) -> None:
+        """Add one to a counter of `COUNTERS`."""
         with self._lock:
-            setattr(self, name, getattr(self, name) + 1)
+            self.counted[name] += 1
 
     def visitor_came(self) -> None:
         """A page was opened."""
@@ -104,45 +114,48 @@ class Metrics:
             await asyncio.sleep(_LAG_INTERVAL)
             self.lagged(max(0.0, time.monotonic() - due))
 
+    def table(self) -> list[Metric]:
+        """All metrics but the histogram."""
+        return [
+            Metric("visitors", "gauge", "Pages that are open.", lambda: self.visitors),
+            Metric("visits_total", "counter", "Pages opened.", lambda: self.opened),
+            *(Metric(f"{name}_total", "counter", text, partial(self.counted.__getitem__, name))
+              for name, text in COUNTERS.items()),
+            Metric("event_loop_lag_seconds", "gauge",
+                   f"Mean lag of the event loop in the last ten seconds; above {_BUSY_WAIT:g} the page says that the "
+                   "server is busy.", lambda: self.event_loop_lag),
+            Metric("turn_wait_seconds", "gauge",
+                   "Mean wait of a computation before it could begin in the last ten seconds; above "
+                   f"{_BUSY_WAIT:g} the page says that the server is busy.", self.turn_wait),
+            Metric("resident_memory_bytes", "gauge", "Resident memory.", resident_memory),
+            Metric("threads", "gauge", "Threads.", threading.active_count),
+            *self.added,
+        ]
+
     def text(self) -> str:
         """The counts in the text format of Prometheus, version 0.0.4."""
         lines: list[str] = []
-
-        def add(name: str, kind: str, meaning: str, value: float | Mapping[str, float], label: str = "") -> None:
-            lines.extend((f"# HELP granchain_{name} {meaning}", f"# TYPE granchain_{name} {kind}"))
+        for metric in self.table():
+            name = f"granchain_{metric.name}"
+            lines += [f"# HELP {name} {metric.help}", f"# TYPE {name} {metric.kind}"]
+            value = metric.read()
             if isinstance(value, Mapping):
-                lines.extend(f'granchain_{name}{{{label}="{key}"}} {one:g}' for key, one in value.items())
+                lines.extend(f'{name}{{{metric.label}="{key}"}} {_written(one)}' for key, one in value.items())
             else:
-                lines.append(f"granchain_{name} {value:g}")
-
-        add("visitors", "gauge", "Pages that are open.", self.visitors)
-        add("visits_total", "counter", "Pages opened.", self.opened)
-        add("pictures_total", "counter", "Pictures sent, steps of live runs included, those overtaken before not.",
-            self.pictures)
-        add("cancelled_total", "counter", "Computations of pictures that were cancelled.", self.cancelled)
-        add("refused_visitors_total", "counter", "Visitors refused because there were too many.", self.refused_visitors)
-        add("refused_pictures_total", "counter", "Pictures refused because they would take too long.",
-            self.refused_pictures)
-        add("refused_messages_total", "counter", "Messages that no page sends; each closed its connection.",
-            self.refused_messages)
-        add("errors_total", "counter", "Unexpected failures; each is in the log.", self.errors)
-        add("event_loop_lag_seconds", "gauge", "Mean lag of the event loop in the last ten seconds.",
-            self.event_loop_lag)
-        add("turn_wait_seconds", "gauge", "Mean wait of a computation before it could begin in the last ten seconds.",
-            self.turn_wait())
-        add("resident_memory_bytes", "gauge", "Resident memory.", resident_memory())
-        add("threads", "gauge", "Threads.", threading.active_count())
-        for name, gauge in sorted(self.gauges.items()):
-            add(name, "counter" if name.endswith("_total") else "gauge", gauge.meaning, gauge.read(), gauge.label)
-        lines += ["# HELP granchain_answer_seconds From a moved knob to its first picture.",
-                  "# TYPE granchain_answer_seconds histogram"]
+                lines.append(f"{name} {_written(value)}")
+        lines += [f"# HELP {HISTOGRAM} {HISTOGRAM_HELP}", f"# TYPE {HISTOGRAM} histogram"]
         total = 0
         for bound, count in zip((*BUCKETS, float("inf")), self.answers, strict=True):
             total += count
             upper = "+Inf" if bound == float("inf") else f"{bound:g}"
-            lines.append(f'granchain_answer_seconds_bucket{{le="{upper}"}} {total}')
-        lines += [f"granchain_answer_seconds_sum {self.answers_total:g}", f"granchain_answer_seconds_count {total}"]
+            lines.append(f'{HISTOGRAM}_bucket{{le="{upper}"}} {total}')
+        lines += [f"{HISTOGRAM}_sum {_written(self.answers_total)}", f"{HISTOGRAM}_count {total}"]
         return "\n".join(lines) + "\n"
+
+
+def _written(value: float) -> str:
+    """All digits of a number: a counter rounded to six would stand still and then jump."""
+    return str(int(value)) if value == int(value) else repr(float(value))
 
 
 METRICS = Metrics()

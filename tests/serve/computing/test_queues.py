@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import threading
+import weakref
 
 import pytest
 import waiting
@@ -62,6 +64,30 @@ def test_work_that_fails_gives_its_share_back() -> None:
     failed = queue.submit(int, "no number", owner="me")
     assert queue.submit(int, "7", owner="me").result(60) == 7
     assert isinstance(failed.exception(60), ValueError)
+
+
+@pytest.mark.parametrize("share", [None, 1])
+def test_cancelled_work_that_has_not_begun_is_not_done_and_not_kept(share: int | None) -> None:
+    """50 uploads that replace each other would otherwise stay in memory until a thread is free."""
+    class File:
+        """What the work would be done with."""
+
+    queue, go_on, done, owner = Queue("tested", 1, share=share), threading.Event(), list[object](), object()
+    first = queue.submit(go_on.wait, 120, owner=owner)
+    files = [File() for _ in range(50)]
+    kept = weakref.WeakSet(files)
+    futures = [queue.submit(done.append, one, owner=owner) for one in files]
+    del files
+    assert len(kept) == 50
+    assert all(one.cancel() for one in futures[:49])
+    gc.collect()
+    assert len(kept) == 1
+    assert share is None or queue.held == 1
+    go_on.set()
+    futures[49].result(60)
+    assert len(done) == 1 and first.result(60)
+    waiting.until(lambda: queue.busy_threads == 0)
+    assert not queue._taken and not queue._held and queue.waiting == 0
 
 
 def test_after_a_failure_that_cannot_be_reported_the_next_picture_comes() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import socket
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -68,6 +69,27 @@ def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_p
     assert words == (5006, "0.0.0.0") and access.secret == _SECRET and access.most_visitors == 9
     assert access.origins == ("a.example.org",) and dict(access.sign_in)["basic_auth"] == str(tmp_path / "users.json")
     assert len(dict(access.sign_in)["cookie_secret"]) == 64
+
+
+def test_the_secret_of_cookies_is_given_or_follows_from_that_of_the_sessions(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Otherwise each process signs with its own, and a visitor who comes to another one has to sign in again."""
+    asked: list[str] = []
+    monkeypatch.setattr(server, "serve", lambda *_, access, **named: asked.append(dict(access.sign_in)["cookie_secret"]))
+    (tmp_path / "users.json").write_text(json.dumps({"ada": "lovelace"}))
+    for name in "ab":
+        (tmp_path / name).write_bytes(_SECRET + name.encode())
+
+    def start(*words: str) -> str:
+        assert main(["serve", "--basic-auth", str(tmp_path / "users.json"), *words]) == 0
+        return asked[-1]
+
+    monkeypatch.delenv("PANEL_COOKIE_SECRET", raising=False)
+    monkeypatch.delenv("BOKEH_SECRET_KEY", raising=False)
+    first, again, other = (start("--secret-file", str(tmp_path / name)) for name in "aab")
+    assert first == again != other and (_SECRET + b"a").decode() not in first
+    assert start() != start(), "without a secret, that of the process alone"
+    monkeypatch.setenv("PANEL_COOKIE_SECRET", "given")
+    assert start("--secret-file", str(tmp_path / "a")) == "given"
 
 
 @pytest.mark.parametrize(("words", "sentence"), [

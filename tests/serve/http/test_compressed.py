@@ -74,6 +74,15 @@ def test_who_does_not_take_it_or_wants_a_part_gets_the_file_as_it_is(port: int) 
     assert status == 206 and content == SCRIPT[3:10] and "Content-Encoding" not in headers
 
 
+@pytest.mark.parametrize(("wanted", "accepted"), [
+    ("gzip", True), ("deflate, GZIP;q=0.5", True), ("gzip; q=1.0, *;q=0", True), ("gzip;q=0", False), ("br, gzip ; q=0.000", False),
+    ("gzip;q=0.001", True), ("*", False), ("", False), ("x-gzipped", False)])
+def test_gzip_with_the_weight_zero_is_not_accepted(wanted: str, accepted: bool, port: int) -> None:
+    _, headers, content = ask(port, "a.js", Accept_Encoding=wanted)
+    assert (headers.get("Content-Encoding") == "gzip") == accepted
+    assert (gzip.decompress(content) if accepted else content) == SCRIPT
+
+
 @pytest.mark.parametrize("name", ["small.js", "a.png", "random.js"])
 def test_what_would_not_be_smaller_stays_as_it_is(name: str, port: int, tmp_path: Path) -> None:
     _, headers, content = ask(port, name, Accept_Encoding="gzip")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import itertools
 import json
 from typing import Any
 
@@ -37,7 +38,11 @@ def changed(name: object, value: object) -> str:
 
 def uploaded(do: str, *more: list[str]) -> str:
     """A message of a part with a file of 200 kB."""
-    entries = [["do", do], ["name", "mine.csv"], ["content", "A" * 200_000], *more]
+    return of_a_part(["do", do], ["name", "mine.csv"], ["content", "A" * 200_000], *more)
+
+
+def of_a_part(*entries: list[Any]) -> str:
+    """A message of a part with these entries."""
     values = [["model", {"id": "p1"}], ["data", {"type": "map", "entries": entries}]]
     return content({"type": "event", "name": "data_event", "values": {"type": "map", "entries": values}})
 
@@ -85,7 +90,10 @@ def test_a_size_is_a_number(value: object) -> None:
 
 def test_only_an_upload_is_long() -> None:
     checked_content(HEADER, uploaded(UPLOAD))
-    for given in (uploaded("go"), uploaded(UPLOAD, ["more", "text"]), content("x" * 200_000), changed("tags", "x" * 200_000),
+    for order in itertools.permutations([["do", UPLOAD], ["name", "mine.csv"], ["content", "A" * 200_000]]):
+        checked_content(HEADER, of_a_part(*order))
+    for given in (uploaded("go"), of_a_part(["do", UPLOAD], ["do", UPLOAD], ["content", "A" * 200_000]), of_a_part(["do", UPLOAD], ["name", 5], ["content", "A" * 200_000]),
+                  uploaded(UPLOAD, ["more", "text"]), content("x" * 200_000), changed("tags", "x" * 200_000),
                   json.dumps({"events": [json.loads(uploaded(UPLOAD))["events"][0]] * 2})):
         with pytest.raises(RefusedMessage, match="too long a message"):
             checked_content(HEADER, given)
@@ -105,7 +113,7 @@ def test_messages_that_no_page_sends_are_refused(header: str, given: str, why: s
 
 
 class Socket:
-    """What a guarded websocket is mixed with here."""
+    """What a guarded websocket is mixed with here; its frames have been counted."""
 
     def __init__(self) -> None:
         self.taken: list[str] = []
@@ -126,7 +134,7 @@ class Socket:
 
 
 def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken() -> None:
-    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True})()
     good, bad = (HEADER, "{}", content(1)), (HEADER, "{}", content({"type": "bytes", "data": "AAAA"}))
 
     async def send() -> None:
@@ -140,14 +148,14 @@ def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken()
 
 @pytest.mark.parametrize("frames", [("x" * (LARGEST_HEADER + 1),), (HEADER, "x" * (LARGEST_HEADER + 1))])
 def test_a_long_header_closes_the_connection_before_the_content_comes(frames: tuple[str, ...]) -> None:
-    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True})()
     for frame in frames:
         one.on_message(frame)
     assert one.taken == [] and one.closed == 1008
 
 
 def test_a_connection_that_is_said_to_be_closed_twice_is_closed_once() -> None:
-    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True})()
     one.on_close()
     one.on_close()
     assert one.left == 1

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-import itertools
+import contextlib
 import json
 import logging
 import re
 import socket
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import pytest
+import waiting
 from bokeh.util.token import generate_jwt_token, generate_session_id
-from event_loop import run_async
 from listening import Listening
-from tornado.web import HTTPError
+from tornado.routing import ReversibleRuleRouter
+from tornado.web import HTTPError, RequestHandler
 
 from app import server
 from app.curve.sweep import CURVES_SHARED
@@ -24,10 +26,11 @@ from app.dashboard.main_picture import PICTURES_SHARED
 from app.pages.analysis import questions
 from app.serve.compiling.compiler import Compiler
 from app.serve.computing.queues import LONG
-from app.serve.http import guard
+from app.serve.http import frames, guard
+from app.serve.http.frames import FRAME_BURST, FRAME_RATE, FRAME_UNIT
 from app.serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from app.serve.http.message_rules import LARGEST_PLAIN_CONTENT
-from app.serve.monitoring.metrics import MetricsHandler
+from app.serve.monitoring.metrics import METRICS, MetricsHandler
 from app.server import Access
 from app.session import starts
 from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
@@ -53,8 +56,9 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
         "a websocket that does not answer pings": f"{server.PING_INTERVAL} to {2 * server.PING_INTERVAL} s",
         "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {LARGEST_UPLOAD / 1e6:g} MB in base64; "
                                f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
-        "websocket frames": f"{guard.FRAME_RATE:g} a second, {guard.FRAME_BURST:g} at once; then the connection is closed "
-                            "(1008)",
+        "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; one counts once more for every {FRAME_UNIT // 1000} kB "
+                            "of it; beyond that the connection is closed (1008)",
+        "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the pages at once",
         "a link": f"{LONGEST} characters",
         "pages at once": f"{Access().most_visitors}",
         "long computations of a visitor at once": f"{LONG.share} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
@@ -193,11 +197,86 @@ def test_a_page_that_is_only_fetched_starts_no_compiler(dashboard: Listening, mo
 
 
 def test_there_are_at_most_so_many_visitors() -> None:
+    one, before = Listening(Access(secret=SECRET, most_visitors=2)), METRICS.opened
+    try:
+        there = [one.open(one.token()) for _ in range(2)]
+        assert [status for status, _ in there] == [101, 101] and one.ask()[0] == 503
+        _, headers, text = one.ask()
+        seconds = int(headers["Retry-After"])
+        assert "try again in a minute" in text and 20 <= seconds <= 60
+        assert headers["Content-Type"].startswith("text/html") and f'http-equiv="refresh" content="{seconds}"' in text
+        assert one.ask("/liveness")[0] == 200 and one.ask("/readiness")[0] == 503
+        for _, each in there:
+            each.close()
+        waiting.until(lambda: one.ask("/readiness")[0] == 200)
+        assert METRICS.opened == before + 2, "neither address makes a page"
+    finally:
+        one.stop()
+
+
+def test_pages_that_are_fetched_and_never_connect_leave_half_of_the_places(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One client that fetches the page again and again: the oldest page that is still loading makes room."""
+    monkeypatch.setattr(server, "SESSION_CHECK_MS", 20)
+    one = Listening(Access(secret=SECRET, most_visitors=8))
+    try:
+        there = [one.open(one.token()) for _ in range(3)]
+        first = one.token()
+        for _ in range(12):
+            assert one.ask()[0] == 200
+            time.sleep(0.1)  # until Bokeh has dropped the page that lost its place
+        token = one.token()
+        assert one.connect(first) in (403, 503), "it has lost its place"
+        assert one.connect(token) == 101
+        assert [status for status, _ in there] == [101] * 3
+        for _, each in there:
+            each.close()
+    finally:
+        one.stop()
+
+
+@pytest.mark.parametrize("path", ["/autoload.js", "/autoload.js?bokeh-autoload-element=a", "/autoload-js", "/metadata", "/metadata/"])
+def test_no_other_address_makes_a_session(path: str, dashboard: Listening) -> None:
+    """Bokeh's script for pages that embed it, which ours does not use, would make one for each request."""
+    before = METRICS.opened
+    assert dashboard.ask(path)[0] == 404
+    assert METRICS.opened == before
+
+
+def test_a_token_of_a_page_that_was_dropped_needs_a_free_place(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Bokeh makes its session anew. Otherwise tokens that are collected for five minutes would be as many pages."""
+    monkeypatch.setattr(server, "SESSION_CHECK_MS", 20)
+    monkeypatch.setattr(server, "UNCONNECTED_MS", 100)
     one = Listening(Access(secret=SECRET, most_visitors=2))
     try:
-        assert [one.ask()[0] for _ in range(3)] == [200, 200, 503]
-        assert "try again in a minute" in one.ask()[2]
-        assert one.ask("/liveness")[0] == 200
+        tokens = []
+        for _ in range(4):
+            tokens.append(one.token())
+            time.sleep(0.5)  # until it is dropped
+        there = [one.open(token) for token in tokens]
+        assert [status for status, _ in there] == [101, 101, 503, 503]
+        for _, each in there:
+            each.close()
+    finally:
+        one.stop()
+
+
+def test_every_handler_is_guarded_also_one_that_is_added_later() -> None:
+    class Late(RequestHandler):
+        """Added to a server that runs."""
+
+        def get(self) -> None:
+            """Answer."""
+            self.write("late")
+
+    one = Listening(Access(secret=SECRET))
+    try:
+        for router in (one.server._tornado.default_router, one.server._tornado.wildcard_router):
+            for rule in router.rules:
+                assert isinstance(rule.target, ReversibleRuleRouter) or issubclass(rule.target, RequestHandler), rule
+        one.server._tornado.add_handlers(".*", [("/late", Late)])
+        status, headers, text = one.ask("/late")
+        assert (status, text) == (200, "late") and "X-Request-Id" in headers
+        assert one.ask("/late", Host="evil.example.org")[0] == 421
     finally:
         one.stop()
 
@@ -247,38 +326,75 @@ def test_too_large_a_body_is_refused(dashboard: Listening) -> None:
         assert answer == b"" or b" 4" in answer.split(b"\r\n")[0]
 
 
-class Socket:
-    """What a guarded websocket is mixed with here."""
-
-    def __init__(self) -> None:
-        self.taken, self.closed = 0, 0
-        self.request = type("Request", (), {"remote_ip": "127.0.0.1"})
-
-    async def on_message(self, fragment: str) -> None:
-        """One more."""
-        self.taken += 1
-
-    def close(self, code: int, reason: str) -> None:
-        """Closed with a reason."""
-        self.closed = code
+def masked(opcode: int, payload: bytes = b"", final: bool = True) -> bytes:
+    """A frame as a browser sends it (RFC 6455, section 5.2), with a mask of zeros."""
+    length = bytes([0x80 | len(payload)]) if len(payload) < 126 else bytes([0x80 | 127]) + len(payload).to_bytes(8)
+    return bytes([opcode | 0x80 * final]) + length + bytes(4) + payload
 
 
-def test_a_flood_of_messages_closes_the_connection(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A thousand a second by the guard's clock, however fast this machine sends them."""
-    clock = iter(0.001 * number for number in itertools.count())
-    monkeypatch.setattr(guard, "time", SimpleNamespace(monotonic=lambda: next(clock)))
-    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__})()
+TEXT, CONTINUED, PING, PONG = 1, 0, 9, 10
+BOKEH_MESSAGE = masked(TEXT, b'{"msgid": "1", "msgtype": "PULL-DOC-REQ"}') + masked(TEXT, b"{}") * 2
+#: Floods of frames, the first bytes of each and what is repeated.
+FLOODS = {
+    "messages": (b"", BOKEH_MESSAGE), "pings": (b"", masked(PING, b"hello")), "pongs": (b"", masked(PONG)),
+    "empty pieces of one message": (masked(TEXT, final=False), masked(CONTINUED, final=False)),
+    "frames without a mask": (b"", b"\x89\x00"), "large pieces": (masked(TEXT, final=False), masked(CONTINUED, b"x" * 70_000, final=False)),
+}
 
-    async def flood() -> None:
-        for frame in itertools.cycle(('{"msgid": "1", "msgtype": "PULL-DOC-REQ"}', "{}", "{}")):
-            if one.closed:
-                break
-            if (passed := one.on_message(frame)) is not None:
-                await passed
 
-    run_async(flood())
-    # what is left of every message after a millisecond's allowance empties the store
-    assert one.closed == 1008 and one.taken == pytest.approx(guard.FRAME_BURST / (1.0 - 1e-3 * guard.FRAME_RATE), rel=1e-3)
+@pytest.mark.parametrize("kind", FLOODS)
+def test_a_flood_of_frames_closes_the_connection(kind: str, dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Over a raw socket, since Tornado hands over whole messages only. The bucket gets no refill here."""
+    monkeypatch.setattr(frames, "FRAME_RATE", 0.0)
+    monkeypatch.setattr(frames, "FRAME_BURST", 60.0)
+    refused = METRICS.counted["refused_messages"]
+    status, flooding = dashboard.open(dashboard.token())
+    assert status == 101
+    first, repeated = FLOODS[kind]
+    with flooding, contextlib.suppress(ConnectionError):
+        flooding.sendall(first)
+        for _ in range(1000):
+            flooding.sendall(repeated)
+        while flooding.recv(1_000_000):
+            pass
+    waiting.until(lambda: METRICS.counted["refused_messages"] == refused + 1, 20)
+
+
+@pytest.mark.parametrize("kind", ["pings", "pongs", "empty pieces of one message", "frames without a mask"])
+def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One more closes the connection with the code of a refusal."""
+    first, repeated = FLOODS[kind]
+    monkeypatch.setattr(frames, "FRAME_RATE", 0.0)
+    monkeypatch.setattr(frames, "FRAME_BURST", 200.5)
+    status, sending = dashboard.open(dashboard.token())
+    assert status == 101
+    with sending:
+        sending.sendall(first + repeated * (200 - bool(first)))
+        assert not closed_with(sending, 2.0), "it was closed too soon"
+        sending.sendall(repeated)
+        assert closed_with(sending, 30.0) == 1008
+
+
+def closed_with(sent: socket.socket, patience: float) -> int:
+    """The code in the closing frame that comes within so many seconds; 0 if none does."""
+    sent.settimeout(patience)
+    came = b""
+    with contextlib.suppress(TimeoutError, ConnectionError):
+        while more := sent.recv(1_000_000):
+            came += more
+    at = came.rfind(b"too many frames")
+    return int.from_bytes(came[at - 2:at]) if at > 0 else 0
+
+
+def test_a_server_whose_frames_cannot_be_counted_takes_no_messages(monkeypatch: pytest.MonkeyPatch, dashboard: Listening) -> None:
+    """As if Tornado read frames in another way."""
+    monkeypatch.delattr(guard.GuardedSocket, "detach")
+    refused = METRICS.counted["refused_messages"]
+    status, sending = dashboard.open(dashboard.token())
+    assert status == 101
+    with sending, contextlib.suppress(ConnectionError):
+        sending.sendall(BOKEH_MESSAGE)
+        waiting.until(lambda: METRICS.counted["refused_messages"] == refused + 1, 20)
 
 
 def test_with_basic_auth_a_page_asks_who_it_is(tmp_path: Any) -> None:

@@ -1,0 +1,36 @@
+"""docs/deployment.md, docs/nginx.conf and the Dockerfile name the same processes, limits and ports."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+from documents import ROOT
+
+pytestmark = pytest.mark.quick
+
+TEXT = (ROOT / "docs" / "deployment.md").read_text(encoding="utf-8")
+NGINX = (ROOT / "docs" / "nginx.conf").read_text(encoding="utf-8")
+DOCKER = (ROOT / "Dockerfile").read_text(encoding="utf-8")
+
+
+def test_every_example_has_the_same_processes() -> None:
+    """nginx sends visitors to a process that is not there, and only then to another one."""
+    ports = re.findall(r"^    server 127\.0\.0\.1:(\d+);", NGINX, re.MULTILINE)
+    (loop,) = re.findall(r"for port in ([\d ]+); do", TEXT)
+    (first, last), = re.findall(r"granchain@\{(\d+)\.\.(\d+)\}", TEXT)
+    (targets,) = re.findall(r"targets: \[(.+)\]", TEXT)
+    assert ports == loop.split() == [str(one) for one in range(int(first), int(last) + 1)] == re.findall(r":(\d+)\"", targets)
+
+
+def test_the_page_below_a_path_has_the_limits_of_the_other() -> None:
+    limits = set(re.findall(r"limit_req zone.+;|error_page.+?;", NGINX))
+    (locations,) = re.findall(r"```nginx\n(.+?)```", TEXT, re.DOTALL)
+    assert len(limits) == 2 and limits == set(re.findall(r"limit_req zone.+;|error_page.+?;", locations))
+
+
+def test_the_health_check_of_the_container_asks_at_its_port() -> None:
+    entry = DOCKER.partition("\nENTRYPOINT")[2]
+    (port,) = re.findall(r'"--port", "(\d+)"', entry)
+    assert re.findall(r"127\.0\.0\.1:(\d+)/liveness", DOCKER) == re.findall(r"^EXPOSE (\d+)", DOCKER, re.MULTILINE) == [port]
+    assert f"port is always {port}" in " ".join(TEXT.split())
