@@ -1,8 +1,8 @@
 """Limits of the number of visitors and of uploads, which several modules need.
 
-The other limits of docs/security.md are beside what they limit: guard.py, message_rules.py, app/server.py,
-app/session/share.py and app/session/budget.py. The module imports nothing, because the command line reads it before it
-loads the server.
+The other limits of docs/security.md are beside what they limit: frames.py, sessions.py, message_rules.py,
+app/server.py, app/session/share.py and app/session/budget.py. The module imports nothing, because the command line
+reads it before it loads the server.
 """
 
 #: Pages open at once, by default.
