@@ -6,21 +6,10 @@ import functools
 from collections.abc import Callable
 from typing import ParamSpec, TypeVar
 
-from ..kernels.compiling.jit import brief_kernel
-from ..kernels.simd.subnormals import flush_subnormals, restore_subnormals
+from ..kernels.simd.subnormals import begin_flushing, end_flushing
 
 P = ParamSpec("P")
 R = TypeVar("R")
-
-
-@brief_kernel
-def _flush():  # type: ignore[no-untyped-def]
-    return flush_subnormals()  # type: ignore[call-arg]
-
-
-@brief_kernel
-def _restore(before):  # type: ignore[no-untyped-def]
-    restore_subnormals(before)  # type: ignore[call-arg]
 
 
 def flushed(function: Callable[P, R]) -> Callable[P, R]:
@@ -31,10 +20,10 @@ def flushed(function: Callable[P, R]) -> Callable[P, R]:
 
     @functools.wraps(function)
     def inner(*words: P.args, **names: P.kwargs) -> R:
-        before = _flush()
+        before = begin_flushing()
         try:
             return function(*words, **names)
         finally:
-            _restore(before)
+            end_flushing(before)
 
     return inner

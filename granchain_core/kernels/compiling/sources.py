@@ -23,7 +23,7 @@ _KEEPERS = tuple(f"compiling/{name}.py" for name in ("cache", "cache_folder", "c
 #: Settings of Numba (environment variables with NUMBA_ before them) that change machine code and are not among the
 #: names of its own cache: optimisation level, bounds checks, debug information, vectorisers, AVX.
 _SETTINGS = ("OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX")
-#: The folder that all kernels of this package are in.
+#: The folder of the kernels. One outside it (hard_cases/touches.py) is kept under its own module's code too (cache.py).
 FOLDER = Path(__file__).parents[1]
 
 

@@ -11,6 +11,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from ..batch_size import is_x86
+from ..compiling.jit import brief_kernel
 
 #: Bits of MXCSR, the control register of x86: flush results to zero (FTZ, 0x8000), take arguments for zero (DAZ, 0x40).
 _FLUSH = 0x8040
@@ -52,3 +53,15 @@ def restore_subnormals(typingctx, before):
         return context.get_dummy_value()
 
     return types.void(types.int32), codegen
+
+
+@brief_kernel
+def begin_flushing():
+    """`flush_subnormals` for Python: in the thread that calls it."""
+    return flush_subnormals()
+
+
+@brief_kernel
+def end_flushing(before):
+    """`restore_subnormals` for Python."""
+    restore_subnormals(before)
