@@ -28,8 +28,8 @@ from .serve.http.guard import Rules, guard_setting, is_guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.monitoring import logs
 from .serve.monitoring.metrics import METRICS, Gauge, Liveness, MetricsHandler
-from .serve.opening.bokeh_defaults import remember_defaults
-from .serve.opening.panel_resources import remember_resources
+from .serve.monkeypatches.bokeh_defaults import install_defaults_cache
+from .serve.monkeypatches.panel_resources import install_resources_cache
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
@@ -96,8 +96,8 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     settings.perform_document_validation.set_value(False)  # takes 40 ms of every opening, and tests find what it would
     if hasattr(settings, "perform_error_diagnostics"):  # since 3.9: Panel asks for a missing name at every change
         settings.perform_error_diagnostics.set_value(False)
-    remember_defaults()
-    remember_resources()
+    install_defaults_cache()
+    install_resources_cache()
     sys.setswitchinterval(SWITCH_INTERVAL)
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
     gc.enable()

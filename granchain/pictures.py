@@ -23,7 +23,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
         What a function of granchain returned, a list of curves or of branches, or a result of
         `granchain_core.paper.compute`.
     theme : str
-        "light", "dark" or "projector".
+        Name of a theme, "light" by default; `granchain figure --help` lists them.
     width, height : int, optional
         Size of the figure [px]; by default one that suits a notebook's cell.
     **options

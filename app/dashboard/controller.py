@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bokeh.document import Document
 
 from granchain_core import BadInput, CurvePoint, Scene, Settled, State
+from granchain_core.experiment import Difference, Measured
 
 from ..curve.controller import CurveController
 from ..plots.theme import Theme
@@ -21,15 +22,18 @@ from ..session.page import Actions, Page, all_actions
 from ..session.session import Session
 from .calls import Calls
 from .display_choices import DisplayChoices
+from .exports import Exports
 from .gallery import cards
 from .layout import Views
-from .links_and_files import LinksAndFiles
 from .main_picture import MainPicture
 from .pinned import Pinned
 from .playback import Playback
 from .scene_changes import SceneChanges
 from .sentences import Sentences
 from .table import CURVE_NAME, PAGES, overlay_names
+
+if TYPE_CHECKING:
+    from granchain_core.fit.overlay import Overlay
 
 
 class Controller:
@@ -57,9 +61,10 @@ class Controller:
         self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
         self.curves = CurveController(self, views.curve, views.curve_bar, self._curve_placed)
         self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self.pictures.redraw)
-        self.files = LinksAndFiles(self, views, self.curves, self.pictures)
+        self.exports = Exports(self, views, self.curves, self.pictures)
         self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
+        self.curves.on_compared(self._curve_compared)
         self._scenes = SceneChanges(session, views, self.pictures, self.curves, self.pinned, self.pages,
                                     self.show_message, self.next_tick)
         self._looked_at: dict[str, Page | CurveController] = {
@@ -76,7 +81,7 @@ class Controller:
         }
         playback = Playback(session, views.header, self.pictures, self._compute, self.show_message)
         self.owners: dict[str, Actions] = {
-            "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
+            "the dashboard": own, "playback": playback.actions, "links and exports": self.exports.actions,
             "display choices": self.choices.actions, "pins": self.pinned.actions,
             **{f"page `{row.name}`": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
         }
@@ -170,6 +175,14 @@ class Controller:
         """See `Host`."""
         return self.curves.complete(self.session.scene).get("rest", [])
 
+    def show_measured_curve(self, measured: Measured | None) -> Difference | None:
+        """See `Host`."""
+        return self.curves.measured(measured)
+
+    def show_measured_series(self, found: Overlay | None) -> None:
+        """See `Host`."""
+        self.views.trains.measured(found)
+
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `Host`."""
         self._scenes.show(scene, state, mode)
@@ -195,7 +208,6 @@ class Controller:
         """A settled picture is ready: inform all that show something of it, the pages once it is offered."""
         self.views.header.show_picture_start(settled.start, self.session)
         self.pinned.picture_ready(settled)
-        self.files.picture_ready(settled)
         self._scenes.picture_ready(settled)
 
     def _curve_placed(self) -> None:
@@ -203,6 +215,10 @@ class Controller:
         if self.complete_curve():
             for page in self.pages:
                 page.curve_ready()
+
+    def _curve_compared(self, difference: Difference | None) -> None:
+        for page in self.pages:
+            page.curve_compared(difference)
 
     def _theme_changed(self, theme: Theme) -> None:
         for page in self.pages:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -29,8 +28,8 @@ from ..plots.energies import ENERGY_COLOURS
 from ..plots.theme import Theme, style_sheet
 from ..scripts import INLINE_SCRIPTS, modules
 from ..serve.http.limits import LARGEST_UPLOAD
+from ..session.page_constants import page_constants
 from ..session.session import Session
-from ..session.terms import definitions
 from .scales import PictureScales
 from .table import GROUPS, PAGES, described_tabs, watched_pages
 from .tabs import Tabs
@@ -95,7 +94,7 @@ def _page() -> tuple[str, dict[str, Any]]:
     return (_HERE / "dashboard.html").read_text(encoding="utf-8"), {
         "dashboard_css": style_sheet() + text("dashboard.css") + text("skeleton.css"),
         "inline_scripts": "".join(map(text, INLINE_SCRIPTS)),
-        "terms": json.dumps(definitions()).replace("<", "\\u003c"),
+        "page_constants": page_constants(),
         "modules": modules(),
         "frame_top": TOP, "frame_bottom": BOTTOM, "frame_left": LEFT, "gap": GAP,
         "overlays": [(row.name, row.name.capitalize()) for row in PAGES if row.view],

@@ -12,9 +12,10 @@ from ..pages.analysis.page import AnalysisPage
 from ..pages.analysis.view import Analysis
 from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
+from ..pages.data.page import DataPage
 from ..pages.effects.page import EffectsPage
-from ..pages.hard_cases.page import HardCasesPage
-from ..pages.hard_cases.view import ABOUT, HardCases
+from ..pages.hard.page import HardCasesPage
+from ..pages.hard.view import ABOUT, HardCases
 from ..pages.map.page import MapPage
 from ..pages.numbers.page import NumbersPage
 from ..pages.observer.page import ObserverPage
@@ -90,7 +91,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", height="usual",
         group="learn"),
     PageSpec("numbers", NumbersPage, None, group=""),
-    TabSpec("data", "", height="taller"),
+    PageSpec("data", DataPage, None, group=""),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
 #: What the resonance curve, which is not a page, is called in the message `visible`.

@@ -2,6 +2,7 @@
 
 import { accuracyTab } from "../pages/accuracy/accuracy_tab.js";
 import { branchesTab } from "../pages/branches/branches_tab.js";
+import { dataTab, saveSample } from "../pages/data/data_tab.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/map_state.js";
 import { mapTab } from "../pages/map/map.js";
@@ -12,7 +13,6 @@ import { leaveStories, storiesTab } from "../pages/stories/stories_tab.js";
 import { probeTab } from "../pages/probe/probe_tab.js";
 import { stabilityTab } from "../pages/stability/stability_tab.js";
 import { button, element, openButton, paragraph, PHONE } from "../parts/toolkit/dom.js";
-import { dataTab, saveSample } from "./data_tab.js";
 import { lookAtTab, regimesTab } from "./scene_tabs.js";
 import { explainTerms } from "./terms.js";
 import { watchVisibility } from "./visibility.js";

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from granchain_core import CurvePoint, Scene, State
+from granchain_core.experiment import Difference, Measured
 
 from .activities import Activity
 from .session import Session
+
+if TYPE_CHECKING:
+    from granchain_core.fit.overlay import Overlay
 
 
 class Caller(Protocol):
@@ -65,6 +69,12 @@ class Host(WorkHost, Protocol):
 
     def complete_curve(self) -> list[CurvePoint]:
         """The resonance curve from rest of the present knobs, in order of frequency; empty unless it is complete."""
+
+    def show_measured_curve(self, measured: Measured | None) -> Difference | None:
+        """Draw a measured curve over the resonance curve, or none; return how they differ if the latter is complete."""
+
+    def show_measured_series(self, found: Overlay | None) -> None:
+        """Draw a measured series over the force trains, or none."""
 
     def activities(self) -> list[Activity]:
         """Everything that is computed for this visitor, or could be."""

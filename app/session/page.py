@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from granchain_core import Settled
+from granchain_core.experiment import Difference
 
 from ..plots.theme import Theme
 from .activities import Activity
@@ -46,6 +47,9 @@ class Page:
 
     def curve_ready(self) -> None:
         """The resonance curve from rest is complete: `Host.complete_curve` has it."""
+
+    def curve_compared(self, difference: Difference | None) -> None:
+        """A measured curve was compared with the complete curve from rest; with None, a new curve was begun."""
 
     def theme_changed(self, theme: Theme) -> None:
         """The page is shown in another theme; a view's own figures follow by themselves."""

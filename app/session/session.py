@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from granchain_core import BadInput, Scene, Settled, State, scene
+from granchain_core.experiment import Measured, Series
 
 from ..serve.computing.cpu_time import CpuTime
 from .message_checks import is_number, quoted
@@ -63,6 +64,8 @@ class Session:
     cpu_time: CpuTime = field(default_factory=CpuTime)
     #: The scene that is computed however long it takes, because the visitor has insisted.
     insisted: Scene | None = None
+    #: The visitor's own measurement, which is drawn over the plots and saved with a run.
+    measured: Measured | Series | None = None
     #: The pinned pictures.
     pins: tuple[Pin, ...] = ()
     #: The step of a story that is told, "NAME.STEP"; empty for none.

@@ -16,10 +16,10 @@ import numpy as np
 import pytest
 from headless_dashboard import Dashboard
 
-from app.dashboard import measurement
-from app.dashboard.measurement import SAMPLES, MeasurementActions
 from app.dashboard.show import show_settled
 from app.frames import samples_for
+from app.pages.data import page as module
+from app.pages.data.page import SAMPLES, DataPage
 from app.plots.measured import measured_columns
 from app.serve.computing.queues import LONG
 from granchain_core import CurvePoint, Scene, scene, settle, settling
@@ -32,6 +32,11 @@ from granchain_core.scene.state import rest
 from granchain_core.virtual_experiment import Sensors, virtual_series_csv
 
 FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
+
+
+def data_page(dashboard: Dashboard) -> DataPage:
+    """The page of the tab data."""
+    return next(page for page in dashboard.pages if isinstance(page, DataPage))
 
 
 def sent(content: bytes) -> dict[str, Any]:
@@ -184,9 +189,9 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     assert [len(one) for one in lines] == [1, 1]
     assert all(len(one[0].data_source.data["time"]) > 1000 for one in lines)
     preview = replace(dashboard.session.settled, final=False)  # of knobs that have moved
-    dashboard.files.picture_ready(preview)
+    data_page(dashboard).picture_ready(preview)
     assert dashboard.views.tabs.state["misfit"] is None
-    dashboard.files.picture_ready(dashboard.session.settled)
+    data_page(dashboard).picture_ready(dashboard.session.settled)
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
     dashboard.received({"do": "csv-remove"})
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
@@ -231,14 +236,14 @@ def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkey
         return original(*words, **named)
 
     for name in ("settling", "read_data"):
-        monkeypatch.setattr(measurement, name, partial(noting, name, getattr(measurement, name)))
+        monkeypatch.setattr(module, name, partial(noting, name, getattr(module, name)))
     show(dashboard)
     assert "virtual experiment" in after(dashboard, {"do": "csv-virtual"}, "understood")
     assert threads == {"settling": "long", "read_data": "files"}
 
 
 def test_a_virtual_experiment_that_does_not_settle_is_given_up(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(measurement, "WHOLE_PICTURE", -1.0)
+    monkeypatch.setattr(module, "WHOLE_PICTURE", -1.0)
     show(dashboard)
     assert after(dashboard, {"do": "csv-virtual"}, "understood").endswith("so the virtual experiment was not made.")
 
@@ -251,7 +256,7 @@ def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, 
         assert read.wait(20)
         return settling(*words, **named)
 
-    monkeypatch.setattr(measurement, "settling", slow)
+    monkeypatch.setattr(module, "settling", slow)
     dashboard.received({"do": "csv-virtual"})
     assert begun.wait(20)
     assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: ")
@@ -263,7 +268,7 @@ def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, 
 
 def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard: Dashboard) -> None:
     def kept() -> bool:
-        found = [one for one in gc.get_objects() if isinstance(one, MeasurementActions) and one._host is dashboard]
+        found = [one for one in gc.get_objects() if isinstance(one, DataPage) and one._host is dashboard]
         return any(isinstance(value, bytes) and len(value) > 0 for one in found for value in vars(one).values())
 
     assert after(dashboard, sent(FILE), "understood") and not kept()

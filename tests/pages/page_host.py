@@ -17,6 +17,8 @@ from app.session.page import Page
 from app.session.session import Session
 from app.session.task import Job
 from granchain_core import Scene, Settled, State, scene, settled
+from granchain_core.experiment import Difference, Measured
+from granchain_core.fit.overlay import Overlay
 
 
 @cache
@@ -45,6 +47,12 @@ class PageHost(FakeHost):
 
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         self.shown.append((scene, state, curves))
+
+    def show_measured_curve(self, measured: Measured | None) -> Difference | None:
+        return None
+
+    def show_measured_series(self, found: Overlay | None) -> None:
+        pass
 
     def address_changed(self) -> None:
         self.addresses += 1

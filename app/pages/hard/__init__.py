@@ -1,1 +1,1 @@
-"""The page of hard cases."""
+"""The hard cases, with their oracles."""

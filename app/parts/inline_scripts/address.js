@@ -2,8 +2,7 @@
 (() => {
   const { granchain } = window;
 
-  // What only the browser knows of an address; "look" is the theme.
-  const BROWSER_FIELDS = ["tab", "page", "look", "embed"];
+  const { browserFields: BROWSER_FIELDS } = window.pageConstants; // `BROWSER_FIELDS` of app/session/share.py
   const FOLLOW_AFTER = 400; // ms; a browser limits how many changes it takes a second
   const NEWEST = "granchain-newest";
 

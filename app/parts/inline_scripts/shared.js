@@ -4,7 +4,7 @@ window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); 
 
 window.granchain = (() => {
   const KEPT_AS = "granchain-look"; // the theme, in the browser from visit to visit
-  const THEMES = ["light", "dark", "projector"];
+  const { themes: THEMES, terms: TERMS } = window.pageConstants; // app/session/page_constants.py
 
   // The events: what has happened, and the detail, if there is one. There is also "page:NAME" for each page: it has
   // published something, which is the detail.
@@ -44,7 +44,7 @@ window.granchain = (() => {
       for (const listener of this.#of(name)) listener(detail);
     }
 
-    // The listeners of an event. A name that no event has is a mistake that nobody would notice otherwise.
+    // The listeners of an event. An unknown event name raises an error, since nobody would notice the mistake otherwise.
     #of(name) {
       if (!EVENTS.has(name) && !name.startsWith("page:")) throw new Error(`there is no event ${name}`);
       if (!this.#listeners.has(name)) this.#listeners.set(name, new Set());
@@ -78,7 +78,7 @@ window.granchain = (() => {
       return this.#chosen;
     }
 
-    /** Changes the theme and announces it as the event "theme"; a name that no theme has changes nothing. */
+    /** Changes the theme and announces it as the event "theme". An unknown theme is ignored. */
     set(name, keep) {
       if (!THEMES.includes(name)) return;
       document.documentElement.dataset.theme = name;
@@ -125,12 +125,11 @@ window.granchain = (() => {
     pages = new Map(); // what pages have published, by page
     embedded = new URLSearchParams(location.search).get("embed") === "1"; // the pictures alone, for a slide
     theme = new Theme(this);
+    terms = TERMS; // of the glossary, with their definitions
 
     // Below are the members that other scripts set; a comment names the script.
     // visibility.js: the names of what somebody looks at
     visible = new Set();
-    // dashboard.html: the glossary's terms with their definitions
-    terms = {};
     // address.js: the share link and where the visitor is; the browser's history
     address = null;
     steps = null;
@@ -168,7 +167,7 @@ window.granchain = (() => {
       return this.#overlay;
     }
 
-    /** Opens the page of this name over the pictures. A name that no such page has opens none. */
+    /** Opens the page of this name over the pictures. An unknown name closes the open page. */
     openPage(asked) {
       const sheets = [...document.querySelectorAll("[data-overlay]")];
       const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;

@@ -1,1 +1,1 @@
-"""Shortcuts through Bokeh and Panel with which a page opens and changes faster."""
+"""Monkeypatches of Bokeh and Panel for the whole process, and overrides of Panel's methods: a page opens faster."""

@@ -1,6 +1,7 @@
-"""What a part of the page leaves out of Panel's work: properties, design, busy indicator and changes, each a mixin.
+"""Overrides of Panel's private methods, which leave out what our parts do not need, each a mixin of `Component`.
 
-They override private methods of Panel; where a release has other ones, Panel's own way is taken.
+They concern properties, design, busy indicator and changes. Where a release has other methods, Panel's own way is
+taken.
 """
 
 from __future__ import annotations
