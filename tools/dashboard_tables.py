@@ -1,4 +1,4 @@
-"""Tables that follow from the code of the dashboard: its pages (docs/design.md) and its messages (docs/dashboard.md)."""
+"""Tables that follow from the dashboard's code: its pages (docs/design.md) and messages (docs/dashboard.md)."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ from bokeh.plotting import figure
 
 import granchain
 from app.plots.any_result import HEIGHT, WIDTH
+from app.plots.probe import FIGURES, probe_state
 from granchain import BadInput, scene
 from granchain_core.accuracy import Row
 from granchain_core.experiment import read_data
@@ -95,7 +96,21 @@ def test_a_measured_curve_is_drawn_over_a_computed_one_and_within_its_scale() ->
     assert labels(drawn)[1] == "largest output force (kN)"
 
 
+@pytest.mark.parametrize(("options", "bead"), [({}, 2), ({"bead": 1}, 1)], ids=["last", "chosen"])
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_motion_has_the_figures_of_the_page_probe(kind: str, options: dict[str, int], bead: int) -> None:
+    found = granchain.settle(CHAIN)
+    for result in (found, found.run):
+        drawn = granchain.figure(result, kind=kind, **options)
+        sources = {one.name: one.data for one in drawn.select({"type": ColumnDataSource})}
+        expected = {name: state["data"] for name, state in probe_state(found.run, bead)[kind].items() if "data" in state}
+        assert expected and {name: sources[name] for name in expected} == expected
+
+
 @pytest.mark.parametrize(("make", "words"), [
+    (lambda: granchain.figure(granchain.settle(CHAIN), kind="phaze"), "Unknown kind of picture 'phaze'; the nearest is 'phase'"),
+    (lambda: granchain.figure(granchain.settle(CHAIN), kind="phase", bead=3), "bead = 3 is outside 1 to 2"),
+    (lambda: granchain.figure(granchain.orbit(CHAIN), kind="phase"), "no picture of a kind 'phase' of a Orbit"),
     (lambda: granchain.figure(3.0), "There is no picture of a float; there are those of Run, Settled, Driven, Pulse, Curve"),
     (lambda: granchain.figure([]), "no picture of a list"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), "drak"), "Unknown theme 'drak'; the nearest is 'dark'"),
