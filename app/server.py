@@ -21,9 +21,9 @@ from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
 from .needed import check_releases
 from .serve.compiling.compiler import COMPILER
-from .serve.computing.queues import COMPUTING, QUEUES
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
+from .serve.computing.worker_pools import COMPUTING, POOLS
 from .serve.http.guard import Rules, guard_setting, is_guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.monitoring import logs
@@ -139,16 +139,16 @@ def _count_what_is_shared() -> None:
     METRICS.turn_wait = lambda: TURNS.wait
     METRICS.gauges.update(
         queue=Gauge("Work that waits: for a thread of any queue, for its owner's share, or for a turn.",
-                    lambda: TURNS.waiting + sum(queue.waiting + queue.held for queue in QUEUES)),
+                    lambda: TURNS.waiting + sum(pool.queued + pool.held for pool in POOLS)),
         computing=Gauge("Computations that have a turn, and work under way in the queues "
-                        f"{', '.join(queue.name for queue in COMPUTING)}.",
-                        lambda: TURNS.running + sum(queue.busy_threads for queue in COMPUTING)),
+                        f"{', '.join(pool.name for pool in COMPUTING)}.",
+                        lambda: TURNS.running + sum(pool.busy_threads for pool in COMPUTING)),
         turns_waiting=Gauge("Computations that wait for a turn; each also keeps a thread of its queue busy.",
                             lambda: TURNS.waiting),
         queue_waiting=Gauge("Work that waits for a thread of the queue or for its owner's share.",
-                            lambda: {queue.name: queue.waiting + queue.held for queue in QUEUES}, "queue"),
+                            lambda: {pool.name: pool.queued + pool.held for pool in POOLS}, "queue"),
         queue_busy=Gauge("Threads of the queue that have work, even if it waits for a turn or another queue.",
-                         lambda: {queue.name: queue.busy_threads for queue in QUEUES}, "queue"))
+                         lambda: {pool.name: pool.busy_threads for pool in POOLS}, "queue"))
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
     for name, cache in shared.items():
         METRICS.gauges.update({

@@ -30,7 +30,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
         A further figure of the result: of a run or a settled motion "displacement", "velocity", "forces", "phase",
         "spectrum" (those of one `bead`, the last by default) and "contacts", as on the page Probe.
     **options
-        Of some pictures: `elastic` and `measured` of a curve (a measurement that `read_experiment` of
+        Of some figures: `elastic` and `measured` of a curve (a measurement that `read_experiment` of
         granchain_core.experiment has read), `shown` ("force", "regime" or "both") and `curves` (what
         `bifurcation_curves` found) of a parameter map, `bead` of a bifurcation diagram, `asked` (an accuracy) of a
         work-precision diagram, `now` (a value of the knob) of a branch, `rank` of an orbit.
@@ -43,7 +43,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
     Raises
     ------
     BadInput
-        There is no picture of such a result, or no such theme, kind or option.
+        There is no figure of such a result, or no such theme, kind or option.
 
     Examples
     --------

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 class Controller:
-    """One visitor's dashboard, and the `Host` of its pages.
+    """One session's dashboard, and the `Host` of its pages.
 
     Everything runs with the document locked, except `next_tick` and the flags `busy`, `awaiting_picture` and
     `curve_computing`, which any thread may read.
@@ -148,7 +148,7 @@ class Controller:
         self.leave()
 
     def leave(self) -> None:
-        """The visitor left: everything that is computed for this page ends, and nothing is called any more."""
+        """The session has ended: everything that is computed for this page ends, and nothing is called any more."""
         self._calls.close()
 
     @property
@@ -205,7 +205,7 @@ class Controller:
     # What happens here
 
     def picture_ready(self, settled: Settled) -> None:
-        """A settled picture is ready: inform all that show something of it, the pages once it is offered."""
+        """A settled picture is ready: notify all that show something of it, the pages once it is offered."""
         self.views.header.show_picture_start(settled.start, self.session)
         self.pinned.picture_ready(settled)
         self._scenes.picture_ready(settled)

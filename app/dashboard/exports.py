@@ -13,12 +13,12 @@ from granchain_core.experiment import Measured, Series
 from granchain_core.store import save
 
 from ..curve.controller import CurveController
-from ..serve.computing.queues import FILES
+from ..serve.computing.worker_pools import FILES
 from ..session.export import EXPORTS, TEXTS, Screen
 from ..session.host import Host
 from ..session.message_checks import quoted
 from ..session.page import Actions
-from ..session.task import Job, Task, say_nothing
+from ..session.task import Job, Task, report_nothing
 from .layout import Views
 from .main_picture import MainPicture
 
@@ -35,7 +35,7 @@ class Exports:
         self._views = views
         self._curves = curves
         self._pictures = pictures
-        self._saving = Task(host, FILES, say_nothing, "Saving the picture", tell_host=True)
+        self._saving = Task(host, FILES, report_nothing, "Saving the picture", report_to_host=True)
         self.actions: Actions = {"share": self._share, "export": self._export}
 
     def _share(self, _: dict[str, Any]) -> None:

@@ -79,7 +79,7 @@ class Views:
             overlay.apply_theme(theme)
 
     def put_into(self, document: Document) -> None:
-        """Make all parts roots of a visitor's document; their layout is a CSS grid in dashboard.css."""
+        """Make all parts roots of a session's document; their layout is a CSS grid in dashboard.css."""
         parts = {
             "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
             "curvebar": self.curve_bar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
@@ -90,7 +90,7 @@ class Views:
 
 @cache
 def _page() -> tuple[str, dict[str, Any]]:
-    """The page's template and what stands in it, the same for every visitor."""
+    """The page's template and what stands in it, the same for every session."""
     return (_HERE / "dashboard.html").read_text(encoding="utf-8"), {
         "dashboard_css": style_sheet() + text("dashboard.css") + text("skeleton.css"),
         "inline_scripts": "".join(map(text, INLINE_SCRIPTS)),

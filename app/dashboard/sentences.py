@@ -67,7 +67,7 @@ class Sentences:
                                 insist=self._refused is not None)
 
     def _insist(self, _: dict[str, Any]) -> None:
-        """Compute what was refused because it takes long; the other visitors still have their turns."""
+        """Compute what was refused because it takes long; the other sessions still have their turns."""
         if self._refused is not None and self._refused == self._session.scene:
             self._session.insisted = self._refused
             self.show_message("")

@@ -19,7 +19,7 @@ import { watchVisibility } from "./visibility.js";
 
 // Functions that make the tabs. If a function returns `show`, that draws the tab again when its page publishes something.
 // A tab that `updatesItself` is not made anew when the state changes, so what is under the pointer stays. A tab without
-// a page over the pictures needs its function here (tests/dashboard/test_table.py).
+// an overlay needs its function here (tests/dashboard/test_table.py).
 const TABS = {
   stories: storiesTab,
   "look at": lookAtTab,
@@ -36,7 +36,7 @@ const TABS = {
 };
 
 // The tab without a function in TABS: the sentence of its page or its placeholder, and a button that opens the page if
-// it lies over the pictures.
+// it is an overlay.
 function plainTab({ state: { pages } }, { name, placeholder }) {
   const line = paragraph();
   const show = () => {

@@ -156,7 +156,7 @@ def _drawn(result: Any, theme: str, kind: str, options: Mapping[str, Any]) -> tu
         unknown = [name for name in options if repr(name) in str(problem)]
         if not unknown:
             raise
-        raise BadInput(f"The picture of a {type(result).__name__} has no option {unknown[0]!r}.") from None
+        raise BadInput(f"The figure of a {type(result).__name__} has no option {unknown[0]!r}.") from None
     return drawn, size
 
 
@@ -164,9 +164,9 @@ def _further(result: Any, kind: str) -> Callable[..., LayoutDOM]:
     """The function that draws a further figure of a result."""
     offered = {name: draw for (one, name), draw in FURTHER_DRAWERS.items() if isinstance(result, one)}
     if not offered:
-        raise BadInput(f"There is no picture of a kind {kind!r} of a {type(result).__name__}; leave the kind out.")
+        raise BadInput(f"There is no figure of a kind {kind!r} of a {type(result).__name__}; leave the kind out.")
     if kind not in offered:
-        raise unknown_name("kind of picture", kind, tuple(offered))
+        raise unknown_name("kind of figure", kind, tuple(offered))
     return offered[kind]
 
 
@@ -181,6 +181,6 @@ def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
         for kind, draw in _TOGETHER.items():
             if all(isinstance(one, kind) for one in result):
                 return draw, (WIDTH, HEIGHT)
-    raise BadInput(f"There is no picture of a {type(result).__name__}; there are those of "
+    raise BadInput(f"There is no figure of a {type(result).__name__}; there are those of "
                    f"{', '.join(kind.__name__ for kind in DRAWERS)}, of lists of curves or branches, and of the "
                    "results of granchain_core.paper.compute.")

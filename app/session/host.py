@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Caller(Protocol):
-    """Calls with the document locked, until the visitor leaves."""
+    """Calls with the document locked, until the session ends."""
 
     def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
         """Call `action` with the document locked, as soon as that is possible; from any thread."""
@@ -25,7 +25,7 @@ class Caller(Protocol):
         """Call `action` with the document locked, after `seconds`."""
 
     def on_close(self, action: Callable[[], object]) -> None:
-        """Call `action` when the visitor leaves; nothing is called by `next_tick` or `call_later` from then on."""
+        """Call `action` when the session ends; nothing is called by `next_tick` or `call_later` from then on."""
 
 
 class WorkHost(Caller, Protocol):
@@ -51,7 +51,7 @@ class WorkHost(Caller, Protocol):
 
 
 class Host(WorkHost, Protocol):
-    """One visitor's dashboard, as its pages see it.
+    """One session's dashboard, as its pages see it.
 
     Any thread may call `next_tick` and read the flags `busy`, `awaiting_picture` and `curve_computing`. Everything else
     is used with the document locked.
@@ -61,7 +61,7 @@ class Host(WorkHost, Protocol):
 
     @property
     def overlays(self) -> tuple[str, ...]:
-        """The pages over the pictures, by name."""
+        """The overlays, by name."""
 
     @property
     def curve_computing(self) -> bool:
@@ -77,7 +77,7 @@ class Host(WorkHost, Protocol):
         """Draw a measured series over the force trains, or none."""
 
     def activities(self) -> list[Activity]:
-        """Everything that is computed for this visitor, or could be."""
+        """Everything that is computed for this session, or could be."""
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.

@@ -1,4 +1,4 @@
-"""The base class of pages: the hooks through which the dashboard informs them."""
+"""The base class of pages: the hooks through which the dashboard notifies them."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ Actions = Mapping[str, Callable[[dict[str, Any]], None]]
 
 
 class Page:
-    """One page of one visitor. Hooks are called with the document locked; by default they do nothing.
+    """One page of one session. Hooks are called with the document locked; by default they do nothing.
 
-    All visitors share the event loop in which hooks and actions run, so none may take longer than about ten
+    All sessions share the event loop in which hooks and actions run, so none may take longer than about ten
     milliseconds; longer work is a `Task`.
 
     `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.

@@ -1,4 +1,4 @@
-"""The state of one visitor's page: scene, mode, start, the last good picture, and a sentence if something failed.
+"""The state of one session's page: scene, mode, start, the last good picture, and a sentence if something failed.
 
 No Panel and no Bokeh in here, so that every rule of the page can be tested without a browser.
 """
@@ -42,7 +42,7 @@ class Session:
     scale: str = "same"
     #: What is drawn on the resonance curve: "auto" for what suits the scene, or names joined by dots, "rest.up".
     curves: str = "auto"
-    #: The "tab" that the address opens and the "page" over the pictures; only those that it names.
+    #: The "tab" that the address opens and the "page", an overlay; only those that it names.
     place: dict[str, str] = field(default_factory=dict)
     #: Drive periods shown in a second.
     speed: float = 1.0
@@ -60,11 +60,11 @@ class Session:
     energy_account: bool = False
     #: Values that knobs had when their effect was switched off, for when it is switched on again.
     remembered: dict[str, Any] = field(default_factory=dict)
-    #: The processor time of its pictures, by which visitors take turns.
+    #: The processor time of its pictures, by which sessions take turns.
     cpu_time: CpuTime = field(default_factory=CpuTime)
     #: The scene that is computed however long it takes, because the visitor has insisted.
     insisted: Scene | None = None
-    #: The visitor's own measurement, which is drawn over the plots and saved with a run.
+    #: The visitor's own measurement, which is drawn over the figures and saved with a run.
     measured: Measured | Series | None = None
     #: The pinned pictures.
     pins: tuple[Pin, ...] = ()

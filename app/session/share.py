@@ -60,7 +60,7 @@ VIEW: dict[str, ViewField] = {
     "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }
 #: Fields that the browser adds to a link, because it alone knows them (`parts/inline_scripts/address.js`): the open
-#: tab, the page over the pictures, the theme if the visitor has chosen one, and whether another page embeds this one.
+#: tab, the overlay, the theme if the visitor has chosen one, and whether another page embeds this one.
 BROWSER_FIELDS = ("tab", "page", "look", "embed")
 #: The values of the view settings; the first is the default.
 VIEW_VALUES: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}

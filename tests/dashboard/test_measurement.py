@@ -21,7 +21,7 @@ from app.frames import samples_for
 from app.pages.data import page as module
 from app.pages.data.page import SAMPLES, DataPage
 from app.plots.measured import measured_columns
-from app.serve.computing.queues import LONG
+from app.serve.computing.worker_pools import LONG
 from granchain_core import CurvePoint, Scene, scene, settle, settling
 from granchain_core.experiment import Measured, compared, read_data
 from granchain_core.experiment.formats import FORMATS
@@ -127,7 +127,7 @@ def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve(dashboard: Dash
     figure = dashboard.views.curve
     figure.add("rest", [point(30.0, 4.0), point(50.0, 6.0), point(70.0, 16.0)], covers=True)
     figure.finished("rest")
-    dashboard.curves._tell_compared(figure.difference)
+    dashboard.curves._notify_compared(figure.difference)
     misfit = dashboard.views.tabs.state["misfit"]
     # the model has 5 N at 40 Hz and 11 N at 60 Hz: −0.5 and −1.1 N
     assert "rms 0.854 N" in misfit["sentence"] and "largest -1.1 N at 60 Hz" in misfit["sentence"]

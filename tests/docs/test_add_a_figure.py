@@ -35,5 +35,5 @@ def test_the_figure_is_drawn_in_a_notebook_in_a_file_and_on_the_page(tree: Path)
 
 def test_the_first_figure_of_a_spectrum_is_as_it_was(tree: Path) -> None:
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "plots", "test_any_result.py")),
-                     "-k", "spectrum and picture_of_a_size", own_kernels=False)
+                     "-k", "spectrum and figure_of_a_size", own_kernels=False)
     assert "1 passed" in printed

@@ -207,6 +207,6 @@ def nothing_arrives(trial: Trial) -> None:
     for one in trial.given:
         if one.job.stop:
             one.job.next_tick(trial.view.send, type="late")
-            one.job.say("computing")
+            one.job.report("computing")
     trial.rest()
     assert (trial.state, len(trial.told)) == before

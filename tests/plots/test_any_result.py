@@ -1,4 +1,4 @@
-"""`granchain.figure`: a picture of every result, of its own size, and one sentence where there is none."""
+"""`granchain.figure`: a figure of every result, of its own size, and one sentence where there is none."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def labels(drawn: LayoutDOM) -> list[str]:
 
 
 @pytest.mark.parametrize("kind", RESULTS)
-def test_every_result_has_a_picture_of_a_size_of_its_own(kind: str) -> None:
+def test_every_result_has_a_figure_of_a_size_of_its_own(kind: str) -> None:
     make, words = RESULTS[kind]
     drawn = granchain.figure(make(), "dark", height=333)
     assert any(words in label for label in labels(drawn)), labels(drawn)
@@ -108,14 +108,14 @@ def test_a_motion_has_the_figures_of_the_page_probe(kind: str, options: dict[str
 
 
 @pytest.mark.parametrize(("make", "words"), [
-    (lambda: granchain.figure(granchain.settle(CHAIN), kind="phaze"), "Unknown kind of picture 'phaze'; the nearest is 'phase'"),
+    (lambda: granchain.figure(granchain.settle(CHAIN), kind="phaze"), "Unknown kind of figure 'phaze'; the nearest is 'phase'"),
     (lambda: granchain.figure(granchain.settle(CHAIN), kind="phase", bead=3), "bead = 3 is outside 1 to 2"),
-    (lambda: granchain.figure(granchain.orbit(CHAIN), kind="phase"), "no picture of a kind 'phase' of a Orbit"),
-    (lambda: granchain.figure(3.0), "There is no picture of a float; there are those of Run, Settled, Driven, Pulse, Curve"),
-    (lambda: granchain.figure([]), "no picture of a list"),
+    (lambda: granchain.figure(granchain.orbit(CHAIN), kind="phase"), "no figure of a kind 'phase' of a Orbit"),
+    (lambda: granchain.figure(3.0), "There is no figure of a float; there are those of Run, Settled, Driven, Pulse, Curve"),
+    (lambda: granchain.figure([]), "no figure of a list"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), "drak"), "Unknown theme 'drak'; the nearest is 'dark'"),
     (lambda: granchain.figure(granchain.resonance_curve(CHAIN, [2000.0]), measured="mine.csv"), "not a value of type str"),
-    (lambda: granchain.figure(granchain.orbit(CHAIN), bead=1), "The picture of a Orbit has no option 'bead'"),
+    (lambda: granchain.figure(granchain.orbit(CHAIN), bead=1), "The figure of a Orbit has no option 'bead'"),
 ])
 def test_what_cannot_be_drawn_is_one_sentence(make, words: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=words):

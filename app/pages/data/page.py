@@ -32,12 +32,12 @@ from granchain_core.scene.refusals import refuse_undriven
 from ...format import given_in_words, in_words, signed_in_words
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import PICTURE_PIECES
-from ...serve.computing.queues import ANALYSES, FILES, LONG
+from ...serve.computing.worker_pools import ANALYSES, FILES, LONG
 from ...serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from ...session.budget import WHOLE_PICTURE, check_first_picture
 from ...session.host import Host
 from ...session.page import Actions, Page
-from ...session.task import Job, Task, say_nothing
+from ...session.task import Job, Task, report_nothing
 
 if TYPE_CHECKING:
     from granchain_core.fit.overlay import Overlay
@@ -68,9 +68,9 @@ class DataPage(Page):
     def __init__(self, host: Host, tabs: Component) -> None:
         self._host = host
         self._tabs = tabs
-        self._moving = Task(host, ANALYSES, say_nothing, "Moving the series to the picture", tell_host=True)
-        self._reading = Task(host, FILES, say_nothing, "Reading the measurement", tell_host=True)
-        self._recording = Task(host, LONG, say_nothing, "The virtual experiment", tell_host=True)
+        self._moving = Task(host, ANALYSES, report_nothing, "Moving the series to the picture", report_to_host=True)
+        self._reading = Task(host, FILES, report_nothing, "Reading the measurement", report_to_host=True)
+        self._recording = Task(host, LONG, report_nothing, "The virtual experiment", report_to_host=True)
         self._name, self._answers = "", Answers()
         #: The file, for as long as a question about it is open.
         self._content = b""

@@ -120,7 +120,7 @@
       addEventListener("popstate", ({ state }) => this.#known && this.#moved(state));
     }
 
-    /** Where the visitor is: the tab below the curve and the page over the pictures, empty for the first tab and none. */
+    /** Where the visitor is: the tab below the curve and the overlay, empty for the first tab and none. */
     get place() {
       return this.#place;
     }

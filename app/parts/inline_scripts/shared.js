@@ -12,7 +12,7 @@ window.granchain = (() => {
     "theme", // another theme: its name
     "place", // another tab and page are to be shown: { tab, page }, empty for the first tab and no page
     "tab", // a tab was opened: its name
-    "overlay", // a page was opened over the pictures, or closed: its name or null
+    "overlay", // an overlay was opened or closed: its name or null
     "visible", // other pages are looked at: the set of their names
     "story", // a story was opened or left: whether one is shown
     "curved", // on a phone, the curve was shown or hidden: whether it is shown
@@ -117,13 +117,13 @@ window.granchain = (() => {
   }
 
   /**
-   * What the parts of the dashboard share in the browser: events, what pages publish, the page over the pictures, the
+   * What the parts of the dashboard share in the browser: events, what pages publish, the overlay, the
    * panels of a phone, and one object for each of theme, address, history and connection.
    */
   class Dashboard extends Events {
-    #overlay = null; // the name of the page over the pictures
+    #overlay = null; // the name of the overlay
     pages = new Map(); // what pages have published, by page
-    embedded = new URLSearchParams(location.search).get("embed") === "1"; // the pictures alone, for a slide
+    embedded = new URLSearchParams(location.search).get("embed") === "1"; // the picture alone, for a slide
     theme = new Theme(this);
     terms = TERMS; // of the glossary, with their definitions
 
@@ -162,12 +162,12 @@ window.granchain = (() => {
       this.emit(`page:${name}`, data);
     }
 
-    /** The name of the page over the pictures, or null. An open page stops the curve unless it needs the curve. */
+    /** The name of the overlay, or null. An open one stops the curve unless it needs the curve. */
     get overlay() {
       return this.#overlay;
     }
 
-    /** Opens the page of this name over the pictures. An unknown name closes the open page. */
+    /** Opens the overlay of this name. An unknown name closes the open one. */
     openPage(asked) {
       const sheets = [...document.querySelectorAll("[data-overlay]")];
       const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
@@ -191,7 +191,7 @@ window.granchain = (() => {
       if (open) this.showCurve(false);
     }
 
-    /** On a phone: shows the resonance curve together with the pictures on one screen, or below them. */
+    /** On a phone: shows the resonance curve together with the picture on one screen, or below them. */
     showCurve(shown) {
       const { classList } = document.getElementById("dashboard");
       if (classList.contains("curved") === shown) return;

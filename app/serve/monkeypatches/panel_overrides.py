@@ -79,7 +79,7 @@ _IMPORTED: weakref.WeakKeyDictionary[Document, dict[str, ImportedStyleSheet]] = 
 class WithCommonProperties:
     """A Panel component whose class is asked once for the properties of its model, not each instance.
 
-    Instances differ in their data alone. Panel goes through 40 parameters of each part for every visitor, a tenth of an
+    Instances differ in their data alone. Panel goes through 40 parameters of each part for every session, a tenth of an
     opening's work; it still does where a release has other properties than expected here.
     """
 

@@ -23,7 +23,7 @@ from app.curve.sweep import CURVES_SHARED
 from app.dashboard.main_picture import PICTURES_SHARED
 from app.pages.analysis import questions
 from app.serve.compiling.compiler import Compiler
-from app.serve.computing.queues import LONG
+from app.serve.computing.worker_pools import LONG
 from app.serve.http import guard
 from app.serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
 from app.serve.http.message_rules import LARGEST_PLAIN_CONTENT
@@ -57,7 +57,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                             "(1008)",
         "a link": f"{LONGEST} characters",
         "pages at once": f"{Access().most_visitors}",
-        "long computations of a visitor at once": f"{LONG.share} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
+        "long computations of a visitor at once": f"{LONG.per_owner_limit} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
                                                   "experiments); more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",

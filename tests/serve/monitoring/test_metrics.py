@@ -10,18 +10,18 @@ import waiting
 
 from app import server
 from app.serve.computing.cpu_time import CpuTime
-from app.serve.computing.queues import (
+from app.serve.computing.turns import FairScheduler
+from app.serve.computing.worker_pools import (
     COMPILATIONS,
     COMPUTING,
     CURVES,
     FILES,
     LOADING,
     PICTURES,
-    QUEUES,
-    VISITORS,
-    Queue,
+    POOLS,
+    SESSIONS,
+    WorkerPool,
 )
-from app.serve.computing.turns import FairScheduler
 from app.serve.monitoring.metrics import METRICS, Metrics
 from granchain_core import Stop
 
@@ -62,21 +62,21 @@ def shown(name: str) -> float:
 
 
 def test_each_queue_has_its_own_gauges() -> None:
-    for queue in QUEUES:
-        assert shown(f'queue_busy{{queue="{queue.name}"}}') >= 0.0
-        assert shown(f'queue_waiting{{queue="{queue.name}"}}') >= 0.0
+    for pool in POOLS:
+        assert shown(f'queue_busy{{queue="{pool.name}"}}') >= 0.0
+        assert shown(f'queue_waiting{{queue="{pool.name}"}}') >= 0.0
 
 
 def test_queues_whose_threads_wait_for_others_do_not_count_as_computing() -> None:
-    """Those of PICTURES and VISITORS wait for turns, those of CURVES for SWEEPS."""
-    assert set(QUEUES) - set(COMPUTING) == {VISITORS, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
+    """Those of PICTURES and SESSIONS wait for turns, those of CURVES for SWEEPS."""
+    assert set(POOLS) - set(COMPUTING) == {SESSIONS, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
 
 
-def test_long_work_is_computing_and_what_its_owner_has_beyond_a_share_waits(monkeypatch: pytest.MonkeyPatch) -> None:
-    queue, go_on, owner = Queue("long", 8, share=2), threading.Event(), object()
-    for name, value in (("QUEUES", (queue,)), ("COMPUTING", (queue,)), ("TURNS", FairScheduler(2))):
+def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    pool, go_on, owner = WorkerPool("long", 8, per_owner_limit=2), threading.Event(), object()
+    for name, value in (("POOLS", (pool,)), ("COMPUTING", (pool,)), ("TURNS", FairScheduler(2))):
         monkeypatch.setattr(server, name, value)
-    ended = [queue.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
+    ended = [pool.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
     assert (shown("computing"), shown("queue")) == (2, 1)
     assert (shown('queue_busy{queue="long"}'), shown('queue_waiting{queue="long"}')) == (2, 1)
     go_on.set()
@@ -84,12 +84,12 @@ def test_long_work_is_computing_and_what_its_owner_has_beyond_a_share_waits(monk
 
 
 def test_a_picture_that_waits_for_a_turn_waits_and_is_not_computing(monkeypatch: pytest.MonkeyPatch) -> None:
-    turns, queue, stop = FairScheduler(2, lambda: 0.0), Queue("pictures", 8), Stop()
-    for name, value in (("QUEUES", (queue,)), ("COMPUTING", ()), ("TURNS", turns)):
+    turns, pool, stop = FairScheduler(2, lambda: 0.0), WorkerPool("pictures", 8), Stop()
+    for name, value in (("POOLS", (pool,)), ("COMPUTING", ()), ("TURNS", turns)):
         monkeypatch.setattr(server, name, value)
     for _ in range(2):
         turns.begin(CpuTime(), Stop(), is_new=False)
-    third = queue.submit(turns.begin, CpuTime(), stop, False)
+    third = pool.submit(turns.begin, CpuTime(), stop, False)
     waiting.until(lambda: turns.waiting == 1, 20)
     assert (shown("computing"), shown("queue"), shown("turns_waiting")) == (2, 1, 1)
     assert shown('queue_busy{queue="pictures"}') == 1
