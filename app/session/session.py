@@ -15,7 +15,7 @@ from granchain_core.experiment import Measured, Series
 from ..serve.computing.cpu_time import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
-from .share import BROWSER_FIELDS, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in
+from .share import BROWSER_FIELDS, DEFAULT_SCENE, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in
 from .starts import start_text
 from .switches import ACCOUNT_SWITCH, changes
 
@@ -31,7 +31,7 @@ class Session:
     """
 
     #: The chain with the knobs as they are.
-    scene: Scene = field(default_factory=lambda: scene("sec2"))
+    scene: Scene = field(default_factory=lambda: scene(DEFAULT_SCENE))
     #: Whether the steady motion is shown, "settled", or a run that goes on while knobs move, "live".
     mode: str = "settled"
     #: Where a settled picture starts: "rest", or "previous", the state of the picture before.

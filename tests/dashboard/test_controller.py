@@ -19,7 +19,7 @@ from headless_dashboard import Dashboard
 from app import server
 from app.dashboard import exports, main_picture
 from app.dashboard.table import PAGES, watched_pages
-from app.frames import Extremes, settled_frames
+from app.frames import settled_frames
 from app.pages.data import page as data_page
 from app.plots.theme import THEMES, Theme
 from app.serve.compiling.compiler import COMPILER, Compiler
@@ -118,7 +118,8 @@ def test_choosing_the_scale_takes_the_scenes_own_again(dashboard: Dashboard) -> 
     scales, chain = dashboard.views.scales, dashboard.session.scene
     frames = settled_frames(settle(chain, samples=8).run)
     first = scales.of(frames, chain)
-    scales._largest = first.widened(Extremes(input_force=2.0 * first.input_force))
+    louder = settled_frames(settle(chain.evolve(A0=4.0 * chain.A0), samples=8).run)
+    assert scales.of(louder, chain) != first
     dashboard.received({"do": "scale", "value": "same"})
     assert scales.of(frames, chain) == first
 

@@ -127,7 +127,7 @@ def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve(dashboard: Dash
     figure = dashboard.views.curve
     figure.add("rest", [point(30.0, 4.0), point(50.0, 6.0), point(70.0, 16.0)], covers=True)
     figure.finished("rest")
-    dashboard.curves._notify_compared(figure.difference)
+    data_page(dashboard).curve_compared(figure.difference)
     misfit = dashboard.views.tabs.state["misfit"]
     # the model has 5 N at 40 Hz and 11 N at 60 Hz: −0.5 and −1.1 N
     assert "rms 0.854 N" in misfit["sentence"] and "largest -1.1 N at 60 Hz" in misfit["sentence"]

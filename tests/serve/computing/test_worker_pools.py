@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import threading
+import time
+import weakref
 
 import pytest
 import waiting
@@ -34,8 +36,8 @@ def test_what_waits_and_what_is_under_way_is_counted() -> None:
     assert pool.queued == 0
 
 
-def test_an_owner_beyond_its_share_waits_behind_others() -> None:
-    """Two pieces of work of one visitor at a time: the third begins when one of them has ended, and not before."""
+def test_an_owner_beyond_its_limit_waits_behind_others() -> None:
+    """Two pieces of work of one owner at a time: the third begins when one of them has ended, and not before."""
     pool, go_on, order = WorkerPool("tested", 4, per_owner_limit=2), [threading.Event() for _ in range(4)], list[str]()
 
     def work(name: str, until: threading.Event) -> None:
@@ -54,10 +56,25 @@ def test_an_owner_beyond_its_share_waits_behind_others() -> None:
     for future in (*mine, other):
         future.result(60)
     waiting.until(lambda: pool.busy_threads == 0)
-    assert not pool._taken and not pool._held, "nothing of a visitor is kept"
+    assert pool.held == 0
 
 
-def test_work_that_fails_gives_its_share_back() -> None:
+class Owner:
+    """Whoever has work done."""
+
+
+def test_a_pool_keeps_no_owner_whose_work_has_ended() -> None:
+    """Of one whose work was held, too."""
+    pool, owner = WorkerPool("tested", 1, per_owner_limit=1), Owner()
+    given = [pool.submit(time.sleep, 0.0, owner=owner) for _ in range(3)]
+    for future in given:
+        future.result(60)
+    kept = weakref.ref(owner)
+    del owner
+    waiting.until(lambda: kept() is None)
+
+
+def test_work_that_fails_counts_to_no_limit_any_more() -> None:
     pool = WorkerPool("tested", 1, per_owner_limit=1)
     failed = pool.submit(int, "no number", owner="me")
     assert pool.submit(int, "7", owner="me").result(60) == 7

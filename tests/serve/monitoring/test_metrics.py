@@ -36,20 +36,34 @@ def test_every_count_of_every_thread_is_kept() -> None:
     assert metrics.cancelled == 8000 and "granchain_cancelled_total 8000\n" in metrics.text()
 
 
+def waits_beside_another(turns: FairScheduler, now: list[float], seconds: float, is_new: bool = True) -> None:
+    """A computation has a turn at once, and another one after it has waited so long."""
+    first = turns.begin(CpuTime(), Stop())
+    thread = threading.Thread(target=turns.begin, args=(CpuTime(), Stop(), is_new))
+    thread.start()
+    waiting.until(lambda: turns.waiting == 1, 20)
+    now[0] += seconds
+    turns.end(first)
+    thread.join(20)
+    assert not thread.is_alive()
+
+
 def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> None:
     now = [0.0]
     turns = FairScheduler(1, lambda: now[0])
     assert turns.wait == 0.0
-    first = turns.begin(CpuTime(), Stop())
-    now[0] = 1.0
-    turns.end(first)
-    turns.begin(CpuTime(), Stop(), is_new=False)  # what makes a picture better may wait
-    assert turns.wait == 0.0
-    turns._waits.append((now[0], 1.5))
-    assert turns.wait == 0.75
+    waits_beside_another(turns, now, 1.5)
+    assert turns.wait == 0.75  # the other did not wait
     now[0] = 10.5
     assert turns.wait == 1.5
     now[0] = 12.0
+    assert turns.wait == 0.0
+
+
+def test_the_wait_of_a_refinement_is_not_counted() -> None:
+    now = [0.0]
+    turns = FairScheduler(1, lambda: now[0])
+    waits_beside_another(turns, now, 1.5, is_new=False)
     assert turns.wait == 0.0
 
 
