@@ -19,7 +19,7 @@ from missing_attribute import hide
 from waiting import until
 
 from app.dashboard.controller import Controller
-from app.serve.computing.worker_pools import PICTURES, SESSIONS
+from app.serve.computing.worker_pools import PICTURES, SESSION_WORK
 from app.serve.document import leaving
 from app.server import Access
 from granchain_core import OverBudget, scene
@@ -90,7 +90,7 @@ def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit(
     try:
         said = run_async(asyncio.wait_for(insist(f"http://127.0.0.1:{one.port}"), 300))
         assert "would take about" in said and "would fit" in said and "insist" in said
-        until(lambda: PICTURES.busy_threads == 0 and SESSIONS.busy_threads == 0)
+        until(lambda: PICTURES.busy_threads == 0 and SESSION_WORK.busy_threads == 0)
     finally:
         one.stop()
 

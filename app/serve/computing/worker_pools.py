@@ -148,7 +148,7 @@ class WorkerPool:
 #: number of threads is limited because each takes memory. It is below the largest `--most-visitors`, since most pages
 #: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served. In
 #: `/metrics` the pool keeps its older name.
-SESSIONS = WorkerPool("visitors", 1000)
+SESSION_WORK = WorkerPool("visitors", 1000)
 #: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
 #: for the compiler keeps its thread. While more pictures than this are computed or wait for a turn, the next wait for a
 #: thread, first come, first served: turns do not put a first picture before refinements then.
@@ -173,9 +173,9 @@ MEASUREMENTS = WorkerPool("measurements", 1)
 COMPILATIONS = WorkerPool("compilations", 2)
 
 #: All pools.
-POOLS = (SESSIONS, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)
-#: Those whose threads compute while they are busy. A thread of `PICTURES` or `SESSIONS` computes while it has a turn,
-#: and one of `CURVES` waits for `SWEEPS`.
+POOLS = (SESSION_WORK, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)
+#: Those whose threads compute while they are busy. A thread of `PICTURES` or `SESSION_WORK` computes while it has a
+#: turn, and one of `CURVES` waits for `SWEEPS`.
 COMPUTING = (ANALYSES, SWEEPS, LONG, MEASUREMENTS)
 
 TurnWork = Callable[[TurnFlag], Iterator[object]]
@@ -257,7 +257,7 @@ class LatestWins:
                 return
             self._running = True
             self._began = time.monotonic()
-        SESSIONS.submit(self._drain)
+        SESSION_WORK.submit(self._drain)
 
     def _give_up(self, stop: TurnFlag) -> None:
         """Give up the computation: its first result has not come within a second, and newer work waits."""
@@ -287,7 +287,7 @@ class LatestWins:
         while (work := self._next()) is not None:
             self._do(work)
             if has_lower_priority():
-                SESSIONS.submit(self._drain)
+                SESSION_WORK.submit(self._drain)
                 return
 
     def _do(self, work: TurnWork) -> None:

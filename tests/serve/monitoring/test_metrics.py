@@ -19,7 +19,7 @@ from app.serve.computing.worker_pools import (
     LOADING,
     PICTURES,
     POOLS,
-    SESSIONS,
+    SESSION_WORK,
     WorkerPool,
 )
 from app.serve.monitoring.metrics import METRICS, Metrics
@@ -82,8 +82,8 @@ def test_each_queue_has_its_own_gauges() -> None:
 
 
 def test_queues_whose_threads_wait_for_others_do_not_count_as_computing() -> None:
-    """Those of PICTURES and SESSIONS wait for turns, those of CURVES for SWEEPS."""
-    assert set(POOLS) - set(COMPUTING) == {SESSIONS, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
+    """Those of PICTURES and SESSION_WORK wait for turns, those of CURVES for SWEEPS."""
+    assert set(POOLS) - set(COMPUTING) == {SESSION_WORK, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
 
 
 def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(monkeypatch: pytest.MonkeyPatch) -> None:
