@@ -51,7 +51,7 @@ class Controller:
         the document locked; tests have their own.
         """
         self._document = document
-        self._calls = make_calls(document, self.failed)
+        self._calls = make_calls(document, self.report_failure)
         self._initial_state = initial_state
         METRICS.visitor_came()
         self.on_close(METRICS.visitor_left)
@@ -135,9 +135,9 @@ class Controller:
         """Show the visitor one sentence until the next valid action; an empty one removes it."""
         self.sentences.show_message(sentence)
 
-    def failed(self, error: Exception) -> None:
+    def report_failure(self, error: Exception) -> None:
         """See `Host`."""
-        self.sentences.failed(error)
+        self.sentences.report_failure(error)
 
     def report_fault(self, error: Exception, sentence: str) -> None:
         """See `Host`."""

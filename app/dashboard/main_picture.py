@@ -262,7 +262,7 @@ class MainPicture:
     def _failed(self, error: Exception) -> None:
         """Pass a failure on; the next picture is timed from its own request."""
         self._requested_at = None
-        self._host.failed(error)
+        self._host.report_failure(error)
 
     def _count_answer(self) -> None:
         """Count how long the first picture took, and say so if the server is busy with many sessions."""

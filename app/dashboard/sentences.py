@@ -41,7 +41,7 @@ class Sentences:
         self._session.notice = notice
         self._show()
 
-    def failed(self, error: Exception) -> None:
+    def report_failure(self, error: Exception) -> None:
         """Say in one sentence what happened; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METRICS.count("refused_pictures")

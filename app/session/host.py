@@ -43,8 +43,8 @@ class WorkHost(Caller, Protocol):
     def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
 
-    def failed(self, error: Exception) -> None:
-        """Tell the visitor about a failure that has no place on its own page."""
+    def report_failure(self, error: Exception) -> None:
+        """Show the visitor a failure that has no place on its own page."""
 
     def report_fault(self, error: Exception, sentence: str) -> None:
         """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""

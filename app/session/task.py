@@ -145,4 +145,4 @@ class Task:
         self._job = None
         self._report(status, sentence)
         if problem is not None and self._report_to_host:
-            self._host.failed(problem)
+            self._host.report_failure(problem)
