@@ -183,7 +183,7 @@ _LOCK = threading.Lock()
 
 
 def prepared_frames(run: Run) -> Frames:
-    """The frames of a settled run with all that every visitor's drawing needs, the same for all who show the run.
+    """The frames of a settled run with all that every session's drawing needs, the same for all who show the run.
 
     The frames are cached for as long as anything refers to them. Call this in a thread, before the event loop draws.
     """

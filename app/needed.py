@@ -23,7 +23,7 @@ LIBRARIES = ("bokeh", "panel", "param", "tornado")
 WITH_TABLES = (
     "serve.http.guard", "serve.monitoring.logs", "serve.document.document_lock",
     "serve.document.channel", "serve.document.changes", "serve.document.leaving", "serve.document.socket_tuning",
-    "serve.opening.bokeh_defaults", "serve.opening.panel_shortcuts", "serve.opening.panel_resources",
+    "serve.monkeypatches.bokeh_defaults", "serve.monkeypatches.panel_overrides", "serve.monkeypatches.panel_resources",
     "parts.figures.figure_style",
 )
 

@@ -20,16 +20,16 @@ from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
 from .needed import check_releases
 from .serve.compiling.compiler import COMPILER
-from .serve.computing.queues import COMPUTING, QUEUES
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
+from .serve.computing.worker_pools import COMPUTING, POOLS
 from .serve.http.guard import Readiness, Rules, guard_setting, is_guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.http.sessions import TOKEN_LIFETIME, Sessions
 from .serve.monitoring import logs
 from .serve.monitoring.metrics import METRICS, Liveness, Metric, MetricsHandler
-from .serve.opening.bokeh_defaults import remember_defaults
-from .serve.opening.panel_resources import remember_resources
+from .serve.monkeypatches.bokeh_defaults import install_defaults_cache
+from .serve.monkeypatches.panel_resources import install_resources_cache
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
@@ -95,8 +95,8 @@ def serve(port: int = 5006, address: str = "127.0.0.1", access: Access | None = 
     settings.perform_document_validation.set_value(False)  # takes 40 ms of every opening, and tests find what it would
     if hasattr(settings, "perform_error_diagnostics"):  # since 3.9: Panel asks for a missing name at every change
         settings.perform_error_diagnostics.set_value(False)
-    remember_defaults()
-    remember_resources()
+    install_defaults_cache()
+    install_resources_cache()
     sys.setswitchinterval(SWITCH_INTERVAL)
     gc.freeze()  # what every page shares is not searched for garbage again and again: 120 ms at a time
     gc.enable()
@@ -140,16 +140,16 @@ def add_shared_metrics() -> None:
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
     METRICS.added = (
         Metric("queue", "gauge", "Work that waits: for a thread of any queue, for its owner's share, or for a turn.",
-               lambda: TURNS.waiting + sum(queue.waiting + queue.held for queue in QUEUES)),
+               lambda: TURNS.waiting + sum(pool.queued + pool.held for pool in POOLS)),
         Metric("computing", "gauge", "Computations that have a turn, and work under way in the queues "
                                      f"{', '.join(queue.name for queue in COMPUTING)}.",
                lambda: TURNS.running + sum(queue.busy_threads for queue in COMPUTING)),
         Metric("turns_waiting", "gauge",
                "Computations that wait for a turn; each also keeps a thread of its queue busy.", lambda: TURNS.waiting),
         Metric("queue_waiting", "gauge", "Work that waits for a thread of the queue or for its owner's share.",
-               lambda: {queue.name: queue.waiting + queue.held for queue in QUEUES}, "queue"),
+               lambda: {pool.name: pool.queued + pool.held for pool in POOLS}, "queue"),
         Metric("queue_busy", "gauge", "Threads of the queue that have work, even if it waits for a turn or another "
-                                      "queue.", lambda: {queue.name: queue.busy_threads for queue in QUEUES}, "queue"),
+                                      "queue.", lambda: {pool.name: pool.busy_threads for pool in POOLS}, "queue"),
         *(metric for name, cache in shared.items() for metric in (
             Metric(f"{name}_cache_hits_total", "counter", f"Requests of a {name} that was there or under way.",
                    partial(getattr, cache, "hits")),

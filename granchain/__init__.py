@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from granchain_core import periodic_orbit as periodic_orbit
     from granchain_core import settled as settled
 
+    from .notebook import Dashboard, dashboard
     from .pictures import figure
-    from .server import Dashboard, dashboard
 
 #: What the core does not have, and the module here in which it is.
-_OWN = {"Dashboard": "server", "dashboard": "server", "figure": "pictures"}
+_OWN = {"Dashboard": "notebook", "dashboard": "notebook", "figure": "pictures"}
 
 __all__ = [*granchain_core.__all__, "Dashboard", "dashboard", "figure"]
 

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def figure(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
-           **options: Any) -> LayoutDOM:
+           kind: str = "", **options: Any) -> LayoutDOM:
     """A Bokeh figure of a result, drawn by the same functions as the dashboard's pages.
 
     Only the dashboard's main picture and its resonance curve have separate drawing code, because they follow every move
@@ -23,11 +23,14 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
         What a function of granchain returned, a list of curves or of branches, or a result of
         `granchain_core.paper.compute`.
     theme : str
-        "light", "dark" or "projector".
+        Name of a theme, "light" by default; `granchain figure --help` lists them.
     width, height : int, optional
         Size of the figure [px]; by default one that suits a notebook's cell.
+    kind : str
+        A further figure of the result: of a run or a settled motion "displacement", "velocity", "forces", "phase",
+        "spectrum" (those of one `bead`, the last by default) and "contacts", as on the page Probe.
     **options
-        Of some pictures: `elastic` and `measured` of a curve (a measurement that `read_experiment` of
+        Of some figures: `elastic` and `measured` of a curve (a measurement that `read_experiment` of
         granchain_core.experiment has read), `shown` ("force", "regime" or "both") and `curves` (what
         `bifurcation_curves` found) of a parameter map, `bead` of a bifurcation diagram, `asked` (an accuracy) of a
         work-precision diagram, `now` (a value of the knob) of a branch, `rank` of an orbit.
@@ -40,7 +43,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
     Raises
     ------
     BadInput
-        There is no picture of such a result, or no such theme or option.
+        There is no figure of such a result, or no such theme, kind or option.
 
     Examples
     --------
@@ -49,7 +52,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
     >>> granchain.figure(curve).xaxis[0].axis_label
     'drive frequency f (Hz)'
     """
-    return part_of_app("plots.any_result").bokeh_figure_of(result, theme, width, height, **options)
+    return part_of_app("plots.any_result").bokeh_figure_of(result, theme, width, height, kind, **options)
 
 
 def part_of_app(name: str) -> Any:

@@ -64,7 +64,7 @@ class FakeHost(Pending):
         for action in self.closing:
             action()
 
-    def failed(self, error: Exception) -> None:
+    def report_failure(self, error: Exception) -> None:
         """What has no place on a page."""
         self.failures.append(error)
 

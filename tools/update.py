@@ -4,7 +4,8 @@
 
 - tables in the docs: thresholds (docs/regimes.md, orbits.md, branches.md, accuracy.md), methods (docs/method.md), knobs
   (docs/model.md), scenes and the list of commands with pictures (README.md), drives by a formula (docs/scenes.md), what
-  is used of libraries (docs/libraries.md), metrics (docs/deployment.md);
+  is used of libraries (docs/libraries.md), metrics (docs/deployment.md), the dashboard's pages in the map of the code
+  (docs/design.md) and its messages (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -17,6 +18,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from tools import gallery, links, scales
+from tools.dashboard_tables import (
+    table_of_messages_of_the_browser,
+    table_of_messages_of_the_server,
+    table_of_pages,
+)
 from tools.generated import with_part
 from tools.lists import (
     commands_with_pictures,
@@ -55,6 +61,9 @@ _TABLES = (
     ("docs/scenes.md", "drives", table_of_drives),
     ("docs/libraries.md", "libraries", table_of_libraries),
     ("docs/deployment.md", "metrics", table_of_metrics),
+    ("docs/design.md", "pages of the dashboard", table_of_pages),
+    ("docs/dashboard.md", "messages of the browser", table_of_messages_of_the_browser),
+    ("docs/dashboard.md", "messages of the server", table_of_messages_of_the_server),
 )
 
 

@@ -14,8 +14,8 @@ from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..plots.curve import WORDS
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
-from ..serve.computing.queues import CURVES, LatestWins
 from ..serve.computing.turns import TurnFlag
+from ..serve.computing.worker_pools import CURVES, LatestWins
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce
@@ -47,9 +47,9 @@ class CurveController:
         self._bar = bar
         self._placed = placed
         self._compared: list[Callable[[Difference | None], None]] = []
-        self._task = Task(host, CURVES, self._ended, "The resonance curve", tell_host=True)
-        self._drafts = LatestWins(partial(host.next_tick, self._draw_draft), partial(host.next_tick, host.failed),
-                                  host.session.cpu_time)
+        self._task = Task(host, CURVES, self._ended, "The resonance curve", report_to_host=True)
+        self._drafts = LatestWins(partial(host.next_tick, self._draw_draft),
+                                  partial(host.next_tick, host.report_failure), host.session.cpu_time)
         self._quiet = Debounce(host, CURVE_QUIET)
         self._reports = Reports(host, self._draw)
         self._visible = True
@@ -230,7 +230,7 @@ class CurveController:
         """Call `action` with the visitor's data beside each complete curve from rest; with None when one is begun."""
         self._compared.append(action)
 
-    def _tell_compared(self, difference: Difference | None) -> None:
+    def _notify_compared(self, difference: Difference | None) -> None:
         for action in self._compared:
             action(difference)
 
@@ -254,7 +254,7 @@ class CurveController:
         self._bar.update_state(**self._wanted, done=0.0 if missing else -1.0)
         self._begun += bool(missing)
         if "rest" in missing:
-            self._tell_compared(None)
+            self._notify_compared(None)
         self._missing, self._done = list(missing), 0.0 if missing else -1.0
         if missing:
             self._task.start(Sweep(scene, missing, self._reports.add, lambda: self._host.busy,
@@ -283,7 +283,7 @@ class CurveController:
                 self._placed()
                 if progress.start == "rest":
                     self._names.name(self._figure.points("rest"), self._begun_for)
-                self._tell_compared(self._figure.difference)
+                self._notify_compared(self._figure.difference)
         self._done = self._overall(reports[-1])
         self._bar.update_state(done=self._done)
 

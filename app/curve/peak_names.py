@@ -29,12 +29,12 @@ from granchain_core.steady.curve.resonance import (
 
 from ..frames import samples_for
 from ..serve.computing.cpu_time import CpuTime
-from ..serve.computing.queues import ANALYSES, SWEEPS
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
+from ..serve.computing.worker_pools import ANALYSES, SWEEPS
 from ..session.host import WorkHost
 from ..session.scene_facts import without_frequency
-from ..session.task import Job, Task, say_nothing
+from ..session.task import Job, Task, report_nothing
 
 #: Fewest points of a stop band.
 _FEWEST_BAND_POINTS = 3
@@ -90,7 +90,7 @@ def _extremum_names(extremes: Sequence[tuple[str, CurvePoint]], scene: Scene,
         yield extremum_name(kind, point, scene, stop)
 
 
-#: Names for all visitors: a class that looks at one curve settles its dozen extrema once, which takes a second.
+#: Names for all sessions: a class that looks at one curve settles its dozen extrema once, which takes a second.
 NAMES_SHARED: Shared[dict[str, Any] | None] = Shared(SWEEPS, 2_000_000, lambda name: 1000, turns=False)
 
 
@@ -100,7 +100,7 @@ class PeakNames:
     def __init__(self, host: WorkHost, show: Callable[[list[dict[str, Any]]], None]) -> None:
         self._host = host
         self._show = show
-        self._task = Task(host, ANALYSES, say_nothing, "Naming the peaks of the curve", tell_host=True)
+        self._task = Task(host, ANALYSES, report_nothing, "Naming the peaks of the curve", report_to_host=True)
 
     def forget(self) -> None:
         """Show no names, because the curve has changed."""

@@ -13,8 +13,8 @@ from granchain_core import CurvePoint, Scene, iter_curve
 from granchain_core.execution.stop import Stop
 
 from ..serve.computing.cpu_time import CpuTime
-from ..serve.computing.queues import SWEEPS
 from ..serve.computing.shared import Shared
+from ..serve.computing.worker_pools import SWEEPS
 from ..session.scene_facts import slider_range, without_frequency
 from ..session.task import Job
 
@@ -65,7 +65,7 @@ def midpoints(points: list[CurvePoint], low_step: float) -> np.ndarray:
 class Sweep:
     """The work of one request on a worker thread: the curves of some starts of one scene, one after the other.
 
-    It waits while `busy` returns True. Visitors at the same knobs share one computation.
+    It waits while `busy` returns True. Sessions at the same knobs share one computation.
     """
 
     scene: Scene
@@ -116,7 +116,7 @@ def _points(scene: Scene, frequencies: np.ndarray, start: str, stop: Stop, low: 
 
 
 def _whole(found: list[Progress]) -> list[Progress]:
-    """A finished curve, as it is kept for the next visitor: all points at once."""
+    """A finished curve, as it is kept for the next session: all points at once."""
     points = [point for progress in found for point in progress.points]
     return [Progress(found[-1].start, points, 1.0, complete=True, covers=True)]
 
@@ -126,5 +126,5 @@ def _size(progress: Progress) -> int:
     return sum(2000 + point.state.displacement.nbytes + point.state.velocity.nbytes for point in progress.points)
 
 
-#: Curves of all visitors.
+#: Curves of all sessions.
 CURVES_SHARED: Shared[Progress] = Shared(SWEEPS, 50_000_000, _size, _whole, turns=False)

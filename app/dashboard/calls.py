@@ -1,4 +1,4 @@
-"""Calls with the document of one visitor locked, until the visitor leaves."""
+"""Calls with the document of one session locked, until the session ends."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ class Calls:
                 self._failed(error)
 
     def on_close(self, action: Callable[[], object]) -> None:
-        """Call `action` when the visitor leaves."""
+        """Call `action` when the session ends."""
         self._closing.append(action)
 
     def close(self) -> None:
-        """The visitor left: call what was given to `on_close`, and nothing from then on.
+        """The session has ended: call what was given to `on_close`, and nothing from then on.
 
         An action that fails keeps none of the others from being called.
         """

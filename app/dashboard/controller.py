@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from bokeh.document import Document
 
 from granchain_core import BadInput, CurvePoint, Scene, Settled, State
+from granchain_core.experiment import Difference, Measured
 
 from ..curve.controller import CurveController
 from ..plots.theme import Theme
@@ -20,9 +21,9 @@ from ..session.page import Actions, Page, all_actions
 from ..session.session import Session
 from .calls import Calls
 from .display_choices import DisplayChoices
+from .exports import Exports
 from .gallery import cards
 from .layout import Views
-from .links_and_files import LinksAndFiles
 from .main_picture import MainPicture
 from .pinned import Pinned
 from .playback import Playback
@@ -30,9 +31,12 @@ from .scene_changes import SceneChanges
 from .sentences import Sentences
 from .table import CURVE_NAME, PAGES, overlay_names
 
+if TYPE_CHECKING:
+    from granchain_core.fit.overlay import Overlay
+
 
 class Controller:
-    """One visitor's dashboard, and the `Host` of its pages.
+    """One session's dashboard, and the `Host` of its pages.
 
     Everything runs with the document locked, except `next_tick` and the flags `busy`, `awaiting_picture` and
     `curve_computing`, which any thread may read.
@@ -46,7 +50,7 @@ class Controller:
         the document locked; tests have their own.
         """
         self._document = document
-        self._calls = make_calls(document, self.failed)
+        self._calls = make_calls(document, self.report_failure)
         self._initial_state = initial_state
         self.session = session
         self.views = views = Views(session, self.received, partial(self._calls.guarded, self._choose_frequency))
@@ -54,9 +58,10 @@ class Controller:
         self.pictures = MainPicture(self, views, self.sentences.show_notice, self.picture_ready)
         self.curves = CurveController(self, views.curve, views.curve_bar, self._curve_placed)
         self.choices = DisplayChoices(session, views, self.curves, self._theme_changed, self.pictures.redraw)
-        self.files = LinksAndFiles(self, views, self.curves, self.pictures)
+        self.exports = Exports(self, views, self.curves, self.pictures)
         self.pinned = Pinned(self, views)
         self.pages = tuple(row.page(self, views.overlays.get(row.name, views.tabs)) for row in PAGES)
+        self.curves.on_compared(self._curve_compared)
         self._scenes = SceneChanges(session, views, self.pictures, self.curves, self.pinned, self.pages,
                                     self.show_message, self.next_tick)
         self._looked_at: dict[str, Page | CurveController] = {
@@ -73,7 +78,7 @@ class Controller:
         }
         playback = Playback(session, views.header, self.pictures, self._compute, self.show_message)
         self.owners: dict[str, Actions] = {
-            "the dashboard": own, "playback": playback.actions, "links and files": self.files.actions,
+            "the dashboard": own, "playback": playback.actions, "links and exports": self.exports.actions,
             "display choices": self.choices.actions, "pins": self.pinned.actions,
             **{f"page `{row.name}`": page.actions for row, page in zip(PAGES, self.pages, strict=True)},
         }
@@ -127,9 +132,9 @@ class Controller:
         """Show the visitor one sentence until the next valid action; an empty one removes it."""
         self.sentences.show_message(sentence)
 
-    def failed(self, error: Exception) -> None:
+    def report_failure(self, error: Exception) -> None:
         """See `Host`."""
-        self.sentences.failed(error)
+        self.sentences.report_failure(error)
 
     def report_fault(self, error: Exception, sentence: str) -> None:
         """See `Host`."""
@@ -140,7 +145,7 @@ class Controller:
         self.leave()
 
     def leave(self) -> None:
-        """The visitor left: everything that is computed for this page ends, and nothing is called any more."""
+        """The session has ended: everything that is computed for this page ends, and nothing is called any more."""
         self._calls.close()
 
     @property
@@ -167,6 +172,14 @@ class Controller:
         """See `Host`."""
         return self.curves.complete(self.session.scene).get("rest", [])
 
+    def show_measured_curve(self, measured: Measured | None) -> Difference | None:
+        """See `Host`."""
+        return self.curves.measured(measured)
+
+    def show_measured_series(self, found: Overlay | None) -> None:
+        """See `Host`."""
+        self.views.trains.measured(found)
+
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """See `Host`."""
         self._scenes.show(scene, state, mode)
@@ -189,10 +202,9 @@ class Controller:
     # What happens here
 
     def picture_ready(self, settled: Settled) -> None:
-        """A settled picture is ready: inform all that show something of it, the pages once it is offered."""
+        """A settled picture is ready: notify all that show something of it, the pages once it is offered."""
         self.views.header.show_picture_start(settled.start, self.session)
         self.pinned.picture_ready(settled)
-        self.files.picture_ready(settled)
         self._scenes.picture_ready(settled)
 
     def _curve_placed(self) -> None:
@@ -200,6 +212,10 @@ class Controller:
         if self.complete_curve():
             for page in self.pages:
                 page.curve_ready()
+
+    def _curve_compared(self, difference: Difference | None) -> None:
+        for page in self.pages:
+            page.curve_compared(difference)
 
     def _theme_changed(self, theme: Theme) -> None:
         for page in self.pages:

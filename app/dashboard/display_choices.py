@@ -28,7 +28,7 @@ class DisplayChoices:
         }
 
     def set_theme(self, name: object) -> None:
-        """Take the colours and line widths of a theme; the name of no theme changes nothing."""
+        """Take the colours and line widths of a theme. An unknown theme is ignored."""
         theme = THEMES.get(str(name))
         if theme is not None:
             self._views.apply_theme(theme)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -30,8 +29,8 @@ from ..plots.theme import Theme, style_sheet
 from ..plots.themed import follow_theme
 from ..scripts import INLINE_SCRIPTS, modules
 from ..serve.http.limits import LARGEST_UPLOAD
+from ..session.page_constants import page_constants
 from ..session.session import Session
-from ..session.terms import definitions
 from .scales import PictureScales
 from .table import GROUPS, PAGES, described_tabs, watched_pages
 from .tabs import Tabs
@@ -80,7 +79,7 @@ class Views:
             overlay.apply_theme(theme)
 
     def put_into(self, document: Document) -> None:
-        """Make all parts roots of a visitor's document; their layout is a CSS grid in dashboard.css."""
+        """Make all parts roots of a session's document; their layout is a CSS grid in dashboard.css."""
         parts = {
             "header": self.header, "knobs": self.knobs, "equation": self.equation, "chain": self.chain,
             "curvebar": self.curve_bar, "tabs": self.tabs, "status_line": self.status_line, **self.overlays,
@@ -94,11 +93,11 @@ class Views:
 
 @cache
 def _page() -> tuple[str, dict[str, Any]]:
-    """The page's template and what stands in it, the same for every visitor."""
+    """The page's template and what stands in it, the same for every session."""
     return (_HERE / "dashboard.html").read_text(encoding="utf-8"), {
         "dashboard_css": style_sheet() + text("dashboard.css") + text("skeleton.css"),
         "inline_scripts": "".join(map(text, INLINE_SCRIPTS)),
-        "terms": json.dumps(definitions()).replace("<", "\\u003c"),
+        "page_constants": page_constants(),
         "modules": modules(),
         "frame_top": TOP, "frame_bottom": BOTTOM, "frame_left": LEFT, "gap": GAP,
         "overlays": [(row.name, row.name.capitalize()) for row in PAGES if row.view],

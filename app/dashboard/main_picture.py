@@ -18,9 +18,9 @@ from granchain_core.precompile.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
 
 from ..frames import Frames, prepared_frames, samples_for
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words
-from ..serve.computing.queues import PICTURES, LatestWins
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
+from ..serve.computing.worker_pools import PICTURES, LatestWins
 from ..serve.document.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture
@@ -37,7 +37,7 @@ def size_of(settled: Settled) -> int:
     return 4096 + sum(array.nbytes for array in arrays if isinstance(array, np.ndarray))
 
 
-#: Pictures of all visitors. The last picture of each scene is kept for the next visitor who asks, in at most 100 MB.
+#: Pictures of all sessions. The last picture of each scene is kept for the next session that asks, in at most 100 MB.
 PICTURES_SHARED: Shared[Settled] = Shared(PICTURES, 100_000_000, size_of, lambda pictures: pictures[-1:])
 
 
@@ -129,7 +129,7 @@ class MainPicture:
         self._live = None
 
     def _close(self) -> None:
-        """The visitor left."""
+        """The session has ended."""
         self._jobs.close()
         if self.live is not None:
             self.live.close()
@@ -172,7 +172,7 @@ class MainPicture:
     def _pictures_of(self, request: _Request, stop: TurnFlag) -> Iterator[Settled]:
         """The pictures of a request, each better than the one before, the last maybe with its energy account.
 
-        Only those from rest, and not insisted on, are shared with other visitors.
+        Only those from rest, and not insisted on, are shared with other sessions.
         """
         scene, initial_state, insisted = request.scene, request.initial_state, request.insisted
         if not insisted:
@@ -220,7 +220,7 @@ class MainPicture:
             if scene != insisted:
                 check_first_picture(scene)
         self._await_first_kernels(scene, stop)
-        with live.flag.held(anew=True):
+        with live.flag.held(is_new=True):
             result = live.advance(samples) if samples else live.step(speed)
         yield result
 
@@ -262,10 +262,10 @@ class MainPicture:
     def _failed(self, error: Exception) -> None:
         """Pass a failure on; the next picture is timed from its own request."""
         self._requested_at = None
-        self._host.failed(error)
+        self._host.report_failure(error)
 
     def _count_answer(self) -> None:
-        """Count how long the first picture took, and say so if the server is busy with many visitors."""
+        """Count how long the first picture took, and say so if the server is busy with many sessions."""
         if self._requested_at is None:
             return
         seconds, self._requested_at = time.monotonic() - self._requested_at, None

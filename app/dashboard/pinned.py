@@ -13,7 +13,7 @@ from ..frames import samples_for
 from ..parts.stage.pinned_trains import SIGNS
 from ..serve.compiling.compiler import PICTURE_PIECES
 from ..serve.computing.cpu_time import CpuTime
-from ..serve.computing.queues import ANALYSES, CURVES
+from ..serve.computing.worker_pools import ANALYSES, CURVES
 from ..session.budget import check_first_picture, curve_affordable
 from ..session.host import Host
 from ..session.message_checks import listed
@@ -21,7 +21,7 @@ from ..session.page import Actions
 from ..session.pins import NAMES, Pin, compared_rows, setting_words
 from ..session.scene_facts import without_frequency
 from ..session.starts import MOST_BEADS
-from ..session.task import Job, Task, say_nothing
+from ..session.task import Job, Task, report_nothing
 from .layout import Views
 
 
@@ -37,8 +37,8 @@ class Pinned:
         self._views = views
         self._runs: dict[str, Run] = {}
         self._curves: dict[Scene, list[CurvePoint]] = {}
-        self._task = Task(host, ANALYSES, say_nothing, "The pinned picture", tell_host=True)
-        self._curve_task = Task(host, CURVES, say_nothing, "The curve of a pinned picture", tell_host=True)
+        self._task = Task(host, ANALYSES, report_nothing, "The pinned picture", report_to_host=True)
+        self._curve_task = Task(host, CURVES, report_nothing, "The curve of a pinned picture", report_to_host=True)
         self.actions: Actions = {"pin": lambda _: self._add(), "unpin": self._remove, "pin-open": self._open}
 
     def show(self) -> None:
@@ -66,7 +66,7 @@ class Pinned:
     def picture_ready(self, settled: Settled) -> None:
         """Compare the pins with another picture."""
         if self._session.pins and settled.final:
-            self._tell()
+            self._show()
 
     # What the visitor does
 
@@ -147,9 +147,9 @@ class Pinned:
         self._views.trains.pin(runs)
         self._views.curve.pin([(name, run.scene.f, run.max_output_force)
                                for name, run in zip(NAMES, runs, strict=False) if run is not None])
-        self._tell()
+        self._show()
 
-    def _tell(self) -> None:
+    def _show(self) -> None:
         session = self._session
         settled = session.settled
         self._views.tabs.send(

@@ -19,7 +19,7 @@ from .pinned import Pinned
 
 
 class SceneChanges:
-    """Turns the knobs of one visitor, opens scenes, and informs the pages and the other parts of the dashboard."""
+    """Turns the knobs of one session, opens scenes, and notifies the pages and the other parts of the dashboard."""
 
     def __init__(self, session: Session, views: Views, pictures: MainPicture, curves: CurveController, pinned: Pinned,
                  pages: Sequence[Page], show_message: Callable[[str], None],
@@ -32,7 +32,7 @@ class SceneChanges:
         self._pages = pages
         self._show_message = show_message
         self._next_tick = next_tick
-        #: The settled picture of which the pages have not been informed yet.
+        #: The settled picture of which the pages have not been notified yet.
         self._picture_for_pages: Settled | None = None
         self.actions: Actions = {"set": self._set, "restore": self._restore, "scene": self._scene, "go": self._go}
 
@@ -66,7 +66,7 @@ class SceneChanges:
         self._views.scales.forget()
         self._views.knobs.state = knob_state(scene)
         self._views.tabs.update_state(look_at=scene.look_at, paper=scene.paper)
-        self._tell_of_scene()
+        self._notify_of_scene()
         self._session.curves = self._curves.show_preset(scene, curves)
         self._views.header.show_session(self._session)
         if self._session.mode == "live":
@@ -87,11 +87,11 @@ class SceneChanges:
         self._pictures.compute(initial_state)
 
     def picture_ready(self, settled: Settled) -> None:
-        """Inform the pages once a picture is offered to the browser, unless another is requested or ready by then."""
+        """Notify the pages once a picture is offered to the browser, unless another is requested or ready by then."""
         self._picture_for_pages = settled
-        self._next_tick(self._tell_picture)
+        self._next_tick(self._notify_of_picture)
 
-    def _tell_picture(self) -> None:
+    def _notify_of_picture(self) -> None:
         settled, self._picture_for_pages = self._picture_for_pages, None
         if settled is not None:
             for page in self._pages:
@@ -119,8 +119,8 @@ class SceneChanges:
     def _go(self, message: dict[str, Any]) -> None:
         """A step back or forward: the session becomes what the address says, its picture to the last digit.
 
-        The browser is told in any case: until it is, it takes every change for a part of the step (`Steps.returning` of
-        address.js), and no change could be undone any more.
+        The browser is notified in any case: until then it takes every change for a part of the step (`Steps.returning`
+        of address.js), and no change could be undone any more.
         """
         try:
             self._apply(str(message.get("query", "")))
@@ -159,15 +159,15 @@ class SceneChanges:
         self._follow_knobs(initial_state)
 
     def _follow_knobs(self, initial_state: State | None = None) -> None:
-        """The knobs were turned: request a picture first, then inform the pages and the curve."""
+        """The knobs were turned: request a picture first, then notify the pages and the curve."""
         self.request_picture(initial_state)
         if self._session.sentence:
             self._show_message("")
-        self._tell_of_scene()
+        self._notify_of_scene()
         self._curves.knob_moved(self._session.scene)
 
-    def _tell_of_scene(self) -> None:
-        """Inform pins, pages, equation and tabs of the session's scene."""
+    def _notify_of_scene(self) -> None:
+        """Notify pins, pages, equation and tabs of the session's scene."""
         scene = self._session.scene
         self._pinned.scene_changed()
         for page in self._pages:

@@ -41,7 +41,7 @@ class Sentences:
         self._session.notice = notice
         self._show()
 
-    def failed(self, error: Exception) -> None:
+    def report_failure(self, error: Exception) -> None:
         """Say in one sentence what happened; the last good picture stays."""
         if isinstance(error, RefusedPicture):
             METRICS.count("refused_pictures")
@@ -67,7 +67,7 @@ class Sentences:
                                 insist=self._refused is not None)
 
     def _insist(self, _: dict[str, Any]) -> None:
-        """Compute what was refused because it takes long; the other visitors still have their turns."""
+        """Compute what was refused because it takes long; the other sessions still have their turns."""
         if self._refused is not None and self._refused == self._session.scene:
             self._session.insisted = self._refused
             self.show_message("")

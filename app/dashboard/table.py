@@ -12,9 +12,10 @@ from ..pages.analysis.page import AnalysisPage
 from ..pages.analysis.view import Analysis
 from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
+from ..pages.data.page import DataPage
 from ..pages.effects.page import EffectsPage
-from ..pages.hard_cases.page import HardCasesPage
-from ..pages.hard_cases.view import ABOUT, HardCases
+from ..pages.hard.page import HardCasesPage
+from ..pages.hard.view import ABOUT, HardCases
 from ..pages.map.page import MapPage
 from ..pages.numbers.page import NumbersPage
 from ..pages.observer.page import ObserverPage
@@ -48,12 +49,12 @@ class TabSpec:
 class PageSpec:
     """One page: its name in messages, in links and on its tab, what is computed and how it is drawn.
 
-    `page` is made with the host and the view. `view` lies over the pictures; a page without one is drawn in its tab by
+    `page` is made with the host and the view. `view` is an overlay; a page without one is drawn in its tab by
     tabs.js. `placeholder` stands in the tab until the page has something to say. A tab whose `height` is "taller" gets
     more room than usual, and one that is "tallest" also takes the place of the curve, except on a phone. `group` is one
     of `GROUPS`. A page that `works_hidden` goes on while its window is hidden or its tab is scrolled off the screen;
-    the others count as not looked at then (`Page.visibility_changed`). While a page that `needs_curve` lies over the
-    pictures, the resonance curve is computed as if it were on the screen.
+    the others count as not looked at then (`Page.visibility_changed`). While an overlay that `needs_curve` is
+    open, the resonance curve is computed as if it were on the screen.
     """
 
     name: str
@@ -90,7 +91,7 @@ TABS: tuple[PageSpec | TabSpec, ...] = (
         "The figures of Zhang et al. (2016), computed from the presets, and where we differ.", height="usual",
         group="learn"),
     PageSpec("numbers", NumbersPage, None, group=""),
-    TabSpec("data", "", height="taller"),
+    PageSpec("data", DataPage, None, group=""),
 )
 PAGES = tuple(row for row in TABS if isinstance(row, PageSpec))
 #: What the resonance curve, which is not a page, is called in the message `visible`.
@@ -127,5 +128,5 @@ def tab_names() -> tuple[str, ...]:
 
 
 def overlay_names() -> tuple[str, ...]:
-    """The pages that lie over the pictures."""
+    """The overlays."""
     return tuple(row.name for row in PAGES if row.view)

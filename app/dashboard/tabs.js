@@ -2,6 +2,7 @@
 
 import { accuracyTab } from "../pages/accuracy/accuracy_tab.js";
 import { branchesTab } from "../pages/branches/branches_tab.js";
+import { dataTab, saveSample } from "../pages/data/data_tab.js";
 import { effectsTab } from "../pages/effects/effects.js";
 import { mapMessage } from "../pages/map/map_state.js";
 import { mapTab } from "../pages/map/map.js";
@@ -12,14 +13,13 @@ import { leaveStories, storiesTab } from "../pages/stories/stories_tab.js";
 import { probeTab } from "../pages/probe/probe_tab.js";
 import { stabilityTab } from "../pages/stability/stability_tab.js";
 import { button, element, openButton, paragraph, PHONE } from "../parts/toolkit/dom.js";
-import { dataTab, saveSample } from "./data_tab.js";
 import { lookAtTab, regimesTab } from "./scene_tabs.js";
 import { explainTerms } from "./terms.js";
 import { watchVisibility } from "./visibility.js";
 
 // Functions that make the tabs. If a function returns `show`, that draws the tab again when its page publishes something.
 // A tab that `updatesItself` is not made anew when the state changes, so what is under the pointer stays. A tab without
-// a page over the pictures needs its function here (tests/dashboard/test_table.py).
+// an overlay needs its function here (tests/dashboard/test_table.py).
 const TABS = {
   stories: storiesTab,
   "look at": lookAtTab,
@@ -36,7 +36,7 @@ const TABS = {
 };
 
 // The tab without a function in TABS: the sentence of its page or its placeholder, and a button that opens the page if
-// it lies over the pictures.
+// it is an overlay.
 function plainTab({ state: { pages } }, { name, placeholder }) {
   const line = paragraph();
   const show = () => {

@@ -5,7 +5,7 @@ import { onScreen, PHONE } from "../parts/toolkit/dom.js";
 const CURVE_NAME = "curve"; // stands for the curve among the names of the pages
 
 // Calls `tell(name, value)` when somebody begins or ceases to look at a page or at the curve. One looks at a page in
-// its tab, or over the pictures, where it hides tabs and curve. A page that works hidden counts as looked at while it is
+// its tab, or as an overlay, where it hides tabs and curve. A page that works hidden counts as looked at while it is
 // open, even if its window is hidden or its tab is scrolled off the screen. The curve counts as looked at on a phone and
 // in a story, because the status line takes names from it. Scripts find the same names in `granchain.visible`; the event
 // "visible" announces a change.

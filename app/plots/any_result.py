@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 from bokeh.layouts import column
@@ -32,7 +33,7 @@ from granchain_core import (
     WorkPrecision,
 )
 from granchain_core.experiment import Measured
-from granchain_core.inputs.checks import unknown_name
+from granchain_core.inputs.checks import unknown_name, whole_number
 from granchain_core.paper import (
     EnergyMaps,
     Observers,
@@ -55,6 +56,7 @@ from .motion import motion
 from .multipliers import multipliers
 from .observation import observation
 from .paper import paper_figure, size_of
+from .probe import FIGURES, probe
 from .rotation import rotation
 from .spectrum import spectrum
 from .strobe_diagram import strobe_diagram
@@ -108,6 +110,11 @@ def _strobes(found: StrobeDiagram, theme: Theme, bead: int | None = None) -> Lay
     return strobe_diagram(found, found.scene.N if bead is None else bead, theme)
 
 
+def _bead(name: str, found: Run | Settled, theme: Theme, bead: int | None = None) -> LayoutDOM:
+    run = found.run if isinstance(found, Settled) else found
+    return probe(name, run, run.scene.N if bead is None else whole_number("bead =", bead, 1, run.scene.N), theme)
+
+
 #: The function that draws each class of results.
 DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
     Run: motion, Settled: _settled, Driven: motion, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
@@ -115,37 +122,52 @@ DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
     Transfer: transfer, LyapunovSpectrum: lyapunov, RotationNumber: rotation, StrobeDiagram: _strobes,
     Basins: basins, Attractors: attractors,
 }
+#: What draws further figures of a class of results, by the class and what `kind` calls the figure.
+FURTHER_DRAWERS: dict[tuple[type, str], Callable[..., LayoutDOM]] = {
+    **{(Run, name): partial(_bead, name) for name in FIGURES},
+    **{(Settled, name): partial(_bead, name) for name in FIGURES},
+}
 _PAPER = (EnergyMaps, Observers, Rig, RigResponse, ShakerAmplitude, Trains, Transmission)
 #: Lists of results that are drawn over each other.
 _TOGETHER: dict[type, Callable[..., LayoutDOM]] = {Curve: curve, Branch: branches}
 
 
 def bokeh_figure_of(result: Any, theme: str = "light", width: int | None = None, height: int | None = None,
-              **options: Any) -> LayoutDOM:
+                    kind: str = "", **options: Any) -> LayoutDOM:
     """The figure of a result with a size of its own; what `granchain.figure` says of it holds."""
-    drawn, size = _drawn(result, theme, options)
+    drawn, size = _drawn(result, theme, kind, options)
     drawn.update(sizing_mode="fixed", width=width or size[0], height=height or size[1])
     return drawn
 
 
-def stretched(result: Any, theme: str = "light", **options: Any) -> LayoutDOM:
+def stretched(result: Any, theme: str = "light", kind: str = "", **options: Any) -> LayoutDOM:
     """The figure of a result that fills its page."""
-    return _drawn(result, theme, options)[0]
+    return _drawn(result, theme, kind, options)[0]
 
 
-def _drawn(result: Any, theme: str, options: Mapping[str, Any]) -> tuple[LayoutDOM, tuple[int, int]]:
+def _drawn(result: Any, theme: str, kind: str, options: Mapping[str, Any]) -> tuple[LayoutDOM, tuple[int, int]]:
     """The figure of a result, and the size in which it reads well."""
     if theme not in THEMES:
         raise unknown_name("theme", theme, THEMES)
-    draw, size = _drawing(result)
+    draw, size = (_further(result, kind), (WIDTH, HEIGHT)) if kind else _drawing(result)
     try:
         drawn = draw(result, THEMES[theme], **options)
     except TypeError as problem:
         unknown = [name for name in options if repr(name) in str(problem)]
         if not unknown:
             raise
-        raise BadInput(f"The picture of a {type(result).__name__} has no option {unknown[0]!r}.") from None
+        raise BadInput(f"The figure of a {type(result).__name__} has no option {unknown[0]!r}.") from None
     return drawn, size
+
+
+def _further(result: Any, kind: str) -> Callable[..., LayoutDOM]:
+    """The function that draws a further figure of a result."""
+    offered = {name: draw for (one, name), draw in FURTHER_DRAWERS.items() if isinstance(result, one)}
+    if not offered:
+        raise BadInput(f"There is no figure of a kind {kind!r} of a {type(result).__name__}; leave the kind out.")
+    if kind not in offered:
+        raise unknown_name("kind of figure", kind, tuple(offered))
+    return offered[kind]
 
 
 def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
@@ -159,6 +181,6 @@ def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
         for kind, draw in _TOGETHER.items():
             if all(isinstance(one, kind) for one in result):
                 return draw, (WIDTH, HEIGHT)
-    raise BadInput(f"There is no picture of a {type(result).__name__}; there are those of "
+    raise BadInput(f"There is no figure of a {type(result).__name__}; there are those of "
                    f"{', '.join(kind.__name__ for kind in DRAWERS)}, of lists of curves or branches, and of the "
                    "results of granchain_core.paper.compute.")

@@ -107,7 +107,7 @@ def forces_in_words(points: Sequence[CurvePoint]) -> dict[str, list[str]]:
 
 @functools.lru_cache(maxsize=4096)
 def _force(newtons: float, relative: float | None) -> str:
-    """Remembered: a growing curve is drawn again and again, for every visitor of a class."""
+    """Remembered: a growing curve is drawn again and again, for every session of a class."""
     error = ", no error stated" if relative is None else f", relative error {short_error(relative)}"
     return in_words(newtons, "N", figures_of(relative, 5)) + error
 

@@ -1,4 +1,4 @@
-"""A figure as Bokeh's JSON, as pages send it to the browser, and what Bokeh makes without a visitor's document."""
+"""A figure as Bokeh's JSON, as pages send it to the browser, and what Bokeh makes without a session's document."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def with_own_document(make: Callable[[], T]) -> T:
     """What `make` returns, called with a document of its own as Bokeh's current one.
 
     Bokeh asks for the current document and keeps only a weak reference to it. An error in the document of another
-    visitor may have left that one current for the whole process; once that visitor has left, asking for it fails.
+    session may have left that one current for the whole process; once that session has ended, asking for it fails.
     """
     own, failure = Document(), None
     with patch_curdoc(own):  # it is not taken back where an error passes through it

@@ -32,7 +32,7 @@ from .force_lines import DRIVE, ELASTIC, INPUT, OUTPUT, LineStyle, columns, forc
 from .theme import Theme
 from .themed import apply_theme, empty_figure, themed
 
-#: Most rows of the picture of energies, and most points of a line.
+#: Most rows of the energy map, and most points of a line.
 _MOST_ROWS = 2000
 #: Width of the panels beside the energies [px].
 _SIDE_WIDTH = 190

@@ -1,1 +1,1 @@
-"""The server's machinery: requests, documents, computing for many visitors, compiling, opening, log and metrics."""
+"""The server's machinery: requests, documents, computing for many sessions, compiling, monkeypatches, monitoring."""

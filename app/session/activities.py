@@ -1,4 +1,4 @@
-"""The list of what is being computed for one visitor."""
+"""The list of what is being computed for one session."""
 
 from __future__ import annotations
 

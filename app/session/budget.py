@@ -1,4 +1,4 @@
-"""Limits on one visitor's requests: the estimated time of a picture and of a curve."""
+"""Limits on one session's requests: the estimated time of a picture and of a curve."""
 
 from __future__ import annotations
 

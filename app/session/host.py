@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 from granchain_core import CurvePoint, Scene, State
+from granchain_core.experiment import Difference, Measured
 
 from .activities import Activity
 from .session import Session
 
+if TYPE_CHECKING:
+    from granchain_core.fit.overlay import Overlay
+
 
 class Caller(Protocol):
-    """Calls with the document locked, until the visitor leaves."""
+    """Calls with the document locked, until the session ends."""
 
     def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
         """Call `action` with the document locked, as soon as that is possible; from any thread."""
@@ -21,7 +25,7 @@ class Caller(Protocol):
         """Call `action` with the document locked, after `seconds`."""
 
     def on_close(self, action: Callable[[], object]) -> None:
-        """Call `action` when the visitor leaves; nothing is called by `next_tick` or `call_later` from then on."""
+        """Call `action` when the session ends; nothing is called by `next_tick` or `call_later` from then on."""
 
 
 class WorkHost(Caller, Protocol):
@@ -39,15 +43,15 @@ class WorkHost(Caller, Protocol):
     def awaiting_picture(self) -> bool:
         """Whether a knob has moved and its steady picture is not there yet; false for a live run, which never ends."""
 
-    def failed(self, error: Exception) -> None:
-        """Tell the visitor about a failure that has no place on its own page."""
+    def report_failure(self, error: Exception) -> None:
+        """Show the visitor a failure that has no place on its own page."""
 
     def report_fault(self, error: Exception, sentence: str) -> None:
         """Log an error of granchain itself, and show `sentence`, which is empty where a page shows its own."""
 
 
 class Host(WorkHost, Protocol):
-    """One visitor's dashboard, as its pages see it.
+    """One session's dashboard, as its pages see it.
 
     Any thread may call `next_tick` and read the flags `busy`, `awaiting_picture` and `curve_computing`. Everything else
     is used with the document locked.
@@ -57,7 +61,7 @@ class Host(WorkHost, Protocol):
 
     @property
     def overlays(self) -> tuple[str, ...]:
-        """The pages over the pictures, by name."""
+        """The overlays, by name."""
 
     @property
     def curve_computing(self) -> bool:
@@ -66,8 +70,14 @@ class Host(WorkHost, Protocol):
     def complete_curve(self) -> list[CurvePoint]:
         """The resonance curve from rest of the present knobs, in order of frequency; empty unless it is complete."""
 
+    def show_measured_curve(self, measured: Measured | None) -> Difference | None:
+        """Draw a measured curve over the resonance curve, or none; return how they differ if the latter is complete."""
+
+    def show_measured_series(self, found: Overlay | None) -> None:
+        """Draw a measured series over the force trains, or none."""
+
     def activities(self) -> list[Activity]:
-        """Everything that is computed for this visitor, or could be."""
+        """Everything that is computed for this session, or could be."""
 
     def show(self, scene: Scene, state: State | None = None, mode: str = "settled") -> None:
         """Turn the knobs to `scene` and show its motion, from `state` or from where the visitor chose.

@@ -71,7 +71,7 @@ class LiveRun:
         self._last = None
 
     def close(self) -> None:
-        """End the computation under way: the visitor left."""
+        """End the computation under way: the session ended."""
         self.flag.set()
 
     def step(self, periods_per_second: float) -> LiveStep:

@@ -1,4 +1,4 @@
-"""The base class of pages: the hooks through which the dashboard informs them."""
+"""The base class of pages: the hooks through which the dashboard notifies them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from granchain_core import Settled
+from granchain_core.experiment import Difference
 
 from ..plots.theme import Theme
 from .activities import Activity
@@ -14,9 +15,9 @@ Actions = Mapping[str, Callable[[dict[str, Any]], None]]
 
 
 class Page:
-    """One page of one visitor. Hooks are called with the document locked; by default they do nothing.
+    """One page of one session. Hooks are called with the document locked; by default they do nothing.
 
-    All visitors share the event loop in which hooks and actions run, so none may take longer than about ten
+    All sessions share the event loop in which hooks and actions run, so none may take longer than about ten
     milliseconds; longer work is a `Task`.
 
     `actions` maps the "do" of a browser message to its handler; every name may be used only once in the dashboard.
@@ -46,6 +47,9 @@ class Page:
 
     def curve_ready(self) -> None:
         """The resonance curve from rest is complete: `Host.complete_curve` has it."""
+
+    def curve_compared(self, difference: Difference | None) -> None:
+        """A measured curve was compared with the complete curve from rest; with None, a new curve was begun."""
 
     def theme_changed(self, theme: Theme) -> None:
         """The page is shown in another theme; a view's own figures follow by themselves."""

@@ -1,4 +1,4 @@
-"""The state of one visitor's page: scene, mode, start, the last good picture, and a sentence if something failed.
+"""The state of one session's page: scene, mode, start, the last good picture, and a sentence if something failed.
 
 No Panel and no Bokeh in here, so that every rule of the page can be tested without a browser.
 """
@@ -10,11 +10,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from granchain_core import BadInput, Scene, Settled, State, scene
+from granchain_core.experiment import Measured, Series
 
 from ..serve.computing.cpu_time import CpuTime
 from .message_checks import is_number, quoted
 from .pins import Pin, pin_texts
-from .share import BROWSER_FIELDS, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in
+from .share import BROWSER_FIELDS, DEFAULT_SCENE, QUESTION, SPEEDS, START, VIEW, VIEW_VALUES, encode, pins_in
 from .starts import start_text
 from .switches import ACCOUNT_SWITCH, changes
 
@@ -30,7 +31,7 @@ class Session:
     """
 
     #: The chain with the knobs as they are.
-    scene: Scene = field(default_factory=lambda: scene("sec2"))
+    scene: Scene = field(default_factory=lambda: scene(DEFAULT_SCENE))
     #: Whether the steady motion is shown, "settled", or a run that goes on while knobs move, "live".
     mode: str = "settled"
     #: Where a settled picture starts: "rest", or "previous", the state of the picture before.
@@ -41,7 +42,7 @@ class Session:
     scale: str = "same"
     #: What is drawn on the resonance curve: "auto" for what suits the scene, or names joined by dots, "rest.up".
     curves: str = "auto"
-    #: The "tab" that the address opens and the "page" over the pictures; only those that it names.
+    #: The "tab" that the address opens and the "page", an overlay; only those that it names.
     place: dict[str, str] = field(default_factory=dict)
     #: Drive periods shown in a second.
     speed: float = 1.0
@@ -59,10 +60,12 @@ class Session:
     energy_account: bool = False
     #: Values that knobs had when their effect was switched off, for when it is switched on again.
     remembered: dict[str, Any] = field(default_factory=dict)
-    #: The processor time of its pictures, by which visitors take turns.
+    #: The processor time of its pictures, by which sessions take turns.
     cpu_time: CpuTime = field(default_factory=CpuTime)
     #: The scene that is computed however long it takes, because the visitor has insisted.
     insisted: Scene | None = None
+    #: The visitor's own measurement, which is drawn over the figures and saved with a run.
+    measured: Measured | Series | None = None
     #: The pinned pictures.
     pins: tuple[Pin, ...] = ()
     #: The step of a story that is told, "NAME.STEP"; empty for none.

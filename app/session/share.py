@@ -12,7 +12,7 @@ from itertools import combinations
 from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
-from granchain_core import BadInput, Scene, scene, scene_names
+from granchain_core import BadInput, Scene, scene
 from granchain_core.inputs.checks import unknown_name
 from granchain_core.scene.quantities import QUANTITIES
 from granchain_core.steady.curve.order import CURVE_STARTS
@@ -20,6 +20,8 @@ from granchain_core.steady.curve.order import CURVE_STARTS
 from ..plots.theme import THEMES
 
 VERSION = "1"
+#: The scene of a page that is opened without a link.
+DEFAULT_SCENE = "sec2"
 #: What the curve's figure may draw: curves from rest and by sweeps, and the paper's stated features.
 CURVES = (*CURVE_STARTS, "features")
 
@@ -60,7 +62,7 @@ VIEW: dict[str, ViewField] = {
     "account": ViewField("energy_account", ("off", "on"), lambda text: text == "on", lambda on: "on" if on else "off"),
 }
 #: Fields that the browser adds to a link, because it alone knows them (`parts/inline_scripts/address.js`): the open
-#: tab, the page over the pictures, the theme if the visitor has chosen one, and whether another page embeds this one.
+#: tab, the overlay, the theme if the visitor has chosen one, and whether another page embeds this one.
 BROWSER_FIELDS = ("tab", "page", "look", "embed")
 #: The values of the view settings; the first is the default.
 VIEW_VALUES: dict[str, tuple[str, ...]] = {name: field.values for name, field in VIEW.items()}
@@ -110,12 +112,12 @@ def decode(query: str, more: Mapping[str, Sequence[str]] | None = None) -> tuple
     """
     known = {**VIEW_VALUES, **(more or {})}
     if len(query) > LONGEST:
-        return scene(scene_names()[0]), {}, [f"The link is longer than {LONGEST} characters and was not read."]
+        return scene(DEFAULT_SCENE), {}, [f"The link is longer than {LONGEST} characters and was not read."]
     refused: list[str] = []
     fields = _fields(query, refused)
     if fields.pop("v", VERSION) != VERSION:
         refused.append(f"The link's format is not version {VERSION}; only the fields that are understood were used.")
-    shown = _scene(fields.pop("scene", scene_names()[0]), refused)
+    shown = _scene(fields.pop("scene", DEFAULT_SCENE), refused)
     view: dict[str, str] = {}
     # kappa last: it is converted with the link's own A0, and replaces k only if it is valid
     for name, text in sorted(fields.items(), key=lambda field: field[0] == "kappa"):
@@ -158,7 +160,7 @@ def _scene(name: str, refused: list[str]) -> Scene:
         return scene(name)
     except BadInput as problem:
         refused.append(f"In the link: {problem}")
-        return scene(scene_names()[0])
+        return scene(DEFAULT_SCENE)
 
 
 if {*VIEW_VALUES, START, QUESTION, *PINS} & set(QUANTITIES):

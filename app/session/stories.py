@@ -58,7 +58,7 @@ class Expect:
 class StoryStep:
     """One step. `via` are frequencies [Hz] at which the chain is settled before, one after the other, from rest.
 
-    `look` is the part of the main page that it is about, `page` the page over the pictures that it offers to open.
+    `look` is the part of the main page that it is about, `page` the overlay that it offers to open.
     """
 
     say: str

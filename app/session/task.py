@@ -11,8 +11,8 @@ from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
 from granchain_core.execution.stop import Stop
 
 from ..serve.compiling.compiler import COMPILER
-from ..serve.computing.queues import Queue
 from ..serve.computing.turns import Flag
+from ..serve.computing.worker_pools import WorkerPool
 from .host import WorkHost
 from .progress import Status
 
@@ -23,20 +23,20 @@ _PICTURE_CHECK_INTERVAL = 0.01
 _LONGEST_CHECK_INTERVAL = 0.2
 
 #: Called with a status and a sentence, which is empty unless the status is "failed".
-Say = Callable[[Status, str], None]
+Report = Callable[[Status, str], None]
 
 
-def say_nothing(status: Status, sentence: str) -> None:
+def report_nothing(status: Status, sentence: str) -> None:
     """Show no status, for a task whose result is all there is to see; the host reports failures."""
 
 
 class Job:
     """One run of a task, as its work sees it from a worker thread."""
 
-    def __init__(self, host: WorkHost, say: Say) -> None:
+    def __init__(self, host: WorkHost, report: Report) -> None:
         self.stop: Stop = Flag()
         self._host = host
-        self._say = say
+        self._report = report
 
     def next_tick(self, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
         """Call `action` with the document locked, unless the job is cancelled by then."""
@@ -47,15 +47,15 @@ class Job:
 
         self._host.next_tick(act)
 
-    def say(self, status: Status) -> None:
+    def report(self, status: Status) -> None:
         """Report the state of the work."""
-        self.next_tick(self._say, status, "")
+        self.next_tick(self._report, status, "")
 
     def compile(self, scene: Scene, *pieces: str) -> None:
         """Wait until these kernels are compiled and loaded, and report "compiling" meanwhile. Raises `Cancelled`."""
         for piece in pieces:
             if not COMPILER.has(scene, piece):
-                self.say("compiling")
+                self.report("compiling")
             if not COMPILER.await_piece(scene, piece, self.stop):
                 raise Cancelled
             COMPILER.load(scene, piece)
@@ -89,20 +89,20 @@ class Job:
 
 
 class Task:
-    """One kind of background work of a page; a new start replaces the last, and it ends when the visitor leaves.
+    """One kind of background work of a page; a new start replaces the last, and it ends when the session ends.
 
-    `say` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the work
-    reports. `title` begins the sentence about a fault. With `tell_host` the dashboard tells the visitor of errors, for
-    work whose page has no place for them.
+    `report` is called with the document locked: with "done", with "failed" and a sentence, or with a status that the
+    work reports. `title` begins the sentence about a fault. With `report_to_host` the dashboard shows errors, for work
+    whose page has no place for them.
     """
 
-    def __init__(self, host: WorkHost, queue: Queue, say: Say, title: str = "The computation",
-                 tell_host: bool = False) -> None:
+    def __init__(self, host: WorkHost, pool: WorkerPool, report: Report, title: str = "The computation",
+                 report_to_host: bool = False) -> None:
         self._host = host
-        self._queue = queue
-        self._say = say
+        self._pool = pool
+        self._report = report
         self._title = title
-        self._tell_host = tell_host
+        self._report_to_host = report_to_host
         self._job: Job | None = None
         self._queued: Future[None] | None = None
         host.on_close(self.cancel)
@@ -115,8 +115,8 @@ class Task:
     def start(self, work: Callable[[Job], None]) -> None:
         """Queue `work`, in place of what was started before."""
         self.cancel()
-        self._job = job = Job(self._host, self._say)
-        self._queued = self._queue.submit(self._run, work, job, owner=self._host)
+        self._job = job = Job(self._host, self._report)
+        self._queued = self._pool.submit(self._run, work, job, owner=self._host)
 
     def cancel(self) -> bool:
         """Cancel the work under way, so that nothing more of it arrives; return whether there was any.
@@ -132,7 +132,7 @@ class Task:
         return job is not None
 
     def _run(self, work: Callable[[Job], None], job: Job) -> None:
-        """In a thread of the queue."""
+        """In a thread of the pool."""
         if job.stop:
             return
         try:
@@ -145,12 +145,12 @@ class Task:
             sentence = (f"{self._title} failed because of an error in granchain ({type(error).__name__}); "
                         "please report it.")
             job.next_tick(self._end, "failed", sentence)
-            self._host.next_tick(self._host.report_fault, error, sentence if self._tell_host else "")
+            self._host.next_tick(self._host.report_fault, error, sentence if self._report_to_host else "")
         else:
             job.next_tick(self._end, "done")
 
     def _end(self, status: Status, sentence: str = "", problem: Exception | None = None) -> None:
         self._job = None
-        self._say(status, sentence)
-        if problem is not None and self._tell_host:
-            self._host.failed(problem)
+        self._report(status, sentence)
+        if problem is not None and self._report_to_host:
+            self._host.report_failure(problem)

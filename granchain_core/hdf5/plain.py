@@ -204,7 +204,7 @@ def _value(value: Any, called: str) -> float | int | str:
 # --- the same as a program --------------------------------------------------------------------------------
 
 
-def serve(file: Plain, requests: Iterable[bytes], out: BinaryIO) -> None:
+def answer_requests(file: Plain, requests: Iterable[bytes], out: BinaryIO) -> None:
     """Answer requests: one line of JSON each and, for numbers, their bytes after it."""
     for line in requests:
         name, *words = json.loads(line)
@@ -259,7 +259,7 @@ def main() -> None:
         return
     sys.stdout.buffer.write(b'{"found": null}\n')
     sys.stdout.buffer.flush()
-    serve(file, sys.stdin.buffer, sys.stdout.buffer)
+    answer_requests(file, sys.stdin.buffer, sys.stdout.buffer)
     os._exit(0)  # a damaged file may not close
 
 

@@ -57,7 +57,7 @@ def estimate(scene: Scene, setting: Setting, periods: int, samples: int, record:
 def _estimate(scaled: ScaledChain, setting: Setting, periods: int, samples: int, record: int) -> Estimate:
     beads, steps, seconds = scaled.beads, 0.0, 0.0
     finer = setting.finer_than(scaled, samples)
-    twice = _share(setting) + _share(finer)
+    twice = _relative_cost(setting) + _relative_cost(finer)
     for one in (setting, finer):
         cost = METHODS[one.method].cost
         if METHODS[one.method].adaptive:
@@ -68,8 +68,8 @@ def _estimate(scaled: ScaledChain, setting: Setting, periods: int, samples: int,
             count = float(periods * one.steps_per_period(scaled, samples))
         steps += count
         seconds += count * (cost.fixed + cost.each * (beads + 1))
-    often = np.sqrt(1.0 + _share(finer.finer_than(scaled, samples)) / twice)
-    steps, seconds = steps * often, seconds * often
+    repetition_factor = np.sqrt(1.0 + _relative_cost(finer.finer_than(scaled, samples)) / twice)
+    steps, seconds = steps * repetition_factor, seconds * repetition_factor
     seconds += 2.0 * record * samples * (_SAMPLE[0] + _SAMPLE[1] * beads)
     return Estimate(seconds * machine_factor(), steps)
 
@@ -102,7 +102,7 @@ def refuse_long_picture(scene: Scene, periods: int, samples: int, budget: float)
                      f"is {_in_words(budget)}: {remedy}.", seconds, budget)
 
 
-def _share(setting: Setting) -> float:
+def _relative_cost(setting: Setting) -> float:
     """Relative cost of a computation among those of the same run."""
     if METHODS[setting.method].adaptive:
         return float(max(setting.tolerance, 1e-16) ** -METHODS[setting.method].cost.power)

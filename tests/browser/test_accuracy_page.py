@@ -119,7 +119,7 @@ def fits(page: Page, sheet: Locator) -> None:
     """At every size the figure is inside the window."""
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
         resize(page, width, height)
-        box = sheet.locator(".work .picture").bounding_box()
+        box = sheet.locator(".work .figure").bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200, width
 
 

@@ -35,7 +35,7 @@ def test_the_first_question_is_answered_unasked_and_follows_the_knobs(visit: Vis
     drawn(1150)
     assert "question" not in page.url  # nobody has asked
     sheet.get_by_role("button", name="Which frequencies?").click()
-    expect(sheet.locator(".picture")).to_be_hidden()
+    expect(sheet.locator(".figure")).to_be_hidden()
     sheet.get_by_role("button", name="compute").click()
     drawn(1150)
     until(page, lambda: "question" in page.url)
@@ -59,7 +59,7 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
         "granchain.pages.get('analysis').figure.document && kept !== granchain.pages.get('analysis').figure.document")))
 
     sheet.get_by_role("button", name="Is it chaos?").click()
-    expect(sheet.locator(".picture")).to_be_hidden()
+    expect(sheet.locator(".figure")).to_be_hidden()
     sheet.get_by_label("drive periods").fill("3")
     compute.click()
     expect(sheet.get_by_role("button", name="stop")).to_be_hidden()
@@ -76,7 +76,7 @@ def test_questions_are_answered_refused_and_given_up(visit: Visit) -> None:
     type_into(page, "f", "1140")
     expect(sheet.locator(".status")).to_have_text("stopped")
     expect(sheet.get_by_label("starts along each")).to_have_value("40")  # what was typed stays
-    expect(sheet.locator(".picture")).to_be_hidden()
+    expect(sheet.locator(".figure")).to_be_hidden()
 
     until(page, lambda: "starts%3D40" in page.url)  # the address has the question and what was chosen
     page.reload()

@@ -156,7 +156,7 @@ def test_the_page_fits_and_moved_knobs_grey_the_branch(visit: Visit) -> None:
     assert source(page, "branches", "stable")["x"]
     for width, height in ((390, 844), (1280, 800)):
         resize(page, width, height)
-        box = sheet.locator(".work .picture").bounding_box()
+        box = sheet.locator(".work .figure").bounding_box()
         assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > 200
     stop(sheet)
     damping = field(page, "D")

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import signal
 from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
@@ -14,28 +16,44 @@ from playwright.sync_api import Browser, Page, expect
 from server import Server
 
 
-@pytest.fixture
-def server(tmp_path: Path) -> Iterator[Server]:
-    """A dashboard of this test's own."""
-    one = Server(tmp_path / "log")
-    one.start()
-    yield one
-    one.kill()
+@contextmanager
+def running(folder: Path) -> Iterator[Server]:
+    """A dashboard that runs until the block ends, or is killed before."""
+    server = Server(folder / "log")
+    server.start()
+    try:
+        yield server
+    finally:
+        server.kill()
 
 
-@pytest.fixture
-def page(chromium: Browser, server: Server, request: pytest.FixtureRequest) -> Iterator[Page]:
+@contextmanager
+def opened(chromium: Browser, server: Server, node: pytest.Item) -> Iterator[Page]:
     """Its page, paused at 1130 Hz with another damping, its pictures drawn."""
     context = chromium.new_context(viewport={"width": 1280, "height": 800})
     context.set_default_timeout(60_000)
     page = context.new_page()
-    watch(request.node, page, server.log)
+    watch(node, page, server.log)
     page.add_init_script(FIRST + FIGURES)
     page.goto(f"{server.address}?v=1&scene=sec2&f=1130&D=90&start=previous")
     expect(page.locator("#lost")).to_be_hidden()
     page.wait_for_function(BELONGS, arg=1130, timeout=COMPILED)
     yield page
     context.close()
+
+
+@pytest.fixture
+def server(tmp_path: Path) -> Iterator[Server]:
+    """A dashboard of this test's own."""
+    with running(tmp_path) as one:
+        yield one
+
+
+@pytest.fixture
+def page(chromium: Browser, server: Server, request: pytest.FixtureRequest) -> Iterator[Page]:
+    """The page of this test's own dashboard."""
+    with opened(chromium, server, request.node) as one:
+        yield one
 
 
 # What stands on a page that was built again before it has pictures of its own.
@@ -91,49 +109,71 @@ def drag_slider(page: Page) -> None:
     page.mouse.up()
 
 
-def test_a_killed_server_is_seen_and_the_page_comes_back_as_it_was(server: Server, page: Page) -> None:
-    type_into(page, "f", "700")
-    page.wait_for_function(BELONGS, arg=700)
-    page.get_by_role("button", name="Play or pause").click()
-    page.get_by_role("button", name="More controls").click()
-    page.locator("select.speed").select_option("5")
-    page.get_by_role("tab", name="data").click()
-    data = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
-    page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": data})
-    page.wait_for_function("!granchain.connection.kept.playing && granchain.connection.kept.uploaded && granchain.address.url().search.includes('speed=5')")
+@dataclass(frozen=True)
+class Restarted:
+    """A page whose server was killed and started again, and the knob f that a hand moved meanwhile."""
 
-    server.kill()
-    looks_lost(page)
-    drag_slider(page)
-    page.keyboard.press("ArrowRight")
-    assert value(page) == "700"
+    page: Page
+    moved_while_lost: str
 
-    starts_again(server, page)
-    width, look, sentence = page.evaluate("window.first")
+
+@pytest.fixture(scope="module")
+def restarted(chromium: Browser, tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Iterator[Restarted]:
+    """A page at 700 Hz, paused, with another speed and uploaded data, after a restart; it shows pictures of its own."""
+    with running(tmp_path_factory.mktemp("restarted")) as server, opened(chromium, server, request.node) as page:
+        type_into(page, "f", "700")
+        page.wait_for_function(BELONGS, arg=700)
+        page.get_by_role("button", name="Play or pause").click()
+        page.get_by_role("button", name="More controls").click()
+        page.locator("select.speed").select_option("5")
+        page.get_by_role("tab", name="data").click()
+        data = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
+        page.locator('input[type="file"]').set_input_files({"name": "mine.csv", "mimeType": "text/csv", "buffer": data})
+        page.wait_for_function("!granchain.connection.kept.playing && granchain.connection.kept.uploaded && granchain.address.url().search.includes('speed=5')")
+        server.kill()
+        looks_lost(page)
+        drag_slider(page)
+        page.keyboard.press("ArrowRight")
+        moved = value(page)
+        starts_again(server, page)
+        page.wait_for_function(BELONGS, arg=700)
+        yield Restarted(page, moved)
+
+
+def test_no_knob_moves_while_the_server_is_gone(restarted: Restarted) -> None:
+    assert restarted.moved_while_lost == "700"
+
+
+def test_the_last_pictures_stand_grey_until_there_are_new_ones(restarted: Restarted) -> None:
+    width, look, sentence = restarted.page.evaluate("window.first")
     assert (width, "grayscale(1)" in look, "restoring your settings" in sentence) == (1280, True, True)
-    page.wait_for_function(BELONGS, arg=700)
-    expect(page.locator("#last-pictures")).to_have_count(0)
+    expect(restarted.page.locator("#last-pictures")).to_have_count(0)
+
+
+def test_knobs_start_and_speed_come_back(restarted: Restarted) -> None:
+    page = restarted.page
     assert (value(page), value(page, "D")) == ("700", "90")
     expect(page.locator("select.start")).to_have_value("previous")
     expect(page.locator("select.speed")).to_have_value("5")
-    expect(page.get_by_role("button", name="Play or pause")).to_contain_text("play")
-    expect(page.get_by_role("alert").filter(has_text="Your settings are restored, but your uploaded data are gone.")).to_be_visible()
-    expect(page.locator("#lost")).to_be_hidden()
-    type_into(page, "f", "340")
-    page.wait_for_function(BELONGS, arg=340)
 
 
-def a_socket_that_stays_silent_while_the_server_answers_is_given_up(page: Page) -> None:
-    """As behind a proxy that forgot it: neither side learns that it is closed."""
-    page.evaluate("window.before = true")
-    page.evaluate("granchain.connection.answerReceived = () => {}")
-    looks_lost(page)
-    page.wait_for_function("window.granchain && !window.before")
-    page.wait_for_function(BELONGS, arg=700)
-    assert (value(page), value(page, "D")) == ("700", "90")
+def test_a_paused_motion_stays_paused(restarted: Restarted) -> None:
+    expect(restarted.page.get_by_role("button", name="Play or pause")).to_contain_text("play")
 
 
-def test_a_silent_server_is_seen_and_the_same_page_goes_on_a_silent_socket_is_given_up(server: Server, page: Page) -> None:
+def test_a_sentence_says_that_uploaded_data_are_gone(restarted: Restarted) -> None:
+    words = "Your settings are restored, but your uploaded data are gone."
+    expect(restarted.page.get_by_role("alert").filter(has_text=words)).to_be_visible()
+    expect(restarted.page.locator("#lost")).to_be_hidden()
+
+
+def test_the_page_goes_on_after_the_restart(restarted: Restarted) -> None:
+    for frequency in (340, 700):
+        type_into(restarted.page, "f", str(frequency))
+        restarted.page.wait_for_function(BELONGS, arg=frequency)
+
+
+def test_a_page_whose_server_was_silent_goes_on(server: Server, page: Page) -> None:
     page.evaluate("window.same = true")
     server.process.send_signal(signal.SIGSTOP)
     looks_lost(page)
@@ -144,7 +184,16 @@ def test_a_silent_server_is_seen_and_the_same_page_goes_on_a_silent_socket_is_gi
     type_into(page, "f", "700")
     page.wait_for_function(BELONGS, arg=700)
     assert page.evaluate("window.same")
-    a_socket_that_stays_silent_while_the_server_answers_is_given_up(page)
+
+
+def test_a_silent_socket_is_given_up_while_the_server_answers(page: Page) -> None:
+    """As behind a proxy that forgot it: neither side learns that it is closed."""
+    page.evaluate("window.before = true")
+    page.evaluate("granchain.connection.answerReceived = () => {}")
+    looks_lost(page)
+    page.wait_for_function("window.granchain && !window.before")
+    page.wait_for_function(BELONGS, arg=1130)
+    assert (value(page), value(page, "D")) == ("1130", "90")
 
 
 def test_what_the_server_never_heard_of_comes_back_too(server: Server, page: Page) -> None:

@@ -15,6 +15,7 @@ from server import until
 
 from app.format import prefixed
 from app.scripts import FILES, INLINE_SCRIPTS
+from app.session.page_constants import page_constants
 
 APP = Path(__file__).parents[2] / "app"
 ORIGIN = "http://scripts.test/"
@@ -44,7 +45,7 @@ class Answers:
             route.fulfill(path=APP / path, content_type="text/javascript")
         else:
             self.opened.append(route.request.url)
-            scripts = "".join(FILES[name].read_text(encoding="utf-8") for name in INLINE_SCRIPTS)
+            scripts = f"window.pageConstants = {page_constants()};" + "".join(FILES[name].read_text(encoding="utf-8") for name in INLINE_SCRIPTS)
             route.fulfill(body=f"{BLANK}<script>{scripts}</script>", content_type="text/html")
 
 

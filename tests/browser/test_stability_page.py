@@ -66,7 +66,7 @@ def test_multipliers_tell_themselves_and_a_chosen_one_moves_the_chain(visit: Vis
     expect(sheet).to_contain_text("the chosen disturbance")
     chosen = source(page, "multipliers", "chosen")
     assert (chosen["x"], chosen["y"]) == ([within["x"][3]], [within["y"][3]])
-    sheet.locator(".plane .picture").focus()
+    sheet.locator(".plane .figure").focus()
     page.keyboard.press("ArrowLeft")
     until(page, lambda: source(page, "multipliers", "chosen")["x"] == [within["x"][2]])
     assert sheet.locator("path.swing").first.get_attribute("d") != before
@@ -125,7 +125,7 @@ def fits(page: Page, sheet: Locator) -> None:
     """At every size the pictures are inside the window, and on a large one the search too."""
     for width, height in ((1280, 800), (1920, 1080), (390, 844)):
         resize(page, width, height)
-        for name, least in ((".plane .picture", 200), (".motion .picture", 130), (".poincare .picture", 130)):
+        for name, least in ((".plane .figure", 200), (".motion .figure", 130), (".poincare .figure", 130)):
             box = sheet.locator(name).bounding_box()
             assert box is not None and box["x"] >= 0 and box["x"] + box["width"] <= width and box["height"] > least
         search = sheet.get_by_role("button", name="search").bounding_box()

@@ -38,7 +38,7 @@ def tabs_fit(page: Page, width: int) -> None:
 
 
 def test_a_name_of_no_page_opens_none(at: Visit) -> None:
-    """The tab "map" has no page over the pictures: what opened it showed an empty one."""
+    """The tab "map" has no overlay: what opened it showed an empty one."""
     page = at("?v=1&scene=sec2&page=probe")
     page.wait_for_function("granchain.overlay === 'probe'")
     page.evaluate("granchain.openPage('map')")

@@ -17,9 +17,10 @@ from bokeh.events import Tap
 from headless_dashboard import Dashboard
 
 from app import server
-from app.dashboard import links_and_files, main_picture, measurement
+from app.dashboard import exports, main_picture
 from app.dashboard.table import PAGES, watched_pages
-from app.frames import Extremes, settled_frames
+from app.frames import settled_frames
+from app.pages.data import page as data_page
 from app.plots.theme import THEMES, Theme
 from app.serve.compiling.compiler import COMPILER, Compiler
 from app.serve.http.limits import LARGEST_UPLOAD
@@ -56,8 +57,8 @@ def test_a_measurement_is_read_in_the_background(dashboard: Dashboard, text: str
                                                  monkeypatch: pytest.MonkeyPatch) -> None:
     """Reading 2 MB with the document locked would hold up every visitor."""
     threads = []
-    read = measurement.read_data
-    monkeypatch.setattr(measurement, "read_data",
+    read = data_page.read_data
+    monkeypatch.setattr(data_page, "read_data",
                         lambda *given, **named: (threads.append(threading.current_thread().name), read(*given, **named))[1])
     dashboard.received({"do": "measurement", "name": "mine.csv", "content": base64.b64encode(text.encode()).decode()})
     assert not dashboard.views.tabs.state.get("understood")
@@ -71,8 +72,8 @@ def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch:
     dashboard.received({"do": "export"})
     assert "no picture to save yet" in dashboard.session.sentence
     threads = []
-    save = links_and_files.save
-    monkeypatch.setattr(links_and_files, "save",
+    save = exports.save
+    monkeypatch.setattr(exports, "save",
                         lambda run, path, measured: (threads.append(threading.current_thread().name), save(run, path, measured)))
     shown = run(scene("sec2"), periods=0, record=1, samples=24)
     monkeypatch.setattr(dashboard.pictures, "shown_run", lambda: shown)
@@ -87,12 +88,12 @@ def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -
     """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about.
     """
     refused = dashboard.session.scene.evolve(N=10_000)
-    dashboard.failed(RefusedPicture(refused, "It would take long."))
+    dashboard.report_failure(RefusedPicture(refused, "It would take long."))
     assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")
     dashboard.session.scene = refused
-    dashboard.failed(RefusedPicture(refused, "It would take long."))
+    dashboard.report_failure(RefusedPicture(refused, "It would take long."))
     assert dashboard.views.status_line.state["insist"]
-    dashboard.failed(BadInput("Something else."))
+    dashboard.report_failure(BadInput("Something else."))
     assert not dashboard.views.status_line.state["insist"]
 
 
@@ -117,7 +118,8 @@ def test_choosing_the_scale_takes_the_scenes_own_again(dashboard: Dashboard) -> 
     scales, chain = dashboard.views.scales, dashboard.session.scene
     frames = settled_frames(settle(chain, samples=8).run)
     first = scales.of(frames, chain)
-    scales._largest = first.widened(Extremes(input_force=2.0 * first.input_force))
+    louder = settled_frames(settle(chain.evolve(A0=4.0 * chain.A0), samples=8).run)
+    assert scales.of(louder, chain) != first
     dashboard.received({"do": "scale", "value": "same"})
     assert scales.of(frames, chain) == first
 

@@ -16,12 +16,12 @@ import numpy as np
 import pytest
 from headless_dashboard import Dashboard
 
-from app.dashboard import measurement
-from app.dashboard.measurement import SAMPLES, MeasurementActions
 from app.dashboard.show import show_settled
 from app.frames import samples_for
+from app.pages.data import page as module
+from app.pages.data.page import SAMPLES, DataPage
 from app.plots.measured import measured_columns
-from app.serve.computing.queues import LONG
+from app.serve.computing.worker_pools import LONG
 from granchain_core import CurvePoint, Scene, scene, settle, settling
 from granchain_core.experiment import Measured, compared, read_data
 from granchain_core.experiment.formats import FORMATS
@@ -32,6 +32,11 @@ from granchain_core.scene.state import rest
 from granchain_core.virtual_experiment import Sensors, virtual_series_csv
 
 FILE = b"frequency_Hz,force_N\n40,5.5\n60,12.1\n"
+
+
+def data_page(dashboard: Dashboard) -> DataPage:
+    """The page of the tab data."""
+    return next(page for page in dashboard.pages if isinstance(page, DataPage))
 
 
 def sent(content: bytes) -> dict[str, Any]:
@@ -122,7 +127,7 @@ def test_the_misfit_is_in_newtons_and_comes_with_the_whole_curve(dashboard: Dash
     figure = dashboard.views.curve
     figure.add("rest", [point(30.0, 4.0), point(50.0, 6.0), point(70.0, 16.0)], covers=True)
     figure.finished("rest")
-    dashboard.curves._tell_compared(figure.difference)
+    data_page(dashboard).curve_compared(figure.difference)
     misfit = dashboard.views.tabs.state["misfit"]
     # the model has 5 N at 40 Hz and 11 N at 60 Hz: −0.5 and −1.1 N
     assert "rms 0.854 N" in misfit["sentence"] and "largest -1.1 N at 60 Hz" in misfit["sentence"]
@@ -184,9 +189,9 @@ def test_a_series_goes_over_the_force_trains_and_moves_with_the_picture(dashboar
     assert [len(one) for one in lines] == [1, 1]
     assert all(len(one[0].data_source.data["time"]) > 1000 for one in lines)
     preview = replace(dashboard.session.settled, final=False)  # of knobs that have moved
-    dashboard.files.picture_ready(preview)
+    data_page(dashboard).picture_ready(preview)
     assert dashboard.views.tabs.state["misfit"] is None
-    dashboard.files.picture_ready(dashboard.session.settled)
+    data_page(dashboard).picture_ready(dashboard.session.settled)
     dashboard.run_callbacks_until(lambda: "rms" in str(dashboard.views.tabs.state["misfit"]))
     dashboard.received({"do": "measurement-remove"})
     assert all(len(one[0].data_source.data["time"]) == 0 for one in lines)
@@ -231,14 +236,14 @@ def test_a_virtual_experiment_holds_up_nobodys_file(dashboard: Dashboard, monkey
         return original(*words, **named)
 
     for name in ("settling", "read_data"):
-        monkeypatch.setattr(measurement, name, partial(noting, name, getattr(measurement, name)))
+        monkeypatch.setattr(module, name, partial(noting, name, getattr(module, name)))
     show(dashboard)
     assert "virtual experiment" in after(dashboard, {"do": "measurement-virtual"}, "understood")
     assert threads == {"settling": "long", "read_data": "files"}
 
 
 def test_a_virtual_experiment_that_does_not_settle_is_given_up(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(measurement, "WHOLE_PICTURE", -1.0)
+    monkeypatch.setattr(module, "WHOLE_PICTURE", -1.0)
     show(dashboard)
     assert after(dashboard, {"do": "measurement-virtual"}, "understood").endswith("so the virtual experiment was not made.")
 
@@ -251,7 +256,7 @@ def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, 
         assert read.wait(20)
         return settling(*words, **named)
 
-    monkeypatch.setattr(measurement, "settling", slow)
+    monkeypatch.setattr(module, "settling", slow)
     dashboard.received({"do": "measurement-virtual"})
     assert begun.wait(20)
     assert after(dashboard, sent(FILE), "understood").startswith("mine.csv: ")
@@ -264,7 +269,7 @@ def test_a_file_replaces_the_virtual_experiment_under_way(dashboard: Dashboard, 
 def test_a_file_stays_in_memory_only_while_a_question_about_it_is_open(dashboard: Dashboard) -> None:
     def kept() -> bool:
         # by its type: a weak proxy of what is gone, anybody's, raises `ReferenceError` when it is asked for its class
-        found = [one for one in gc.get_objects() if type(one) is MeasurementActions and one._host is dashboard]
+        found = [one for one in gc.get_objects() if type(one) is DataPage and one._host is dashboard]
         return any(isinstance(value, bytes) and len(value) > 0 for one in found for value in vars(one).values())
 
     assert after(dashboard, sent(FILE), "understood") and not kept()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import fields
 from pathlib import Path
@@ -11,8 +12,8 @@ import pytest
 import app
 from app.plots.force_lines import DRIVE, INPUT, OUTPUT
 from app.plots.theme import THEMES, Theme, style_sheet
+from app.session.page_constants import page_constants
 from app.session.share import BROWSER_FIELDS, VIEW_VALUES
-from granchain import figure
 
 SCRIPTS = Path(app.__file__).parent / "parts" / "inline_scripts"
 
@@ -49,21 +50,21 @@ def test_no_style_uses_a_role_that_no_theme_has(path: Path) -> None:
     assert set(re.findall(r"var\((--[\w-]+)\)", path.read_text(encoding="utf-8"))) <= {*properties("light"), *own, "--font", "--stale"}
 
 
-def names_in(script: str, constant: str) -> tuple[str, ...]:
-    """The names that a script has as this constant."""
-    (names,) = re.findall(rf"const {constant} = \[([^\]]+)\]", (SCRIPTS / script).read_text(encoding="utf-8"))
-    return tuple(re.findall(r'"([^"]+)"', names))
+def test_a_theme_is_known_to_links_and_to_the_browser() -> None:
+    """Tooltip, command line and screenshots take the names from these."""
+    assert list(THEMES) == list(VIEW_VALUES["look"][1:]) == json.loads(page_constants())["themes"]
 
 
-def test_a_theme_is_known_everywhere() -> None:
-    """Links, tooltip, command line and screenshots take the names from these."""
-    assert tuple(THEMES) == VIEW_VALUES["look"][1:] == names_in("shared.js", "THEMES")
+def test_the_browser_knows_the_fields_of_a_link_that_only_it_can_fill() -> None:
+    assert json.loads(page_constants())["browserFields"] == list(BROWSER_FIELDS)
 
 
-def test_the_docstring_names_all_themes() -> None:
-    (words,) = re.findall(r"theme : str\n +(.*)\.\n", figure.__doc__ or "")
-    assert re.findall(r'"(\w+)"', words) == list(THEMES)
+@pytest.mark.parametrize("name", ["themes", "browserFields", "terms"])
+def test_the_inline_scripts_take_each_constant_from_python(name: str) -> None:
+    taken = [path.name for path in SCRIPTS.glob("*.js")
+             if re.search(rf"const {{[^}}]*\b{name}\b[^}}]*}} = window\.pageConstants;", path.read_text(encoding="utf-8"))]
+    assert len(taken) == 1
 
 
-def test_the_browser_keeps_the_fields_of_a_link_that_only_it_knows() -> None:
-    assert names_in("address.js", "BROWSER_FIELDS") == BROWSER_FIELDS
+def test_the_constants_cannot_end_their_script_element() -> None:
+    assert "<" not in page_constants()

@@ -50,8 +50,8 @@ def test_links_to_headings_lead_to_one(page: Path):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_files_named_in_short_exist(page: Path):
-    """Where a page names a file without the top folder, it is one of the core or of the app; a bare name is the only one
-    there, or the table names its folder: in its head, or at the beginning of the row.
+    """Where a page names a file without the top folder, it is one of the core or of the app. A bare name is the only
+    one there, or the table names its folder: in its head, or at the beginning of the row.
     """
     tops, head = [ROOT / "granchain_core", ROOT / "app"], ""
     for line in page.read_text(encoding="utf-8").splitlines():

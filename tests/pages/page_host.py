@@ -12,11 +12,13 @@ from host import FakeHost
 from app.dashboard.table import PageSpec, overlay_names
 from app.dashboard.tabs import Tabs
 from app.serve.compiling.compiler import COMPILER
-from app.serve.computing.queues import Queue
+from app.serve.computing.worker_pools import WorkerPool
 from app.session.page import Page
 from app.session.session import Session
 from app.session.task import Job
 from granchain_core import Scene, Settled, State, scene, settled
+from granchain_core.experiment import Difference, Measured
+from granchain_core.fit.overlay import Overlay
 
 
 @cache
@@ -46,6 +48,12 @@ class PageHost(FakeHost):
     def open(self, scene: Scene, state: State | None, curves: str) -> None:
         self.shown.append((scene, state, curves))
 
+    def show_measured_curve(self, measured: Measured | None) -> Difference | None:
+        return None
+
+    def show_measured_series(self, found: Overlay | None) -> None:
+        pass
+
     def address_changed(self) -> None:
         self.addresses += 1
 
@@ -70,7 +78,7 @@ class Trial:
         self.told: list[dict[str, Any]] = []
         self.given: list[Given] = []
         monkeypatch.setattr(self.view, "send", lambda **message: self.told.append(message))
-        monkeypatch.setattr(Queue, "submit", lambda queue, run, work, job, owner=None: self.given.append(
+        monkeypatch.setattr(WorkerPool, "submit", lambda queue, run, work, job, owner=None: self.given.append(
             Given(queue.name, run, work, job)))
         for name in ("has", "await_piece", "load"):
             monkeypatch.setattr(COMPILER, name, lambda *_: True)

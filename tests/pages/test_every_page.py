@@ -48,6 +48,7 @@ FOR_ANY_KNOBS = {
     "hard": "its cases have scenes of their own", "paper": "its figures have scenes of their own",
     "observer": "the period under way is the last of the old chain, and the next belongs to the new one",
     "effects": "the cost of an effect does not depend on the values of knobs",
+    "data": "what was measured belongs to no knobs",
     "map": "it covers all f", "branches": "they cover all f",
 }
 
@@ -93,6 +94,7 @@ def hooks(page: Page) -> None:
     page.theme_changed(THEMES["dark"])
     page.picture_ready(picture())
     page.curve_ready()
+    page.curve_compared(None)
 
 
 def test_the_host_of_these_tests_is_called_as_the_dashboard_is() -> None:
@@ -205,6 +207,6 @@ def nothing_arrives(trial: Trial) -> None:
     for one in trial.given:
         if one.job.stop:
             one.job.next_tick(trial.view.send, type="late")
-            one.job.say("computing")
+            one.job.report("computing")
     trial.rest()
     assert (trial.state, len(trial.told)) == before

@@ -1,4 +1,4 @@
-"""`granchain.figure`: a picture of every result, of its own size, and one sentence where there is none."""
+"""`granchain.figure`: a figure of every result, of its own size, and one sentence where there is none."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from bokeh.plotting import figure
 
 import granchain
 from app.plots.any_result import HEIGHT, WIDTH
+from app.plots.probe import FIGURES, probe_state
 from granchain import BadInput, scene
 from granchain_core.accuracy import Row
 from granchain_core.experiment import read_data
@@ -50,7 +51,7 @@ def labels(drawn: LayoutDOM) -> list[str]:
 
 
 @pytest.mark.parametrize("kind", RESULTS)
-def test_every_result_has_a_picture_of_a_size_of_its_own(kind: str) -> None:
+def test_every_result_has_a_figure_of_a_size_of_its_own(kind: str) -> None:
     make, words = RESULTS[kind]
     drawn = granchain.figure(make(), "dark", height=333)
     assert any(words in label for label in labels(drawn)), labels(drawn)
@@ -95,12 +96,26 @@ def test_a_measured_curve_is_drawn_over_a_computed_one_and_within_its_scale() ->
     assert labels(drawn)[1] == "largest output force (kN)"
 
 
+@pytest.mark.parametrize(("options", "bead"), [({}, 2), ({"bead": 1}, 1)], ids=["last", "chosen"])
+@pytest.mark.parametrize("kind", FIGURES)
+def test_a_motion_has_the_figures_of_the_page_probe(kind: str, options: dict[str, int], bead: int) -> None:
+    found = granchain.settle(CHAIN)
+    for result in (found, found.run):
+        drawn = granchain.figure(result, kind=kind, **options)
+        sources = {one.name: one.data for one in drawn.select({"type": ColumnDataSource})}
+        expected = {name: state["data"] for name, state in probe_state(found.run, bead)[kind].items() if "data" in state}
+        assert expected and {name: sources[name] for name in expected} == expected
+
+
 @pytest.mark.parametrize(("make", "words"), [
-    (lambda: granchain.figure(3.0), "There is no picture of a float; there are those of Run, Settled, Driven, Pulse, Curve"),
-    (lambda: granchain.figure([]), "no picture of a list"),
+    (lambda: granchain.figure(granchain.settle(CHAIN), kind="phaze"), "Unknown kind of figure 'phaze'; the nearest is 'phase'"),
+    (lambda: granchain.figure(granchain.settle(CHAIN), kind="phase", bead=3), "bead = 3 is outside 1 to 2"),
+    (lambda: granchain.figure(granchain.orbit(CHAIN), kind="phase"), "no figure of a kind 'phase' of a Orbit"),
+    (lambda: granchain.figure(3.0), "There is no figure of a float; there are those of Run, Settled, Driven, Pulse, Curve"),
+    (lambda: granchain.figure([]), "no figure of a list"),
     (lambda: granchain.figure(granchain.orbit(CHAIN), "drak"), "Unknown theme 'drak'; the nearest is 'dark'"),
     (lambda: granchain.figure(granchain.resonance_curve(CHAIN, [2000.0]), measured="mine.csv"), "not a value of type str"),
-    (lambda: granchain.figure(granchain.orbit(CHAIN), bead=1), "The picture of a Orbit has no option 'bead'"),
+    (lambda: granchain.figure(granchain.orbit(CHAIN), bead=1), "The figure of a Orbit has no option 'bead'"),
 ])
 def test_what_cannot_be_drawn_is_one_sentence(make, words: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(BadInput, match=words):

@@ -20,7 +20,7 @@ from waiting import until
 
 from app.dashboard.controller import Controller
 from app.dashboard.layout import Views
-from app.serve.computing.queues import PICTURES, VISITORS
+from app.serve.computing.worker_pools import PICTURES, SESSION_WORK
 from app.serve.document import leaving
 from app.serve.monitoring.metrics import METRICS
 from app.server import Access
@@ -109,7 +109,7 @@ def test_what_takes_long_is_said_before_it_is_computed_and_ends_with_the_visit(
     try:
         said = run_async(asyncio.wait_for(insist(f"http://127.0.0.1:{one.port}"), 300))
         assert "would take about" in said and "would fit" in said and "insist" in said
-        until(lambda: PICTURES.busy_threads == 0 and VISITORS.busy_threads == 0)
+        until(lambda: PICTURES.busy_threads == 0 and SESSION_WORK.busy_threads == 0)
     finally:
         one.stop()
 

@@ -13,8 +13,8 @@ from itertools import count
 import pytest
 from host import FakeHost
 
-from app.serve.computing.queues import Queue
-from app.session.task import Job, Task, say_nothing
+from app.serve.computing.worker_pools import WorkerPool
+from app.session.task import Job, Task, report_nothing
 from granchain_core import BadInput, Cancelled, NumbersFailed, scene
 
 
@@ -38,8 +38,8 @@ def host() -> SayingHost:
 
 @pytest.fixture
 def task(host: SayingHost) -> Task:
-    """A task on a queue of its own."""
-    return Task(host, Queue("test", 1), host.say, "The measurement")
+    """A task on a pool of its own."""
+    return Task(host, WorkerPool("test", 1), host.say, "The measurement")
 
 
 #: What is said of an error of granchain itself.
@@ -54,7 +54,7 @@ def failing(error: Exception) -> Callable[[Job], None]:
 
 
 def test_what_the_work_says_comes_before_its_end(host: SayingHost, task: Task) -> None:
-    task.start(lambda job: job.say("measuring"))
+    task.start(lambda job: job.report("measuring"))
     assert task.running
     host.run_callbacks_until(lambda: not task.running)
     assert host.said == [("measuring", ""), ("done", "")]
@@ -92,12 +92,12 @@ def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sen
 
 def test_a_failure_without_a_place_on_the_page_goes_to_the_host(host: SayingHost) -> None:
     problem = BadInput("f must be positive.")
-    task = Task(host, Queue("test", 1), host.say, tell_host=True)
+    task = Task(host, WorkerPool("test", 1), host.say, report_to_host=True)
     task.start(failing(problem))
     host.run_callbacks_until(lambda: not task.running)
     assert host.failures == [problem]
     fault = ZeroDivisionError("1/0")
-    task = Task(host, Queue("test", 1), say_nothing, "The measurement", tell_host=True)
+    task = Task(host, WorkerPool("test", 1), report_nothing, "The measurement", report_to_host=True)
     task.start(failing(fault))
     host.run_callbacks_until(lambda: bool(host.faults))
     assert host.faults == [(fault, FAULT)] and host.failures == [problem]
@@ -107,11 +107,11 @@ def test_nothing_of_cancelled_work_arrives(host: SayingHost, task: Task) -> None
     entered, leave = threading.Event(), threading.Event()
 
     def work(job: Job) -> None:
-        job.say("measuring")
+        job.report("measuring")
         entered.set()
         assert leave.wait(20)
         assert job.stop
-        job.say("computing")
+        job.report("computing")
 
     task.start(work)
     assert entered.wait(20)
@@ -136,37 +136,37 @@ def test_cancelled_is_no_failure(host: SayingHost, task: Task) -> None:
 
 
 def test_work_that_is_cancelled_before_its_turn_is_not_begun(host: SayingHost) -> None:
-    queue, leave = Queue("test", 1), threading.Event()
-    queue.submit(leave.wait, 20)
-    task = Task(host, queue, host.say)
+    pool, leave = WorkerPool("test", 1), threading.Event()
+    pool.submit(leave.wait, 20)
+    task = Task(host, pool, host.say)
     task.start(failing(AssertionError("begun")))
     task.cancel()
     leave.set()
-    assert queue.submit(lambda: True).result(20)
+    assert pool.submit(lambda: True).result(20)
     host.run_callbacks_until(lambda: not host.callbacks)
     assert host.said == [] and host.failures == []
 
 
-@pytest.mark.parametrize("share", [None, 1])
-def test_what_is_started_again_and_again_is_kept_once(share: int | None, host: SayingHost) -> None:
+@pytest.mark.parametrize("limit", [None, 1])
+def test_what_is_started_again_and_again_is_kept_once(limit: int | None, host: SayingHost) -> None:
     """A visitor who uploads file after file while all threads are busy: only the last one waits."""
     class File:
         """What is uploaded."""
 
-    queue, leave = Queue("test", 1, share=share), threading.Event()
-    queue.submit(leave.wait, 120)
+    pool, leave = WorkerPool("test", 1, per_owner_limit=limit), threading.Event()
+    pool.submit(leave.wait, 120)
 
     def read_file(file: File, _: Job) -> None:
         read.append(type(file).__name__)
 
-    task, files = Task(host, queue, host.say), [File() for _ in range(50)]
+    task, files = Task(host, pool, host.say), [File() for _ in range(50)]
     kept, read = weakref.WeakSet(files), list[str]()
     while files:
         one = files.pop()
         task.start(partial(read_file, one))
     del one
     gc.collect()
-    assert len(kept) == 1 and queue.waiting + queue.held <= (50 if share is None else 2)
+    assert len(kept) == 1 and pool.queued + pool.held <= (50 if limit is None else 2)
     leave.set()
     host.run_callbacks_until(lambda: not task.running)
     assert read == ["File"] and host.said == [("done", "")]
@@ -177,7 +177,7 @@ def test_work_gives_way_to_a_moving_knob(monkeypatch: pytest.MonkeyPatch) -> Non
     looks = count(1)
     monkeypatch.setattr(SayingHost, "awaiting_picture", property(lambda _: next(looks) < 4))
     host = SayingHost()
-    task = Task(host, Queue("test", 1), host.say)
+    task = Task(host, WorkerPool("test", 1), host.say)
     task.start(lambda job: job.give_way())
     host.run_callbacks_until(lambda: not task.running)
     assert next(looks) == 5 and host.said == [("done", "")]
@@ -211,17 +211,17 @@ def test_compiling_is_said_and_given_up_with_the_job(host: SayingHost, task: Tas
 
 
 def test_a_queue_works_on_so_many_at_once_and_keeps_what_they_return() -> None:
-    queue, entered, leave = Queue("test", 2), threading.Semaphore(0), threading.Event()
+    pool, entered, leave = WorkerPool("test", 2), threading.Semaphore(0), threading.Event()
 
     def work(number: int) -> int:
         entered.release()
         assert leave.wait(20)
         return number
 
-    futures = [queue.submit(work, number) for number in range(3)]
+    futures = [pool.submit(work, number) for number in range(3)]
     assert entered.acquire(timeout=20) and entered.acquire(timeout=20)
     assert not entered.acquire(timeout=0.1), "the third waits"
     leave.set()
     assert [future.result(20) for future in futures] == [0, 1, 2]
     with pytest.raises(ZeroDivisionError):
-        queue.submit(lambda: 1 // 0).result(20)
+        pool.submit(lambda: 1 // 0).result(20)

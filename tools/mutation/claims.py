@@ -94,7 +94,7 @@ FAILING = (
            "work.scale[:] = kept.control[1:]", "error control goes on with another step after a restart", k.CHECKPOINTS),
     Mutant("checkpoint-at-phase-0", "integrate/checkpoint.py", "engine.grid_index, engine.elapsed = kept.grid_index, kept.elapsed",
            "engine.elapsed = kept.elapsed", "a run that was cut inside a period goes on at its beginning", k.CHECKPOINTS),
-    Mutant("budget-of-one-computation", "run/budget.py", "steps, seconds = steps * often, seconds * often", "steps, seconds = 0.25 * steps, 0.25 * seconds",
+    Mutant("budget-of-one-computation", "run/budget.py", "steps, seconds = steps * repetition_factor, seconds * repetition_factor", "steps, seconds = 0.25 * steps, 0.25 * seconds",
            "the estimate of a run is a fraction of it", ("tests/hard_cases/test_outcomes.py", "-k", "within_a_factor_of_two and (knobs0 or knobs3 or knobs6)")),
     Mutant("budget-not-kept", "run/budget.py", "if found.seconds <= budget:", "if found.seconds <= 1e30 * budget:",
            "a run of years is begun", ("tests/hard_cases/test_outcomes.py", "-k", "command_line_refuses or offered_number_of_periods")),

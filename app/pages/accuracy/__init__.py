@@ -1,1 +1,1 @@
-"""The page of accuracy: error against computing time."""
+"""Error against computing time."""

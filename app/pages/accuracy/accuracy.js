@@ -1,4 +1,4 @@
-// The Accuracy page, over the pictures: what accuracy costs for this scene, and the force that naive steps would draw.
+// The Accuracy page, an overlay: what accuracy costs for this scene, and the force that naive steps would draw.
 
 import { button, element, meter, pageHead, paragraph, table, unbroken } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
@@ -49,8 +49,8 @@ class AccuracyPage {
     this.agreement = element("span", { className: "soft" });
     this.machine = element("span", { className: "soft", title: "The processor that the kernels are compiled for" });
     this.warning = element("span", { className: "warn" });
-    this.picture = element("div", { className: "picture" });
-    this.figure = new BokehFigure(this.picture, (one) => fillAccuracy(one, this.known));
+    this.host = element("div", { className: "figure" });
+    this.figure = new BokehFigure(this.host, (one) => fillAccuracy(one, this.known));
     this.naive = new NaiveForces();
     this.methods = element("div", { className: "table", tabIndex: 0, role: "region", ariaLabel: "methods" });
     this.root = element(
@@ -58,7 +58,7 @@ class AccuracyPage {
       { className: "part sheet" },
       pageHead("What accuracy costs", this.status, this.meter, this.stop, this.again),
       element("div", { className: "say" }, this.line, " ", this.used, this.agreement, this.machine, this.warning),
-      element("div", { className: "work" }, this.picture),
+      element("div", { className: "work" }, this.host),
       this.naive.root,
       this.methods,
     );

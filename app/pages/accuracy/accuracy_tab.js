@@ -1,4 +1,4 @@
-// The Accuracy tab: a small picture of error against time, and the way to the page, whose figure the same function
+// The Accuracy tab: a small figure of error against time, and the way to the page, whose figure the same function
 // fills.
 
 import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";

@@ -22,7 +22,7 @@ export class NaiveForces {
     this.methods = this.choice("the naive method");
     this.steps = this.choice("its steps in a drive period");
     this.line = element("p");
-    this.host = element("div", { className: "picture" });
+    this.host = element("div", { className: "figure" });
     this.figure = new BokehFigure(this.host, () => this.show());
     this.root = element(
       "div",

@@ -1,4 +1,4 @@
-"""The Accuracy page of one visitor: when it measures, and whether the rows are still valid."""
+"""The Accuracy page of one session: when it measures, and whether the rows are still valid."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core.precompile.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS,
 
 from ...format import duration, short_error
 from ...plots.accuracy import Annotations
-from ...serve.computing.queues import MEASUREMENTS
+from ...serve.computing.worker_pools import MEASUREMENTS
 from ...session.active_setting import PlacedSetting, locate, shown_setting
 from ...session.activities import Activity
 from ...session.host import Host
@@ -31,12 +31,12 @@ def measured_for(scene: Scene) -> str:
 
 
 class AccuracyPage(Page):
-    """One measurement at a time; it goes on in the background until it is done, is stopped or the visitor leaves."""
+    """One measurement at a time; it goes on in the background until it is done, is stopped or the session ends."""
 
     def __init__(self, host: Host, view: Accuracy) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, MEASUREMENTS, self._say, "The measurement")
+        self._task = Task(host, MEASUREMENTS, self._show_status, "The measurement")
         self._measured = ""
         self._naive: Lesson | None = None
         self._agreement: float | None = None
@@ -82,7 +82,7 @@ class AccuracyPage(Page):
     def stop(self) -> None:
         """Stop measuring; the rows measured so far stay."""
         if self._task.cancel():
-            self._say("stopped")
+            self._show_status("stopped")
 
     def visibility_changed(self, visible: bool) -> None:
         """When the page or its tab is opened, measure if nothing has been measured yet."""
@@ -99,7 +99,7 @@ class AccuracyPage(Page):
         self._measured, self.rows, self._naive, self.done = measured_for(scene), [], None, 0.0
         self._agreement = None
         self._view.forget()
-        self._say("waiting")
+        self._show_status("waiting")
         self.describe()
         self._task.start(partial(self._work, scene))
 
@@ -110,7 +110,7 @@ class AccuracyPage(Page):
             job.next_tick(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
 
         job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, ACCURACY_KERNELS)
-        job.say("measuring")
+        job.report("measuring")
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.next_tick(self._progress, done))
 
@@ -127,7 +127,7 @@ class AccuracyPage(Page):
         self.done = done
         self._view.update_state(done=done)
 
-    def _say(self, status: Status, sentence: str = "") -> None:
+    def _show_status(self, status: Status, sentence: str = "") -> None:
         self.status = status
         self._view.update_state(**WORDS.of(status, sentence), done=self.done)
 

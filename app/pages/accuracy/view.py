@@ -31,7 +31,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
 
 
 class Accuracy(FigurePart):
-    """The page over the pictures. `state` has the text and the figures; what is drawn into them comes as messages."""
+    """The overlay. `state` has the text and the figures; what is drawn into them comes as messages."""
 
     _esm = module("accuracy.js")
     _stylesheets = [text("controls.css"), text("accuracy.css")]  # noqa: RUF012

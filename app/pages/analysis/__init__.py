@@ -1,1 +1,1 @@
-"""Spectrum, Lyapunov exponents, strobes and basins of the present scene (docs/analysis.md)."""
+"""Spectrum, Lyapunov exponents, bifurcation diagram and basins of the present scene."""

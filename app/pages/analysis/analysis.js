@@ -1,4 +1,4 @@
-// The Analysis page, over the pictures: a question about the present scene, its fields, and its answer.
+// The Analysis page, an overlay: a question about the present scene, its fields, and its answer.
 
 import { button, element, meter, pageHead } from "../../parts/toolkit/dom.js";
 import { ResultFigure } from "../../parts/figures/result_figure.js";

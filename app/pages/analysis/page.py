@@ -1,4 +1,4 @@
-"""The Analysis page of one visitor: computes the chosen question for the present scene on request."""
+"""The Analysis page of one session: computes the chosen question for the present scene on request."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 from granchain_core import BadInput, Settled
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 
-from ...serve.computing.queues import LONG
+from ...serve.computing.worker_pools import LONG
 from ...session.host import Host
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
@@ -40,7 +40,7 @@ class AnalysisPage(Page):
     def __init__(self, host: Host, view: Analysis) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, LONG, self._say, "The analysis")
+        self._task = Task(host, LONG, self._show_status, "The analysis")
         self._question: AnalysisQuestion | None = None
         self._text = ""
         self._fields: tuple[Field, ...] = ()
@@ -74,7 +74,7 @@ class AnalysisPage(Page):
             try:
                 self._compute_chosen({})
             except BadInput as problem:  # too long a chain, or one without a drive
-                self._say("none", str(problem))
+                self._show_status("none", str(problem))
 
     def address_applied(self) -> None:
         """Take question and values from the address; an answer that is on the page stays."""
@@ -94,7 +94,7 @@ class AnalysisPage(Page):
         self._task.cancel()
         self._question, self._text, self._fields = question, text, fields
         self._view.ask(question, fields)
-        self._say("none")
+        self._show_status("none")
 
     def _keep(self) -> None:
         self._host.session.question = self._text
@@ -115,22 +115,22 @@ class AnalysisPage(Page):
         plan = planned(self._question, scene, values)
         self._fields = chosen_fields(self._question, scene, values)
         self._view.clear()
-        self._say("waiting")
+        self._show_status("waiting")
         self._task.start(lambda job: self._compute(plan, job))
 
     def _stop(self) -> None:
         if self._task.cancel():
-            self._say("stopped")
+            self._show_status("stopped")
 
     def _compute(self, plan: Plan, job: Job) -> None:
         """In a thread of the queue."""
         for scene, pieces in plan.kernels:
             job.compile(scene, *pieces)
-        job.say("computing")
+        job.report("computing")
         progress = job.progress(lambda done: self._view.update_state(done=done))
         job.next_tick(self._view.answer, plan, plan.compute(job.stop, progress))
 
-    def _say(self, status: Status, sentence: str = "") -> None:
+    def _show_status(self, status: Status, sentence: str = "") -> None:
         if status == "waiting":
             self._view.update_state(done=0.0)
         self._view.update_state(**WORDS.of(status, sentence))

@@ -13,7 +13,7 @@ from .questions import QUESTIONS, AnalysisQuestion, Field, Plan
 
 
 class Analysis(ResultFigure):
-    """The page over the pictures; fields and words come in `state`, the figure as a message."""
+    """The overlay; fields and words come in `state`, the figure as a message."""
 
     _esm = module("analysis.js")
     _stylesheets = [text("controls.css"), text("result_page.css"), text("analysis.css")]  # noqa: RUF012

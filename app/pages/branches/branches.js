@@ -1,10 +1,10 @@
-// The Branches page, over the pictures: a branch of periodic orbits grows, and a click loads one of them.
+// The Branches page, an overlay: a branch of periodic orbits grows, and a click loads one of them.
 
 import { button, element, pageHead, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure, StreamedData } from "../../parts/figures/bokeh_figure.js";
 
 const WORDS = "largest elastic output force of periodic orbits over drive frequency";
-// px; a narrower picture has its legend in two columns.
+// px; a narrower figure has its legend in two columns.
 const NARROW = 700;
 const MARGIN = 0.05; // room beside the branch, over its length
 const ABOUT =
@@ -26,7 +26,7 @@ function periodChoice(longest) {
   );
 }
 
-// The chosen point of the picture in words, and buttons for what can be done with it.
+// The chosen point of the figure in words, and buttons for what can be done with it.
 class Choice {
   constructor(send) {
     this.send = send;
@@ -78,8 +78,8 @@ class BranchesPage {
     this.about = paragraph(ABOUT, "about");
     this.warning = element("p", { className: "warn", hidden: true });
     this.choice = new Choice(send);
-    this.picture = element("div", { className: "picture" });
-    this.work = element("div", { className: "work" }, this.picture);
+    this.host = element("div", { className: "figure" });
+    this.work = element("div", { className: "work" }, this.host);
     const head = pageHead(
       "Branches of periodic orbits",
       this.period,
@@ -92,7 +92,7 @@ class BranchesPage {
     const say = element("div", { className: "say" }, this.said, this.about, this.warning, this.choice.root);
     this.root = element("div", { className: "part sheet" }, head, say, this.work);
     this.data = new StreamedData();
-    this.figure = new BokehFigure(this.picture, (one) => this.fill(one));
+    this.figure = new BokehFigure(this.host, (one) => this.fill(one));
     this.everywhere = [this.figure]; // all figures with these data; the tab adds its own
   }
 
@@ -109,11 +109,11 @@ class BranchesPage {
     this.fit();
   }
 
-  // Sets the line at the present frequency, and the columns of the legend by the width of the picture.
+  // Sets the line at the present frequency, and the columns of the legend by the width of the figure.
   fit() {
     const { now } = this.model.state;
     this.figure.set("now", { location: now ?? null, visible: now !== undefined });
-    this.figure.set("legend", { ncols: this.picture.clientWidth < NARROW ? 2 : 6 });
+    this.figure.set("legend", { ncols: this.host.clientWidth < NARROW ? 2 : 6 });
   }
 
   // Shows only the frequencies of the branch, which can be short compared with the curve.

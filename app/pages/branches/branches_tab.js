@@ -1,4 +1,4 @@
-// The Branches tab: a small version of the picture, and a button that opens the page.
+// The Branches tab: a small version of the figure, and a button that opens the page.
 
 import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";

@@ -1,4 +1,4 @@
-"""The Branches page of one visitor: follow the orbit on the screen in the frequency, and load any orbit found."""
+"""The Branches page of one session: follow the orbit on the screen in the frequency, and load any orbit found."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switc
 from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
 
 from ...plots.branches import BranchRows
-from ...serve.computing.queues import LONG
+from ...serve.computing.worker_pools import LONG
 from ...session.budget import curve_affordable
 from ...session.host import Host
 from ...session.message_checks import listed, whole
@@ -47,7 +47,7 @@ class BranchesPage(Page):
     def __init__(self, host: Host, view: Branches) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, LONG, self._say, "Following the branch")
+        self._task = Task(host, LONG, self._show_status, "Following the branch")
         self._followed: list[Continuation] = []
         self._drawn: list[_Drawn] = []
         self._special: list[tuple[Branch, Any]] = []
@@ -84,7 +84,7 @@ class BranchesPage(Page):
     def stop(self) -> None:
         """Stop; what has been computed stays and can be continued."""
         if self._task.cancel():
-            self._say("stopped")
+            self._show_status("stopped")
 
     # What the visitor does
 
@@ -155,14 +155,14 @@ class BranchesPage(Page):
         self._task.cancel()
         self._scene = scene
         self._draw_curve()
-        self._say("waiting")
+        self._show_status("waiting")
         self._task.start(lambda job: self._follow_in_thread(begin, scene, job))
 
     def _follow_in_thread(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
         """In a worker thread: follow the branches, report every `_MESSAGE_EVERY` seconds, and let pictures go first."""
         sent = 0.0
         job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, BRANCH_KERNELS)
-        job.say("settling")
+        job.report("settling")
         for branch in begin(job.stop):
             continuation = Continuation(branch, job.stop)
             job.next_tick(self._add, continuation)
@@ -205,9 +205,9 @@ class BranchesPage(Page):
             drawn.special += len(special)
             self._view.need_figures()
             self._view.send(type="add", **self._rows.add(number, drawn.branch, points, special))
-        self._say(self.status if self.status in ("stopped", "done") else "following")
+        self._show_status(self.status if self.status in ("stopped", "done") else "following")
 
-    def _say(self, status: Status, sentence: str = "") -> None:
+    def _show_status(self, status: Status, sentence: str = "") -> None:
         self.status = status
         arms = [drawn.arm for drawn in self._drawn]
         orbits, special = sum(len(arm.points) for arm in arms), sum(len(arm.special) for arm in arms)

@@ -23,7 +23,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
 
 
 class Branches(FigurePart):
-    """The page over the pictures; the growing branch comes in messages."""
+    """The overlay; the growing branch comes in messages."""
 
     _esm = module("branches.js")
     _stylesheets = [text("controls.css"), text("branches.css")]  # noqa: RUF012

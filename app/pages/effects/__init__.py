@@ -1,1 +1,1 @@
-"""The effects page: effects switched on and off, and what each costs."""
+"""Effects switched on and off, and what each costs."""

@@ -1,4 +1,4 @@
-"""The Effects tab of one visitor: switches, what each effect costs, and the list of running computations."""
+"""The Effects tab of one session: switches, what each effect costs, and the list of running computations."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from granchain_core.scene.effects import ALWAYS
 
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
-from ...serve.computing.queues import MEASUREMENTS
+from ...serve.computing.worker_pools import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.debounce import Debounce
 from ...session.host import Host

@@ -1,1 +1,1 @@
-"""The parameter map, over two knobs."""
+"""The parameter map over two knobs, and the search for attractors."""

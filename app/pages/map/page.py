@@ -1,4 +1,4 @@
-"""The Map tab of one visitor: the parameter map over f and A0 while it is looked at, and the search for attractors."""
+"""The Map tab of one session: the parameter map over f and A0 while it is looked at, and the search for attractors."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ...parts.toolkit.component import Component
 from ...plots.diagram import now_row
 from ...plots.theme import THEMES, Theme
 from ...serve.compiling.compiler import PICTURE_PIECES
-from ...serve.computing.queues import LONG
+from ...serve.computing.worker_pools import LONG
 from ...session.debounce import Debounce
 from ...session.host import Host
 from ...session.message_checks import listed
@@ -62,7 +62,7 @@ class MapPage(Page):
         self._host = host
         self._view = view
         self._visible = False
-        self._task = Task(host, LONG, self._say, "The map")
+        self._task = Task(host, LONG, self._show_status, "The map")
         self._search = Task(host, LONG, self._say_search, "The search")
         self._grid: Grid | None = None
         self._cells: np.ndarray[Any, Any] = np.zeros(0)
@@ -126,7 +126,7 @@ class MapPage(Page):
             self._grid = page_grid(self._host.session.scene)
             self._cells = empty_cells(self._grid)
         self._send_all()
-        self._say("waiting")
+        self._show_status("waiting")
         self._task.start(partial(self._work, self._grid, self._missing()))
 
     def _missing(self) -> list[int]:
@@ -141,12 +141,12 @@ class MapPage(Page):
 
     def _stop(self) -> None:
         if self._give_up():
-            self._say("stopped")
+            self._show_status("stopped")
 
     def _work(self, grid: Grid, missing: list[int], job: Job) -> None:
         """In a worker thread: compute the missing cells, waiting while a knob moves."""
         job.compile(grid.scene, *PICTURE_PIECES)
-        job.say("computing")
+        job.report("computing")
         for rows in _batches(grid, missing, job.stop, partial(job.give_way, self._in_front)):
             job.next_tick(self._show, rows)
 
@@ -164,7 +164,7 @@ class MapPage(Page):
         if self._grid is not None:
             self._send(type="map-now", now=now_row(self._grid, scene.f, scene.A0))
 
-    def _say(self, status: Status, sentence: str = "") -> None:
+    def _show_status(self, status: Status, sentence: str = "") -> None:
         self.status = status
         self._send(type="map-status", **WORDS.of(status, sentence))
 
@@ -200,7 +200,7 @@ class MapPage(Page):
 
     def _search_work(self, scene: Scene, job: Job) -> None:
         job.compile(scene, *PICTURE_PIECES, *(() if scene.cuts_tension else (ORBIT_KERNELS,)))
-        job.say("searching")
+        job.report("searching")
         starts = _FEW_RANDOM_STATES if scene.cuts_tension else _RANDOM_STATES
         found = attractors(scene, starts, stop=job.stop)
         job.next_tick(self._arrived, scene, found, [described_attractor(one) for one in found])

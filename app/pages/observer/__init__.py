@@ -1,1 +1,1 @@
-"""The page of the observer: a copy of the chain that is driven by its input force."""
+"""A copy of the chain that is driven by its input force."""

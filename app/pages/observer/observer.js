@@ -62,8 +62,8 @@ class ObserverPage {
       () => send("observer-more"),
       (step) => this.begin(step),
     );
-    const picture = element("div", { className: "fill" });
-    this.figure = new BokehFigure(picture, (one) => fillDistance(one, this.known));
+    const host = element("div", { className: "fill" });
+    this.figure = new BokehFigure(host, (one) => fillDistance(one, this.known));
     this.root = element(
       "div",
       { className: "part sheet" },
@@ -76,7 +76,7 @@ class ObserverPage {
       ),
       element("div", { className: "say" }, this.said, this.rates, this.status),
       this.chains.root,
-      element("div", { className: "trace" }, picture),
+      element("div", { className: "trace" }, host),
     );
   }
 

@@ -1,4 +1,4 @@
-// The Observer tab: a small picture of the distance, and the way to the page, whose figure the same function fills.
+// The Observer tab: a small figure of the distance, and the way to the page, whose figure the same function fills.
 
 import { element, openButton, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";

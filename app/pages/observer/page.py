@@ -1,4 +1,4 @@
-"""The Observer page of one visitor: computes a drive period for each one that the browser has shown."""
+"""The Observer page of one session: computes a drive period for each one that the browser has shown."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from functools import partial
 from granchain_core import Scene, Settled
 from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, OBSERVER_KERNELS
 
-from ...serve.computing.queues import PICTURES
+from ...serve.computing.worker_pools import PICTURES
 from ...session.host import Host
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
@@ -34,7 +34,7 @@ class ObserverPage(Page):
     def __init__(self, host: Host, view: Observer) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, PICTURES, self._said, "The observer", tell_host=True)
+        self._task = Task(host, PICTURES, self._said, "The observer", report_to_host=True)
         self._run: ObserverRun | None = None
         self._asked = False
         self._wishes: list[str] = []

@@ -32,7 +32,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
 
 
 class Observer(FigurePart):
-    """The page over the pictures; every period comes as one message."""
+    """The overlay; every period comes as one message."""
 
     _esm = module("observer.js")
     _stylesheets = [text("controls.css"), text("observer.css")]  # noqa: RUF012

@@ -1,4 +1,4 @@
-"""The page "The paper" of one visitor: computes a figure when it is chosen, and stops when the page is left."""
+"""The page "The paper" of one session: computes a figure when it is chosen, and stops when the page is left."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from granchain_core import scene
 from granchain_core.paper import PaperFigure, Result, compute, figure_of
 from granchain_core.precompile.pieces import CURVE_KERNELS, MOTION_KERNELS, OBSERVER_KERNELS, ORBIT_KERNELS
 
-from ...serve.computing.queues import LONG
+from ...serve.computing.worker_pools import LONG
 from ...session.host import Host
 from ...session.page import Actions, Page
 from ...session.progress import Status, StatusWords
@@ -30,11 +30,11 @@ WORDS = StatusWords("the figure's kernels", ORBIT_KERNELS)
 
 
 class PaperPage(Page):
-    """The figures that were computed stay until the visitor leaves the dashboard."""
+    """The figures that were computed stay until the session ends."""
 
     def __init__(self, host: Host, view: Paper) -> None:
         self._view = view
-        self._task = Task(host, LONG, self._say, "The figure")
+        self._task = Task(host, LONG, self._show_status, "The figure")
         self._found: dict[str, Result] = {}
         self._chosen = False
         self.actions: Actions = {"paper-show": self._show, "paper-stop": lambda _: self._stop()}
@@ -46,7 +46,7 @@ class PaperPage(Page):
 
     def _stop(self) -> None:
         if self._task.cancel():
-            self._say("stopped")
+            self._show_status("stopped")
 
     def _show(self, message: dict[str, Any]) -> None:
         figure = figure_of(str(message.get("figure")))
@@ -54,17 +54,17 @@ class PaperPage(Page):
         self._chosen = True
         self._view.choose(figure)
         if figure.number in self._found:
-            self._say("done")
+            self._show_status("done")
             self._view.draw(figure, self._found[figure.number])
             return
-        self._say("waiting")
+        self._show_status("waiting")
         self._task.start(lambda job: self._compute(figure, job))
 
     def _compute(self, figure: PaperFigure, job: Job) -> None:
         """In a thread of the queue."""
         for name, pieces in _KERNELS.get(figure.number, ()):
             job.compile(scene(name), *pieces)
-        job.say("computing")
+        job.report("computing")
         progress = job.progress(lambda done: self._view.update_state(done=done))
         job.next_tick(self._arrived, figure, compute(figure.number, stop=job.stop, progress=progress))
 
@@ -72,7 +72,7 @@ class PaperPage(Page):
         self._found[figure.number] = result
         self._view.draw(figure, result)
 
-    def _say(self, status: Status, sentence: str = "") -> None:
+    def _show_status(self, status: Status, sentence: str = "") -> None:
         if status == "waiting":
             self._view.update_state(done=0.0)
         self._view.update_state(**WORDS.of(status, sentence))

@@ -1,4 +1,4 @@
-// The page of the paper, over the pictures: a chosen figure is computed; it has a caption and rows of the table.
+// The page of the paper, an overlay: a chosen figure is computed; it has a caption and rows of the table.
 
 import { button, element, meter, pageHead, paragraph, table } from "../../parts/toolkit/dom.js";
 import { ResultFigure } from "../../parts/figures/result_figure.js";

@@ -15,7 +15,7 @@ from ...scripts import module
 
 
 class Paper(ResultFigure):
-    """The page over the pictures; captions and rows come in `state`, the figure as a message."""
+    """The overlay; captions and rows come in `state`, the figure as a message."""
 
     _esm = module("paper.js")
     _stylesheets = [text("controls.css"), text("result_page.css"), text("paper.css")]  # noqa: RUF012

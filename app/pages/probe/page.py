@@ -1,4 +1,4 @@
-"""The Probe page of one visitor: the chosen bead, and whether the page is looked at."""
+"""The Probe page of one session: the chosen bead, and whether the page is looked at."""
 
 from __future__ import annotations
 

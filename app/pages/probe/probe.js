@@ -1,4 +1,4 @@
-// The Probe page, over the pictures: one bead in six pictures. A click on a bead or its column of the map chooses it.
+// The Probe page, an overlay: one bead in six figures. A click on a bead or its column of the map chooses it.
 
 import { button, element, fillBeads, pageHead, paragraph } from "../../parts/toolkit/dom.js";
 import { BokehFigure, fillModels } from "../../parts/figures/bokeh_figure.js";
@@ -38,7 +38,7 @@ class ProbePage {
   }
 
   panel(name, words) {
-    const host = element("div", { className: "picture" });
+    const host = element("div", { className: "figure" });
     this.figures.set(name, new BokehFigure(host, (one) => fillModels(one, this.drawn?.[name])));
     return element(
       "section",

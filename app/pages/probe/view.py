@@ -1,4 +1,4 @@
-"""The Probe page: six pictures of one bead, and a small one in its tab."""
+"""The Probe page: six figures of one bead, and a small one in its tab."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from ...scripts import module
 
 @cache
 def empty_figures(theme: Theme) -> dict[str, Any]:
-    """All pictures, and the small one of the tab."""
+    """All figures, and the small one of the tab."""
     full_size = {name: figure_item(without_points(name, theme)) for name in FIGURES}
     return {**full_size, "small": figure_item(without_points("phase", theme, compact=True))}
 
 
 class Probe(FigurePart):
-    """The page over the pictures and, through what it shares in the browser, the small picture in its tab."""
+    """The overlay and, through what it shares in the browser, the small figure in its tab."""
 
     _esm = module("probe.js")
     _stylesheets = [text(f"{name}.css") for name in ("controls", "probe")]  # noqa: RUF012
@@ -35,7 +35,7 @@ class Probe(FigurePart):
         super().__init__(received, state={"bead": 1, "beads": 1, "sentence": ""}, **params)
 
     def fill(self, motion: Run, bead: int) -> None:
-        """Fill the pictures with a motion."""
+        """Fill the figures with a motion."""
         self.need_figures()
         self.update_state(bead=bead, beads=motion.scene.N, sentence=words(motion, bead))
         self.send(type="probe", drawn=probe_state(motion, bead))

@@ -1,1 +1,1 @@
-"""The page of stability: multipliers, modes, Poincaré section."""
+"""Multipliers, modes, Poincaré section."""

@@ -16,7 +16,7 @@ class DisturbedChain extends ChainDrawing {
 
   contact() {}
 
-  // The lines below the beads are as far apart as the beads, whatever the height of the picture.
+  // The lines below the beads are as far apart as the beads, whatever the height of the drawing.
   widest() {
     return Number.POSITIVE_INFINITY;
   }
@@ -61,7 +61,7 @@ export class ModeView {
     this.mode = null;
     this.canvas = element("canvas");
     this.drawing = new DisturbedChain(this.canvas);
-    this.host = element("div", { className: "picture" });
+    this.host = element("div", { className: "figure" });
     this.hosts = [this.canvas, this.host]; // elements whose change of size calls for a new drawing
     this.title = element("h3", { textContent: "mode" });
     this.note = element("span", { className: "soft" });

@@ -11,7 +11,7 @@ export class MultiplierPlane {
     this.choose = (rank) => send({ do: "stability-mode", value: rank });
     this.watch = element("input", { type: "checkbox" });
     this.watch.addEventListener("change", () => send({ do: "stability-observer", value: this.watch.checked }));
-    this.host = element("div", { className: "picture", tabIndex: 0, title: "Arrow keys choose another multiplier" });
+    this.host = element("div", { className: "figure", tabIndex: 0, title: "Arrow keys choose another multiplier" });
     this.host.addEventListener("keydown", ({ key }) => this.step({ ArrowRight: 1, ArrowLeft: -1 }[key] ?? 0));
     this.figure = new BokehFigure(this.host, (one) => this.fill(one));
     this.note = element("span", { className: "soft readout" });

@@ -1,4 +1,4 @@
-"""The Stability page of one visitor: when it computes, whether the result is still valid, and its sentences."""
+"""The Stability page of one session: when it computes, whether the result is still valid, and its sentences."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from granchain_core.steady.poincare import Section
 from granchain_core.steady.regime_criteria import LONGEST_LOCKED_PERIOD
 
 from ...plots.multipliers import plane_state
-from ...serve.computing.queues import ANALYSES
+from ...serve.computing.worker_pools import ANALYSES
 from ...session.activities import Activity
 from ...session.debounce import Debounce
 from ...session.host import Host
@@ -132,7 +132,7 @@ class StabilityPage(Page):
 
     def _follow(self, target: OrbitTarget) -> None:
         self._target = target
-        self._say("computing")
+        self._show_status("computing")
         self._orbits.start(partial(self._analyse, target, self._observer, self._rank))
 
     # In a worker thread
@@ -172,7 +172,7 @@ class StabilityPage(Page):
     def _ended(self, status: Status, sentence: str) -> None:
         """Report a failure or a state such as "compiling"; results have arrived by themselves."""
         if status != "done":
-            self._say(status, sentence)
+            self._show_status(status, sentence)
             self._show_evidence()
 
     def _section_ended(self, status: Status, sentence: str) -> None:
@@ -220,7 +220,7 @@ class StabilityPage(Page):
             self._view.send(type="no-section")
         self._show_evidence()
 
-    def _say(self, status: Status, sentence: str = "") -> None:
+    def _show_status(self, status: Status, sentence: str = "") -> None:
         self.status = status
         self._view.update_state(**WORDS.of(status, sentence))
         if status == "failed" and self._analysis is None and self._target is not None:
@@ -254,7 +254,7 @@ class StabilityPage(Page):
         settled, section = self._settled, self._section
         if not self._visible or settled is None:
             raise BadInput("There is no settled picture to search from yet; wait for it.")
-        self._say("searching")
+        self._show_status("searching")
         self._orbits.start(partial(self._find, settled, section, period))
 
     def _back(self, _: dict[str, Any]) -> None:

@@ -1,4 +1,4 @@
-// The Poincaré section of the page: its picture, and the choice of bead and drive phase.
+// The Poincaré section of the page: its figure, and the choice of bead and drive phase.
 
 import { element, fillBeads } from "../../parts/toolkit/dom.js";
 import { BokehFigure } from "../../parts/figures/bokeh_figure.js";
@@ -14,7 +14,7 @@ export class SectionView {
     this.close = element("input", { type: "checkbox" });
     this.close.addEventListener("change", () => this.showRanges());
     this.note = element("span", { className: "soft" });
-    this.host = element("div", { className: "picture" });
+    this.host = element("div", { className: "figure" });
     this.figure = new BokehFigure(this.host, () => this.fill());
     const tell = () => {
       this.say();

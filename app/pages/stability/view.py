@@ -42,7 +42,7 @@ def empty_figures(theme: Theme) -> dict[str, Any]:
 
 
 class Stability(FigurePart):
-    """The page over the pictures and, through what it shares in the browser, the small version in its tab."""
+    """The overlay and, through what it shares in the browser, the small version in its tab."""
 
     _esm = module("stability.js")
     _stylesheets = [text(f"{name}.css") for name in ("controls", "drawing", "stability")]  # noqa: RUF012

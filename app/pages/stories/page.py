@@ -1,4 +1,4 @@
-"""The Stories tab of one visitor: the story and its step, and the step's motion."""
+"""The Stories tab of one session: the story and its step, and the step's motion."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from granchain_core import BadInput, Settled, State
 
 from ...parts.toolkit.component import Component
 from ...serve.compiling.compiler import PICTURE_PIECES
-from ...serve.computing.queues import ANALYSES
+from ...serve.computing.worker_pools import ANALYSES
 from ...session.host import Host
 from ...session.message_checks import whole
 from ...session.page import Actions, Page
 from ...session.stories import Story, StoryStep, state_before, stories, told_words
-from ...session.task import Job, Task, say_nothing
+from ...session.task import Job, Task, report_nothing
 
 
 @cache
@@ -23,9 +23,7 @@ def _stories_read(overlays: tuple[str, ...]) -> tuple[tuple[Story, ...], tuple[s
 
 
 def story_places(overlays: tuple[str, ...]) -> tuple[str, ...]:
-    """Every step of every story by the name it has in a link, "coexisting.2"; `overlays` are the pages over the
-    pictures.
-    """
+    """Every step of every story by the name it has in a link, "coexisting.2"; `overlays` are those there are."""
     return tuple(f"{story.name}.{number}" for story in _stories_read(overlays)[0]
                  for number in range(1, len(story.steps) + 1))
 
@@ -42,7 +40,7 @@ class StoriesPage(Page):
     def __init__(self, host: Host, view: Component) -> None:
         self._host = host
         self._view = view
-        self._task = Task(host, ANALYSES, say_nothing, "The story", tell_host=True)
+        self._task = Task(host, ANALYSES, report_nothing, "The story", report_to_host=True)
         known, refused = _stories_read(host.overlays)
         self._stories = {one.name: one for one in known}
         self.actions: Actions = {"story-open": self._open, "story-close": lambda _: self._close()}

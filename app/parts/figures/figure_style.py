@@ -16,7 +16,7 @@ NEEDED = (
            "Bokeh collects what a document refers to anew for each part: a page opens more slowly"),
 )
 
-# Borders [px], the same for all time pictures, so that one cursor and the chain fit them exactly.
+# Borders [px], the same for all figures over time, so that one cursor and the chain fit them exactly.
 TOP = 78
 BOTTOM = 82
 LEFT = 60

@@ -5,7 +5,7 @@ import { BokehFigure } from "./bokeh_figure.js";
 
 export class ResultFigure {
   // A figure on the page of this name; `place` distinguishes several figures of a page.
-  constructor(page, place = "", className = "picture") {
+  constructor(page, place = "", className = "figure") {
     this.page = page;
     this.place = place;
     this.item = null;

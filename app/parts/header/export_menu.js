@@ -6,7 +6,7 @@ import { draw, SVG } from "../toolkit/svg.js";
 
 const MARGIN = 12, // px around a picture
   SHARP = 2; // pixels of a PNG for one of the picture
-// The pictures of the main page: name in a file, element, and model of the figure.
+// The figures of the main page: name in a file, element, and model of the figure.
 const FIGURES = {
   driver: ["at the driver", "left", "input force"],
   energy: ["kinetic energy", "map", "kinetic energy"],
@@ -35,7 +35,7 @@ const chainPiece = () => {
   };
 };
 
-// The words over the pictures, at their places on the screen.
+// The words over the figures, at their places on the screen.
 const wordsOf = (selector) =>
   [...document.querySelectorAll(selector)]
     .filter((one) => one.checkVisibility() && one.textContent.trim())

@@ -1,4 +1,4 @@
-// The boxes that the bar on top opens over the pictures: the help, and the link to the picture.
+// The boxes that the bar on top opens: the help, and the link to the picture.
 
 import { button, element } from "../toolkit/dom.js";
 import { exportMenu } from "./export_menu.js";

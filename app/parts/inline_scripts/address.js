@@ -2,8 +2,7 @@
 (() => {
   const { granchain } = window;
 
-  // What only the browser knows of an address; "look" is the theme.
-  const BROWSER_FIELDS = ["tab", "page", "look", "embed"];
+  const { browserFields: BROWSER_FIELDS } = window.pageConstants; // `BROWSER_FIELDS` of app/session/share.py
   const FOLLOW_AFTER = 400; // ms; a browser limits how many changes it takes a second
   const NEWEST = "granchain-newest";
 
@@ -121,7 +120,7 @@
       addEventListener("popstate", ({ state }) => this.#known && this.#moved(state));
     }
 
-    /** Where the visitor is: the tab below the curve and the page over the pictures, empty for the first tab and none. */
+    /** Where the visitor is: the tab below the curve and the overlay, empty for the first tab and none. */
     get place() {
       return this.#place;
     }

@@ -4,7 +4,7 @@ window.importShim = Object.assign((url) => import(url), { addImportMap() {} }); 
 
 window.granchain = (() => {
   const KEPT_AS = "granchain-look"; // the theme, in the browser from visit to visit
-  const THEMES = ["light", "dark", "projector"];
+  const { themes: THEMES, terms: TERMS } = window.pageConstants; // app/session/page_constants.py
 
   // The events: what has happened, and the detail, if there is one. There is also "page:NAME" for each page: it has
   // published something, which is the detail.
@@ -12,7 +12,7 @@ window.granchain = (() => {
     "theme", // another theme: its name
     "place", // another tab and page are to be shown: { tab, page }, empty for the first tab and no page
     "tab", // a tab was opened: its name
-    "overlay", // a page was opened over the pictures, or closed: its name or null
+    "overlay", // an overlay was opened or closed: its name or null
     "visible", // other pages are looked at: the set of their names
     "story", // a story was opened or left: whether one is shown
     "curved", // on a phone, the curve was shown or hidden: whether it is shown
@@ -44,7 +44,7 @@ window.granchain = (() => {
       for (const listener of this.#of(name)) listener(detail);
     }
 
-    // The listeners of an event. A name that no event has is a mistake that nobody would notice otherwise.
+    // The listeners of an event. An unknown event name raises an error, since nobody would notice the mistake otherwise.
     #of(name) {
       if (!EVENTS.has(name) && !name.startsWith("page:")) throw new Error(`there is no event ${name}`);
       if (!this.#listeners.has(name)) this.#listeners.set(name, new Set());
@@ -78,7 +78,7 @@ window.granchain = (() => {
       return this.#chosen;
     }
 
-    /** Changes the theme and announces it as the event "theme"; a name that no theme has changes nothing. */
+    /** Changes the theme and announces it as the event "theme". An unknown theme is ignored. */
     set(name, keep) {
       if (!THEMES.includes(name)) return;
       document.documentElement.dataset.theme = name;
@@ -117,20 +117,19 @@ window.granchain = (() => {
   }
 
   /**
-   * What the parts of the dashboard share in the browser: events, what pages publish, the page over the pictures, the
+   * What the parts of the dashboard share in the browser: events, what pages publish, the overlay, the
    * panels of a phone, and one object for each of theme, address, history and connection.
    */
   class Dashboard extends Events {
-    #overlay = null; // the name of the page over the pictures
+    #overlay = null; // the name of the overlay
     pages = new Map(); // what pages have published, by page
-    embedded = new URLSearchParams(location.search).get("embed") === "1"; // the pictures alone, for a slide
+    embedded = new URLSearchParams(location.search).get("embed") === "1"; // the picture alone, for a slide
     theme = new Theme(this);
+    terms = TERMS; // of the glossary, with their definitions
 
     // Below are the members that other scripts set; a comment names the script.
     // visibility.js: the names of what somebody looks at
     visible = new Set();
-    // dashboard.html: the glossary's terms with their definitions
-    terms = {};
     // address.js: the share link and where the visitor is; the browser's history
     address = null;
     steps = null;
@@ -163,12 +162,12 @@ window.granchain = (() => {
       this.emit(`page:${name}`, data);
     }
 
-    /** The name of the page over the pictures, or null. An open page stops the curve unless it needs the curve. */
+    /** The name of the overlay, or null. An open one stops the curve unless it needs the curve. */
     get overlay() {
       return this.#overlay;
     }
 
-    /** Opens the page of this name over the pictures. A name that no such page has opens none. */
+    /** Opens the overlay of this name. An unknown name closes the open one. */
     openPage(asked) {
       const sheets = [...document.querySelectorAll("[data-overlay]")];
       const name = sheets.some((one) => one.dataset.overlay === asked) ? asked : null;
@@ -192,7 +191,7 @@ window.granchain = (() => {
       if (open) this.showCurve(false);
     }
 
-    /** On a phone: shows the resonance curve together with the pictures on one screen, or below them. */
+    /** On a phone: shows the resonance curve together with the picture on one screen, or below them. */
     showCurve(shown) {
       const { classList } = document.getElementById("dashboard");
       if (classList.contains("curved") === shown) return;

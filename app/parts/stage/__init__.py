@@ -1,1 +1,1 @@
-"""The pictures over time beside the chain: force trains and energy map."""
+"""The figures over time beside the chain: force trains and energy map."""

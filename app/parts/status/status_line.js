@@ -37,7 +37,7 @@ function emptyEntry(name, tag = "span") {
   return entry;
 }
 
-// The entries stay on one line. If the line wrapped while a knob moves, all pictures would move and be drawn anew.
+// The entries stay on one line. If the line wrapped while a knob moves, all figures would move and be drawn anew.
 class Line {
   constructor() {
     this.el = element("div", { className: "line" });
@@ -104,7 +104,7 @@ class Line {
   // On a phone it may have several lines, since the page scrolls.
   fitPhone() {
     for (const name of NOT_ON_PHONE) if (this.entries.has(name)) this.entries.get(name).hidden = true;
-    // More than two lines would cover the pictures.
+    // More than two lines would cover the figures.
     const { regime_shorter, accuracy_shorter } = this.state;
     const shorten = (name, [words] = [], lines = 1) => {
       const entry = this.entries.get(name);

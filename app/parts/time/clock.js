@@ -1,4 +1,4 @@
-// The replay clock: one row of the frames is "now" in the chain and in all pictures.
+// The replay clock: one row of the frames is "now" in the chain and in all figures over time.
 export class Clock {
   constructor(onMove) {
     this.onMove = onMove;

@@ -1,4 +1,4 @@
-// A line through all pictures at the time under the pointer, with the values at that time. Dragging with Shift in the
+// A line through all figures over time at the time under the pointer, with the values at that time. Dragging with Shift in the
 // map measures time, distance and speed between two places.
 
 import { element } from "../toolkit/dom.js";
@@ -26,9 +26,9 @@ export class Crosshair {
     this.measured = element("p", { id: "measured", role: "status", hidden: true });
     this.line.ariaHidden = "true"; // the time cursor tells a screen reader the same
     layout.stage.append(this.line, this.bead, this.tape, this.measured);
-    for (const picture of layout.stage.querySelectorAll(".picture")) {
-      picture.addEventListener("pointermove", (event) => this.moved(event));
-      picture.addEventListener("pointerleave", () => this.hide());
+    for (const figure of layout.stage.querySelectorAll(".figure")) {
+      figure.addEventListener("pointermove", (event) => this.moved(event));
+      figure.addEventListener("pointerleave", () => this.hide());
     }
     layout.energyMap.addEventListener("pointerdown", (event) => event.shiftKey && this.measure(event), true);
     document.addEventListener("keydown", ({ key }) => key === "Escape" && this.roll());

@@ -1,13 +1,13 @@
-// The time cursor: a line across all pictures over time, at the row of the clock.
+// The time cursor: a line across all figures over time, at the row of the clock.
 
 const STILL = 4; // px; a pointer that moves farther drags and does not click
 
-// The line across all time pictures; dragging it, or any of the pictures, stops time.
+// The line across all figures over time; dragging it, or any of the figures, stops time.
 export class Cursor {
   constructor(clock, layout) {
     Object.assign(this, { clock, layout });
     this.line = document.getElementById("cursor");
-    for (const element of [this.line, ...layout.stage.querySelectorAll(".picture")])
+    for (const element of [this.line, ...layout.stage.querySelectorAll(".figure")])
       element.addEventListener("pointerdown", (event) => this.grab(event, element));
     this.line.addEventListener("keydown", (event) => {
       const { frames } = clock;

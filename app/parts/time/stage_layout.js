@@ -1,4 +1,4 @@
-// Where the pictures over time are on the stage, and what is laid over and under them: titles, colour scale, largest
+// Where the figures over time are on the stage, and what is laid over and under them: titles, colour scale, largest
 // values and key.
 
 export class StageLayout {

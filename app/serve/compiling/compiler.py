@@ -1,4 +1,4 @@
-"""Compiling outside the server process, so that only the visitor who needs it waits.
+"""Compiling outside the server process, so that only the session that needs it waits.
 
 Numba holds the interpreter while it compiles, so kernels that are not cached yet are compiled in processes of
 their own; this one then loads them from the cache.
@@ -20,7 +20,7 @@ from granchain_core.execution.stop import Stop
 from granchain_core.precompile.pieces import COMPILE_SECONDS, CURVE_KERNELS, MOTION_KERNELS
 from granchain_core.precompile.warm import compile_piece, is_warm, structure
 
-from ..computing.queues import COMPILATIONS, LOADING
+from ..computing.worker_pools import COMPILATIONS, LOADING
 
 #: Time between two checks of a stop flag while another process compiles [s].
 _STOP_CHECK_INTERVAL = 0.05
@@ -100,7 +100,7 @@ class Compiler:
             self._loaded.add(key)
 
     def prepare(self, scene: Scene) -> None:
-        """Have this scene's kernels ready in this process before the first visitor asks."""
+        """Have this scene's kernels ready in this process before the first session asks."""
         for piece in PICTURE_PIECES:
             if not self.has(scene, piece):
                 self.ask(scene, piece)
@@ -114,9 +114,9 @@ class Compiler:
 
 
 class Requests:
-    """What one visitor's work asks for: each piece once, so that one that cannot be compiled is not tried for ever.
+    """What one session's work asks for: each piece once, so that one that cannot be compiled is not tried for ever.
 
-    Another visitor's work, or a picture, may try it again.
+    Another session's work, or a picture, may try it again.
     """
 
     def __init__(self, compiler: Compiler) -> None:

@@ -1,1 +1,1 @@
-"""Computing for many visitors: queues, turns, priorities, shared results."""
+"""Computing for many sessions: worker pools, turns, priorities, shared results."""

@@ -1,4 +1,4 @@
-"""The processor time that visitors have used lately, by which turns are given (turns.py)."""
+"""The processor time that sessions have used lately, by which turns are given (turns.py)."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ import math
 import time
 from collections.abc import Callable
 
-#: Time in which half of what a visitor has used is forgotten [s].
+#: Time in which half of what a session has used is forgotten [s].
 _HALF_LIFE = 5.0
 
 
 class CpuTime:
-    """The processor time that one visitor has used lately [s]."""
+    """The processor time that one session has used lately [s]."""
 
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock, self._used, self._at = clock, 0.0, clock()
@@ -27,7 +27,7 @@ class CpuTime:
 
 
 class SharedCpuTime(CpuTime):
-    """Visitors who wait for the same picture: they share its cost, and their rank is that of the one who used least."""
+    """Sessions that wait for one picture: they share its cost, and their rank is that of the one that used least."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -39,7 +39,7 @@ class SharedCpuTime(CpuTime):
         return min((member.used for member in list(self.members)), default=math.inf)
 
     def charge(self, seconds: float) -> None:
-        """Charge each member its share."""
+        """Charge each member an equal part."""
         members = list(self.members)
         for member in members:
             member.charge(seconds / len(members))

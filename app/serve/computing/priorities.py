@@ -2,8 +2,8 @@
 
 On Linux every thread has a nice value of its own; elsewhere it belongs to the whole process, and nothing is changed.
 Without special rights a thread cannot raise its priority again, so a thread of lower priority ends with its work
-(queues.py). Threads that it starts have the lower priority too, unless `begin` starts them. The main thread, which has
-the event loop, keeps its priority.
+(worker_pools.py). Threads that it starts have the lower priority too, unless `begin` starts them. The main thread,
+which has the event loop, keeps its priority.
 """
 
 from __future__ import annotations

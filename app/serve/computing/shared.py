@@ -1,7 +1,7 @@
-"""Shared results: computed once for all visitors who wait, and cached in bounded memory.
+"""Shared results: computed once for all sessions that wait, and cached in bounded memory.
 
-A lecture hall whose pages all have the same knobs costs as much as one visitor. A computation ends when the last
-visitor who waits for it has moved on or left.
+A lecture hall whose pages all have the same knobs costs as much as one session. A computation ends when the last
+session that waits for it has moved on or ended.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from typing import Generic, TypeVar
 from granchain_core.execution.stop import Stop
 
 from .cpu_time import CpuTime, SharedCpuTime
-from .queues import Queue
 from .turns import Flag, TurnFlag
+from .worker_pools import WorkerPool
 
 Item = TypeVar("Item")
 
-#: Time between two checks of a visitor's stop flag while it waits [s]; new items wake it at once.
+#: Time between two checks of a session's stop flag while it waits [s]; new items wake it at once.
 _STOP_CHECK_INTERVAL = 0.5
 
 
@@ -42,9 +42,9 @@ class Shared(Generic[Item]):
     computations take turns (turns.py).
     """
 
-    def __init__(self, queue: Queue, memory: int, size: Callable[[Item], int],
+    def __init__(self, pool: WorkerPool, memory: int, size: Callable[[Item], int],
                  kept: Callable[[list[Item]], list[Item]] = lambda items: items, turns: bool = True) -> None:
-        self._queue, self.memory, self._size, self._kept, self._turns = queue, memory, size, kept, turns
+        self._pool, self.memory, self._size, self._kept, self._turns = pool, memory, size, kept, turns
         self._lock = threading.Lock()
         self._under_way: dict[Hashable, _Computation[Item]] = {}
         self._finished: OrderedDict[Hashable, tuple[list[Item], int]] = OrderedDict()
@@ -83,7 +83,7 @@ class Shared(Generic[Item]):
             found.cpu_time.members.append(cpu_time)
             if key is not None:
                 self._under_way[key] = found
-            self._queue.submit(self._compute, key, found, compute)
+            self._pool.submit(self._compute, key, found, compute)
         else:
             self.hits += 1
             found.cpu_time.members.append(cpu_time)
@@ -128,7 +128,7 @@ class Shared(Generic[Item]):
 
     def _compute(self, key: Hashable, computation: _Computation[Item],
                  compute: Callable[[TurnFlag], Iterator[Item]]) -> None:
-        """In a thread of the queue."""
+        """In a thread of the pool."""
         error: Exception | None = None
         try:
             computation.stop.check()
@@ -155,7 +155,7 @@ class Shared(Generic[Item]):
         size = sum(map(self._size, items))
         if size > self.memory:
             return
-        if key in self._finished:  # computed a second time, because its last visitor left just before the end
+        if key in self._finished:  # computed a second time, because its last session ended just before
             self.used -= self._finished.pop(key)[1]
         self._finished[key] = items, size
         self.used += size

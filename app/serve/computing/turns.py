@@ -1,8 +1,8 @@
-"""Fair scheduling: of the visitors who wait, the one who has used least time gets the next turn to compute.
+"""Fair scheduling: of the sessions that wait, the one that has used least time gets the next turn to compute.
 
-Kernels run without the interpreter's lock, so about as many computations as there are cores run at once. A first
-picture begins at once and is not interrupted, because it is short. A computation that refines a picture, or takes long,
-gives up its turn at the first pause after a slice of time.
+Kernels run without the interpreter's lock, so about as many computations as there are cores run at once. A computation
+is new until it has its first result or has taken long; from then on it is a refinement. A new one begins at once and is
+not interrupted, because it is short. A refinement gives up its turn at the first pause after a time slice.
 """
 
 from __future__ import annotations
@@ -23,13 +23,12 @@ from .priorities import lower_priority
 
 Result = TypeVar("Result")
 
-#: A computation without a result counts as just begun for this processor time [s]. A first picture of ten beads takes
-#: a tenth of it.
-_BEGINNING_CPU_TIME = 0.03
+#: A computation without a result is new for this processor time [s]. A first picture of ten beads takes a tenth of it.
+_NEW_CPU_TIME = 0.03
 #: Time for which a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
 #: another thread costs some waits for the interpreter.
 _TIME_SLICE = 0.02
-#: Most computations that began lately whose waits are averaged.
+#: Most new computations whose waits are averaged.
 _MOST_WAITS = 200
 #: Span of time over which the waits are averaged [s].
 _WAITS_WINDOW = 10.0
@@ -44,12 +43,10 @@ _LONGEST_CHECK_MULTIPLE = 20
 _LONGEST_TURN = 0.1
 
 
-class _Claim(NamedTuple):
-    """A claim to the next turn. The smallest goes first: what is new before refinements, of these what has waited long
-    before the others, and of equals the one whose visitor has used least.
-    """
+class _Priority(NamedTuple):
+    """Sort key of waiting turns: new before refinements, long waits first, then least processor time."""
 
-    refines: bool
+    is_refinement: bool
     waited_little: bool
     used: float
 
@@ -57,24 +54,24 @@ class _Claim(NamedTuple):
 class _Turn:
     """A thread that waits for a turn or has one; `at` is the time at which the wait or the turn began.
 
-    `is_new` says whether its computation has only just begun.
+    `is_new` says whether its computation is new.
     """
 
     def __init__(self, cpu_time: CpuTime, stop: Stop, is_new: bool, at: float) -> None:
         self.cpu_time, self.stop, self.is_new, self.at = cpu_time, stop, is_new, at
         self.granted = threading.Event()
 
-    def claim(self, now: float) -> _Claim:
-        """Its claim to the next turn."""
-        return _Claim(not self.is_new, now - self.at < _LONGEST_WAIT, self.cpu_time.used)
+    def priority(self, now: float) -> _Priority:
+        """Its place among those that wait."""
+        return _Priority(not self.is_new, now - self.at < _LONGEST_WAIT, self.cpu_time.used)
 
 
 class FairScheduler:
     """Gives turns to computations that wait; only turns younger than `_LONGEST_TURN` keep others waiting.
 
-    A computation that has just begun gets one while fewer than `at_once` such computations have one, whatever else
-    computes. Another gets one while fewer than `at_once` computations of both kinds have one; once it has waited for
-    `_LONGEST_WAIT`, only those that have not just begun count. So `2 * at_once` young turns are possible for a moment.
+    A new computation gets one while fewer than `at_once` new ones have one, whatever else computes. A refinement gets
+    one while fewer than `at_once` computations of both kinds have one; once it has waited for `_LONGEST_WAIT`, only
+    refinements count. So `2 * at_once` turns are possible for a moment.
     """
 
     def __init__(self, at_once: int, clock: Callable[[], float] = time.monotonic) -> None:
@@ -105,7 +102,7 @@ class FairScheduler:
     def begin(self, cpu_time: CpuTime, stop: Stop, is_new: bool = True) -> _Turn:
         """Wait for a turn, or until the stop flag is set; returns what `end` needs.
 
-        `is_new` says whether the computation has only just begun.
+        `is_new` says whether the computation is new.
         """
         mine = _Turn(cpu_time, stop, is_new, self._clock())
         with self._lock:
@@ -133,36 +130,36 @@ class FairScheduler:
             self._running.discard(turn)
             self._grant()
 
-    def note_progress(self, turn: _Turn) -> None:
-        """The computation no longer counts as just begun, which makes room for another that has just begun."""
+    def became_refinement(self, turn: _Turn) -> None:
+        """The computation is a refinement from now on, which makes room for a new one."""
         if turn.is_new:
             with self._lock:
                 turn.is_new = False
                 self._grant()
 
     def should_yield(self, turn: _Turn) -> bool:
-        """Whether a computation has to give up its turn; one that has just begun has not.
+        """Whether a computation has to give up its turn; a new one has not.
 
-        It has to if another has a better claim, or if more than `at_once` compute and its visitor has used most.
+        It has to if another has a higher priority, or if more than `at_once` compute and its session has used most.
         """
         with self._lock:
             now = self._clock()
             if turn.is_new or now - turn.at < _TIME_SLICE:
                 return False
-            mine = _Claim(refines=True, waited_little=True, used=turn.cpu_time.used)
-            if any(other.claim(now) < mine for other in self._waiting):
+            mine = _Priority(is_refinement=True, waited_little=True, used=turn.cpu_time.used)
+            if any(other.priority(now) < mine for other in self._waiting):
                 return True
             too_many = len(self._running) - self._at_once
             more = sum(other.cpu_time.used > turn.cpu_time.used for other in self._running if not other.is_new)
             return more < too_many
 
     def _grant(self) -> None:
-        """With the lock held: give turns to those with the best claims."""
+        """With the lock held: give turns to those with the highest priority."""
         self._checked_at = now = self._clock()
         # Mostly there is room for none, and finding that out is cheaper than sorting.
         if not any(self._has_room(turn, now) for turn in self._waiting):
             return
-        for turn in sorted(self._waiting, key=lambda turn: turn.claim(now)):
+        for turn in sorted(self._waiting, key=lambda turn: turn.priority(now)):
             if not self._has_room(turn, now):
                 continue
             if turn.is_new:
@@ -174,11 +171,11 @@ class FairScheduler:
 
     def _has_room(self, turn: _Turn, now: float) -> bool:
         """Whether a turn could begin beside those that are held."""
-        young = [other.is_new for other in self._running if now - other.at < _LONGEST_TURN]
+        are_new = [other.is_new for other in self._running if now - other.at < _LONGEST_TURN]
         if turn.is_new:
-            return sum(young) < self._at_once
-        waited = now - turn.at >= _LONGEST_WAIT and young.count(False) < self._at_once
-        return len(young) < self._at_once or waited
+            return sum(are_new) < self._at_once
+        waited = now - turn.at >= _LONGEST_WAIT and are_new.count(False) < self._at_once
+        return len(are_new) < self._at_once or waited
 
 
 TURNS = FairScheduler(max(2, usable_cores()))
@@ -214,8 +211,8 @@ class TurnFlag(Flag):
 
     @property
     def is_new(self) -> bool:
-        """Whether the computation has only just begun: there is no result yet, and it has not taken long."""
-        return self._spent < _BEGINNING_CPU_TIME
+        """Whether the computation is new: there is no result yet, and it has not taken long."""
+        return self._spent < _NEW_CPU_TIME
 
     def set(self) -> None:
         """Ask for the end, even of the wait for a turn."""
@@ -223,21 +220,21 @@ class TurnFlag(Flag):
         self._scheduler.stopped(self)
 
     def pause(self) -> None:
-        """Between two parts of the computation: let visitors who have used less go first."""
+        """Between two parts of the computation: let sessions that have used less go first."""
         if self._turn is None:
             return
         self._charge()
         self._lower_priority()
         if not self.is_new:
-            self._scheduler.note_progress(self._turn)
+            self._scheduler.became_refinement(self._turn)
         if self._scheduler.should_yield(self._turn):
             self._leave()
             self._enter()
 
     @contextmanager
-    def held(self, anew: bool = False) -> Iterator[None]:
-        """Wait for a turn and hold it. `anew`: another computation begins with this flag."""
-        if anew:
+    def held(self, is_new: bool = False) -> Iterator[None]:
+        """Wait for a turn and hold it. `is_new`: another computation begins with this flag."""
+        if is_new:
             self._spent = 0.0
         self._enter()
         try:
@@ -272,7 +269,7 @@ class TurnFlag(Flag):
             yield result
 
     def _lower_priority(self) -> None:
-        """Lower the priority of this thread, unless its computation has only just begun."""
+        """Lower the priority of this thread, unless its computation is new."""
         if not self.is_new:
             lower_priority()
 

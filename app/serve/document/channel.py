@@ -1,4 +1,4 @@
-"""One visitor's document and the event loop: several actions at a time run with the document locked.
+"""One session's document and the event loop: several actions at a time run with the document locked.
 
 Bokeh creates, wraps, stores, announces and removes its callbacks one by one, which takes longer than most actions.
 """
@@ -111,7 +111,7 @@ class Channel:
         self._timers: set[asyncio.TimerHandle] = set()
 
     def close(self) -> None:
-        """The visitor left: nothing is called any more, and what was to be called later is forgotten."""
+        """The session has ended: nothing is called any more, and what was to be called later is forgotten."""
         with self._lock:
             self._closed = True
             self._waiting.clear()
@@ -156,7 +156,7 @@ class Channel:
         self._served = self._served or session_of(self._document) is not None
 
     def _is_destroyed(self) -> bool:
-        """Whether Bokeh has taken the document apart, which it does before it tells that the visitor left."""
+        """Whether Bokeh has taken the document apart, which it does before it notifies that the session has ended."""
         return self._served and session_of(self._document) is None
 
     def _run(self) -> None:

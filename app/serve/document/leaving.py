@@ -1,4 +1,4 @@
-"""What happens when a visitor leaves: the page is told at once, and Bokeh is asked to drop the session."""
+"""What happens when a session ends: the page is notified at once, and Bokeh is asked to drop its own session."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ NEEDED = (
            "a page that was left counts as a visitor and stays in memory for a minute, but nothing is computed for it"),
 )
 
-#: What a page does when its visitor leaves.
+#: What a page does when its session ends.
 _PAGES: weakref.WeakKeyDictionary[Document, weakref.WeakMethod[Callable[[], None]]] = weakref.WeakKeyDictionary()
 
 
 def when_left(document: Document, close: Callable[[], None]) -> None:
-    """Let a method, which is not kept alive, be called when the visitor of this document leaves."""
+    """Let a method, which is not kept alive, be called when the session of this document ends."""
     _PAGES[document] = weakref.WeakMethod(close)
 
 
 def leave(session: Any) -> None:
-    """The visitor of this session of Bokeh's has left; nobody else can connect to it."""
+    """End a session of Bokeh's, whose page has left; no other page can connect to it."""
     close = _PAGES[session.document]() if session.document in _PAGES else None
     if close is not None:
         close()

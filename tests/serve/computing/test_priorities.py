@@ -9,11 +9,12 @@ import time
 from collections.abc import Callable, Iterator
 
 import pytest
+import waiting
 
 from app.serve.computing.cpu_time import CpuTime
 from app.serve.computing.priorities import has_lower_priority, lower_priority
-from app.serve.computing.queues import LatestWins, Queue
 from app.serve.computing.turns import FairScheduler, TurnFlag
+from app.serve.computing.worker_pools import LatestWins, WorkerPool
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the niceness is that of the process")
 
@@ -38,18 +39,19 @@ def in_turns(seconds: float) -> int:
 
 @linux
 def test_only_what_takes_long_gives_way_and_its_thread_does_nothing_more() -> None:
-    queue, usual = Queue("test", 1), niceness()
-    assert queue.submit(in_turns, 0.0).result(60.0) == usual
-    first = queue.submit(threading.get_native_id).result(60.0)
-    assert queue.submit(in_turns, 0.1).result(60.0) > usual
-    after = queue.submit(lambda: (threading.get_native_id(), niceness()))  # waits for the only thread, which then ends
+    pool, usual = WorkerPool("test", 1), niceness()
+    assert pool.submit(in_turns, 0.0).result(60.0) == usual
+    first = pool.submit(threading.get_native_id).result(60.0)
+    assert pool.submit(in_turns, 0.1).result(60.0) > usual
+    after = pool.submit(lambda: (threading.get_native_id(), niceness()))  # waits for the only thread, which then ends
     assert after.result(60.0)[0] != first and after.result(60.0)[1] == usual
-    assert (len(queue._threads), queue.waiting) == (1, 0)
+    waiting.until(lambda: pool.busy_threads == 0)  # nor is the thread that has ended
+    assert pool.queued == 0
 
 
 @linux
 def test_work_waiting_for_a_thread_that_ends_is_done_in_its_order() -> None:
-    queue, done = Queue("test", 1), list[int]()
+    pool, done = WorkerPool("test", 1), list[int]()
     begun, go = threading.Event(), threading.Event()
 
     def long() -> None:
@@ -57,15 +59,15 @@ def test_work_waiting_for_a_thread_that_ends_is_done_in_its_order() -> None:
         assert go.wait(60.0)
         lower_priority()
 
-    queue.submit(long)
+    pool.submit(long)
     assert begun.wait(60.0)
-    waiting = [queue.submit(done.append, number) for number in range(5)]
-    last = queue.submit(niceness)
-    assert queue.waiting == 6
+    given = [pool.submit(done.append, number) for number in range(5)]
+    last = pool.submit(niceness)
+    assert pool.queued == 6
     go.set()
-    for one in waiting:
+    for one in given:
         one.result(60.0)
-    assert done == [0, 1, 2, 3, 4] and queue.waiting == 0
+    assert done == [0, 1, 2, 3, 4] and pool.queued == 0
     assert last.result(60.0) == niceness()  # its thread was begun by one that gave way
 
 

@@ -10,9 +10,9 @@ import pytest
 from waiting import until
 
 from app.serve.computing.cpu_time import CpuTime
-from app.serve.computing.queues import LatestWins, Queue
 from app.serve.computing.shared import Shared
 from app.serve.computing.turns import Flag, TurnFlag
+from app.serve.computing.worker_pools import LatestWins, WorkerPool
 from granchain_core import Cancelled
 
 pytestmark = pytest.mark.quick
@@ -36,7 +36,7 @@ class Work:
 
 def shared(memory: int = 1000) -> Shared[int]:
     """Each result takes 10 bytes; the last of a computation is kept."""
-    return Shared(Queue("test", 20), memory, lambda _: 10, lambda items: items[-1:])
+    return Shared(WorkerPool("test", 20), memory, lambda _: 10, lambda items: items[-1:])
 
 
 def follower(one: Shared[int], key: str | None, work: Work, found: list[Any], stop: Flag | None = None) -> threading.Thread:
@@ -108,7 +108,7 @@ def test_an_error_reaches_all_and_is_not_kept() -> None:
 
 
 def test_a_first_result_that_takes_long_gives_way_to_a_newer_request(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.serve.computing.queues._FIRST_RESULT_TIME", 0.05)
+    monkeypatch.setattr("app.serve.computing.worker_pools._FIRST_RESULT_TIME", 0.05)
     delivered: list[object] = []
     jobs = LatestWins(delivered.append, delivered.append)
     begun = threading.Event()

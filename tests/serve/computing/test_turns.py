@@ -195,7 +195,7 @@ def test_a_computation_that_has_made_progress_makes_room_for_a_first_picture() -
     turns = FairScheduler(1, lambda: 0.0)
     turn = turns.begin(used_time(0.0), Stop())
     thread, = waiting_threads(turns, used_time(0.0), is_new=True)
-    turns.note_progress(turn)
+    turns.became_refinement(turn)
     assert not turns.should_yield(turn)
     thread.join(60)
     assert not thread.is_alive()

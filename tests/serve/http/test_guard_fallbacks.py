@@ -130,8 +130,8 @@ values = [vars(module).pop(name) for module, name in kept]
 import app.server as server
 from app.serve.http import guard
 assert guard.SessionHandler is None
-server.remember_defaults()
-server.remember_resources()
+server.install_defaults_cache()
+server.install_resources_cache()
 for (module, name), value in zip(kept, values):
     setattr(module, name, value)
 sys.path[:0] = ["tests", "tests/serve", "tests/serve/http"]

@@ -25,7 +25,7 @@ from app.curve.sweep import CURVES_SHARED
 from app.dashboard.main_picture import PICTURES_SHARED
 from app.pages.analysis import questions
 from app.serve.compiling.compiler import Compiler
-from app.serve.computing.queues import LONG
+from app.serve.computing.worker_pools import LONG
 from app.serve.http import frames, guard
 from app.serve.http.frames import FRAME_BURST, FRAME_RATE, FRAME_UNIT
 from app.serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
@@ -61,7 +61,7 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
         "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the pages at once",
         "a link": f"{LONGEST} characters",
         "pages at once": f"{Access().most_visitors}",
-        "long computations of a visitor at once": f"{LONG.share} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
+        "long computations of a visitor at once": f"{LONG.per_owner_limit} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
                                                   "experiments); more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
         "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",

@@ -11,18 +11,18 @@ import waiting
 
 from app import server
 from app.serve.computing.cpu_time import CpuTime
-from app.serve.computing.queues import (
+from app.serve.computing.turns import FairScheduler
+from app.serve.computing.worker_pools import (
     COMPILATIONS,
     COMPUTING,
     CURVES,
     FILES,
     LOADING,
     PICTURES,
-    QUEUES,
-    VISITORS,
-    Queue,
+    POOLS,
+    SESSION_WORK,
+    WorkerPool,
 )
-from app.serve.computing.turns import FairScheduler
 from app.serve.monitoring.metrics import COUNTERS, METRICS, Metric, Metrics
 from granchain_core import Stop
 
@@ -65,20 +65,34 @@ def test_names_and_kinds_are_those_of_prometheus() -> None:
         assert isinstance(metric.read(), dict) == bool(metric.label), metric
 
 
+def waits_beside_another(turns: FairScheduler, now: list[float], seconds: float, is_new: bool = True) -> None:
+    """A computation has a turn at once, and another one after it has waited so long."""
+    first = turns.begin(CpuTime(), Stop())
+    thread = threading.Thread(target=turns.begin, args=(CpuTime(), Stop(), is_new))
+    thread.start()
+    waiting.until(lambda: turns.waiting == 1, 20)
+    now[0] += seconds
+    turns.end(first)
+    thread.join(20)
+    assert not thread.is_alive()
+
+
 def test_the_wait_before_computations_begin_is_averaged_over_ten_seconds() -> None:
     now = [0.0]
     turns = FairScheduler(1, lambda: now[0])
     assert turns.wait == 0.0
-    first = turns.begin(CpuTime(), Stop())
-    now[0] = 1.0
-    turns.end(first)
-    turns.begin(CpuTime(), Stop(), is_new=False)  # what makes a picture better may wait
-    assert turns.wait == 0.0
-    turns._waits.append((now[0], 1.5))
-    assert turns.wait == 0.75
+    waits_beside_another(turns, now, 1.5)
+    assert turns.wait == 0.75  # the other did not wait
     now[0] = 10.5
     assert turns.wait == 1.5
     now[0] = 12.0
+    assert turns.wait == 0.0
+
+
+def test_the_wait_of_a_refinement_is_not_counted() -> None:
+    now = [0.0]
+    turns = FairScheduler(1, lambda: now[0])
+    waits_beside_another(turns, now, 1.5, is_new=False)
     assert turns.wait == 0.0
 
 
@@ -91,21 +105,21 @@ def shown(name: str) -> float:
 
 
 def test_each_queue_has_its_own_gauges() -> None:
-    for queue in QUEUES:
-        assert shown(f'queue_busy{{queue="{queue.name}"}}') >= 0.0
-        assert shown(f'queue_waiting{{queue="{queue.name}"}}') >= 0.0
+    for pool in POOLS:
+        assert shown(f'queue_busy{{queue="{pool.name}"}}') >= 0.0
+        assert shown(f'queue_waiting{{queue="{pool.name}"}}') >= 0.0
 
 
 def test_queues_whose_threads_wait_for_others_do_not_count_as_computing() -> None:
-    """Those of PICTURES and VISITORS wait for turns, those of CURVES for SWEEPS."""
-    assert set(QUEUES) - set(COMPUTING) == {VISITORS, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
+    """Those of PICTURES and SESSION_WORK wait for turns, those of CURVES for SWEEPS."""
+    assert set(POOLS) - set(COMPUTING) == {SESSION_WORK, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
 
 
-def test_long_work_is_computing_and_what_its_owner_has_beyond_a_share_waits(monkeypatch: pytest.MonkeyPatch) -> None:
-    queue, go_on, owner = Queue("long", 8, share=2), threading.Event(), object()
-    for name, value in (("QUEUES", (queue,)), ("COMPUTING", (queue,)), ("TURNS", FairScheduler(2))):
+def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(monkeypatch: pytest.MonkeyPatch) -> None:
+    pool, go_on, owner = WorkerPool("long", 8, per_owner_limit=2), threading.Event(), object()
+    for name, value in (("POOLS", (pool,)), ("COMPUTING", (pool,)), ("TURNS", FairScheduler(2))):
         monkeypatch.setattr(server, name, value)
-    ended = [queue.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
+    ended = [pool.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
     assert (shown("computing"), shown("queue")) == (2, 1)
     assert (shown('queue_busy{queue="long"}'), shown('queue_waiting{queue="long"}')) == (2, 1)
     go_on.set()
@@ -113,12 +127,12 @@ def test_long_work_is_computing_and_what_its_owner_has_beyond_a_share_waits(monk
 
 
 def test_a_picture_that_waits_for_a_turn_waits_and_is_not_computing(monkeypatch: pytest.MonkeyPatch) -> None:
-    turns, queue, stop = FairScheduler(2, lambda: 0.0), Queue("pictures", 8), Stop()
-    for name, value in (("QUEUES", (queue,)), ("COMPUTING", ()), ("TURNS", turns)):
+    turns, pool, stop = FairScheduler(2, lambda: 0.0), WorkerPool("pictures", 8), Stop()
+    for name, value in (("POOLS", (pool,)), ("COMPUTING", ()), ("TURNS", turns)):
         monkeypatch.setattr(server, name, value)
     for _ in range(2):
         turns.begin(CpuTime(), Stop(), is_new=False)
-    third = queue.submit(turns.begin, CpuTime(), stop, False)
+    third = pool.submit(turns.begin, CpuTime(), stop, False)
     waiting.until(lambda: turns.waiting == 1, 20)
     assert (shown("computing"), shown("queue"), shown("turns_waiting")) == (2, 1, 1)
     assert shown('queue_busy{queue="pictures"}') == 1

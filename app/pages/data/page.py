@@ -29,17 +29,16 @@ from granchain_core.experiment.units import QUANTITIES, UNITS
 from granchain_core.scene import ASSETS
 from granchain_core.scene.refusals import refuse_undriven
 
-from ..curve.controller import CurveController
-from ..format import given_in_words, in_words, signed_in_words
-from ..serve.compiling.compiler import PICTURE_PIECES
-from ..serve.computing.queues import ANALYSES, FILES, LONG
-from ..serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
-from ..serve.http.message_rules import UPLOAD
-from ..session.budget import WHOLE_PICTURE, check_first_picture
-from ..session.host import Host
-from ..session.page import Actions
-from ..session.task import Job, Task, say_nothing
-from .layout import Views
+from ...format import given_in_words, in_words, signed_in_words
+from ...parts.toolkit.component import Component
+from ...serve.compiling.compiler import PICTURE_PIECES
+from ...serve.computing.worker_pools import ANALYSES, FILES, LONG
+from ...serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
+from ...serve.http.message_rules import UPLOAD
+from ...session.budget import WHOLE_PICTURE, check_first_picture
+from ...session.host import Host
+from ...session.page import Actions, Page
+from ...session.task import Job, Task, report_nothing
 
 if TYPE_CHECKING:
     from granchain_core.fit.overlay import Overlay
@@ -64,34 +63,29 @@ _TOO_LARGE = (f"The measurement is larger than {LARGEST_UPLOAD / 1e6:g} MB; a cu
               "kB.")
 
 
-class MeasurementActions:
-    """Actions of the data tab. `tabs` shows what was understood, what is asked, and the misfit."""
+class DataPage(Page):
+    """The tab shows what was understood, what is asked, and the misfit. `Session.measured` is what is drawn."""
 
-    def __init__(self, host: Host, views: Views, curves: CurveController) -> None:
+    def __init__(self, host: Host, tabs: Component) -> None:
         self._host = host
-        self._views = views
-        self._tabs = views.tabs
-        self._curves = curves
-        self._series: Series | None = None
-        #: What is drawn over the pictures, and goes into their files.
-        self.shown: Measured | Series | None = None
-        self._moving = Task(host, ANALYSES, say_nothing, "Moving the series to the picture", tell_host=True)
-        self._reading = Task(host, FILES, say_nothing, "Reading the measurement", tell_host=True)
-        self._recording = Task(host, LONG, say_nothing, "The virtual experiment", tell_host=True)
+        self._tabs = tabs
+        self._moving = Task(host, ANALYSES, report_nothing, "Moving the series to the picture", report_to_host=True)
+        self._reading = Task(host, FILES, report_nothing, "Reading the measurement", report_to_host=True)
+        self._recording = Task(host, LONG, report_nothing, "The virtual experiment", report_to_host=True)
         self._name, self._answers = "", Answers()
         #: The file, for as long as a question about it is open.
         self._content = b""
-        curves.on_compared(self._compared)
         self.actions: Actions = {UPLOAD: self._read, "measurement-answer": self._answer,
                                  "measurement-too-large": self._too_large, "measurement-remove": self._remove,
                                  "measurement-sample": self._sample, "measurement-virtual": self._virtual}
 
     def picture_ready(self, settled: Settled) -> None:
         """Lay the series over the new picture; over a preview, no difference is stated."""
-        if self._series is None:
+        series = self._host.session.measured
+        if not isinstance(series, Series):
             return
         if settled.final:
-            self._moving.start(partial(self._overlay_in_thread, self._series, settled.run))
+            self._moving.start(partial(self._overlay_in_thread, series, settled.run))
         else:
             self._tabs.update_state(misfit=None)
 
@@ -149,24 +143,25 @@ class MeasurementActions:
         job.next_tick(self._show_overlay, overlay(series, run))
 
     def _show_overlay(self, found: Overlay | None) -> None:
-        self._views.trains.measured(found)
+        self._host.show_measured_series(found)
         self._tabs.update_state(misfit=None if found is None else {"sentence": found.sentence, "rows": [], "left": 0})
 
     def _show(self, measured: Measured | Series) -> None:
         """Draw a curve over the curve, or a series over the force trains."""
         self._content = b""
-        self.shown, self._series = measured, measured if isinstance(measured, Series) else None
-        difference = self._curves.measured(measured if isinstance(measured, Measured) else None)
-        self._views.trains.measured(None)
-        self._tabs.update_state(understood=f"{self._name}: {measured.understood}", question=None,
-                                series=measured.word if self._series is not None else "", misfit=_misfit(difference))
+        self._host.session.measured = measured
+        difference = self._host.show_measured_curve(measured if isinstance(measured, Measured) else None)
+        self._host.show_measured_series(None)
+        word = measured.word if isinstance(measured, Series) else ""
+        self._tabs.update_state(understood=f"{self._name}: {measured.understood}", question=None, series=word,
+                                misfit=_misfit(difference))
         settled = self._host.session.settled
         if settled is not None:
             self.picture_ready(settled)
 
-    def _compared(self, difference: Difference | None) -> None:
-        """The curve from rest is complete, or a new one was begun."""
-        if self._series is None:
+    def curve_compared(self, difference: Difference | None) -> None:
+        """Show how a measured curve differs from the curve from rest; with None, a new curve was begun."""
+        if not isinstance(self._host.session.measured, Series):
             self._tabs.update_state(misfit=_misfit(difference))
 
     def _sample(self, _: dict[str, Any]) -> None:
@@ -203,9 +198,9 @@ class MeasurementActions:
         for task in (self._recording, self._reading, self._moving):
             task.cancel()
         self._content = b""
-        self.shown = self._series = None
-        self._curves.measured(None)
-        self._views.trains.measured(None)
+        self._host.session.measured = None
+        self._host.show_measured_curve(None)
+        self._host.show_measured_series(None)
         self._tabs.update_state(understood="", question=None, series="", misfit=None)
 
 

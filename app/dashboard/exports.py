@@ -1,4 +1,4 @@
-"""Share links and exported files; the visitor's own measurements are in measurement.py."""
+"""The share link, and files with what is on the screen."""
 
 from __future__ import annotations
 
@@ -8,41 +8,35 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from granchain_core import BadInput, Run, Settled
+from granchain_core import BadInput, Run
 from granchain_core.experiment import Measured, Series
 from granchain_core.store import save
 
 from ..curve.controller import CurveController
-from ..serve.computing.queues import FILES
+from ..serve.computing.worker_pools import FILES
 from ..session.export import EXPORTS, TEXTS, Screen
 from ..session.host import Host
 from ..session.message_checks import quoted
 from ..session.page import Actions
-from ..session.task import Job, Task, say_nothing
+from ..session.task import Job, Task, report_nothing
 from .layout import Views
 from .main_picture import MainPicture
-from .measurement import MeasurementActions
 
 _NONE = "There is no picture to save yet; wait for the first one."
 _PASSES = ("Only a settled picture can be exported as a script; a live run depends on when each knob moved. Choose "
            "“settled”, or save the run as HDF5.")
 
 
-class LinksAndFiles:
-    """Actions of the page that deal with links and files; files are written in the background."""
+class Exports:
+    """Sends the share link and files; files are written in the background."""
 
     def __init__(self, host: Host, views: Views, curves: CurveController, pictures: MainPicture) -> None:
         self._host = host
         self._views = views
         self._curves = curves
         self._pictures = pictures
-        self._saving = Task(host, FILES, say_nothing, "Saving the picture", tell_host=True)
-        self._measurement = MeasurementActions(host, views, curves)
-        self.actions: Actions = {"share": self._share, "export": self._export, **self._measurement.actions}
-
-    def picture_ready(self, settled: Settled) -> None:
-        """Compare a measured series with the new picture."""
-        self._measurement.picture_ready(settled)
+        self._saving = Task(host, FILES, report_nothing, "Saving the picture", report_to_host=True)
+        self.actions: Actions = {"share": self._share, "export": self._export}
 
     def _share(self, _: dict[str, Any]) -> None:
         """Send the link, and say which pins have no room in it."""
@@ -56,7 +50,7 @@ class LinksAndFiles:
         if run is None:
             raise BadInput(_NONE)
         if what == "hdf5":
-            self._write(".h5", partial(_hdf5, run, self._measurement.shown))
+            self._write(".h5", partial(_hdf5, run, self._host.session.measured))
         elif isinstance(what, str) and what in TEXTS:
             end, text = TEXTS[what]
             screen = self._screen(run, what)

@@ -15,7 +15,7 @@ from bokeh.themes import Theme
 from missing_attribute import lose
 from replaced import OWN, REPLACED
 
-from app.serve.opening.bokeh_defaults import NEEDED, remember_defaults
+from app.serve.monkeypatches.bokeh_defaults import NEEDED, install_defaults_cache
 
 CHANGES = Theme(json={"attrs": {"Axis": {"axis_label_text_font_size": "31px"}, "Line": {"line_width": 7}}})
 
@@ -44,14 +44,14 @@ def described(theme: Theme | None) -> str:
 def test_remembered_defaults_describe_the_same_document() -> None:
     before = described(None), described(CHANGES)
     assert before[0] != before[1] and "31px" in before[1]
-    remember_defaults()
+    install_defaults_cache()
     assert (described(None), described(CHANGES)) == before
     assert PropertyDescriptor._get_default.known  # it is in use
     assert (described(CHANGES), described(None)) == before[::-1]  # what is remembered now belongs to no theme
 
 
 def test_models_do_not_share_what_one_of_them_may_change() -> None:
-    remember_defaults()
+    install_defaults_cache()
     one, other = figure(), figure()
     one.line([0, 1], [0, 1])
     one.xaxis[0].major_label_overrides[1] = "one"
@@ -60,7 +60,7 @@ def test_models_do_not_share_what_one_of_them_may_change() -> None:
 
 
 def test_an_empty_default_is_made_when_it_is_asked_for_and_is_the_models_own() -> None:
-    remember_defaults()
+    install_defaults_cache()
     figure()
     one, other = figure(), figure()
     assert "tags" not in one._unstable_default_values
@@ -86,7 +86,7 @@ def test_a_document_knows_every_model_to_which_its_roots_refer() -> None:
 
     before = kinds()
     assert {"CustomJS", "InlineStyleSheet", "Line"} < set(before)
-    remember_defaults()
+    install_defaults_cache()
     assert kinds() == before == kinds()
 
 
@@ -95,7 +95,7 @@ def test_all_values_are_still_there_to_be_asked_for() -> None:
         return sorted(Select(options=["rest"]).properties_with_values(include_defaults=True))
 
     before = all_values()
-    remember_defaults()
+    install_defaults_cache()
     assert all_values() == before and "tags" in before
 
 
@@ -105,5 +105,5 @@ def test_a_release_without_a_part_of_it_keeps_its_own_ways(owner: str, name: str
     """What is replaced, and what the replacements use: no page could be made without it."""
     lose(monkeypatch, owner, name)
     before = [getattr(one, other, None) for one, other in REPLACED]
-    remember_defaults()
+    install_defaults_cache()
     assert [getattr(one, other, None) for one, other in REPLACED] == before

@@ -16,7 +16,7 @@ from panel.reactive import Reactive, Syncable
 
 from app.parts.status.status_line import StatusLine
 from app.parts.toolkit.component import Component
-from app.serve.opening import panel_shortcuts
+from app.serve.monkeypatches import panel_overrides
 
 pytestmark = pytest.mark.quick
 
@@ -27,7 +27,7 @@ pytestmark = pytest.mark.quick
 ])
 def test_a_release_with_other_properties_is_asked_each_time(properties: dict[str, object],
                                                             monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(panel_shortcuts, "_COMMON", {})
+    monkeypatch.setattr(panel_overrides, "_COMMON", {})
     asked = []
 
     class Panel:
@@ -35,7 +35,7 @@ def test_a_release_with_other_properties_is_asked_each_time(properties: dict[str
             asked.append(document)
             return properties
 
-    part = type("Part", (panel_shortcuts.WithCommonProperties, Panel), {"param": ()})()
+    part = type("Part", (panel_overrides.WithCommonProperties, Panel), {"param": ()})()
     document = Document()
     assert part._get_properties(document) is part._get_properties(document) is properties
     assert asked == [document, document]
@@ -70,7 +70,7 @@ def test_an_event_of_a_part_is_handled_with_and_without_panels_private_method(mo
     monkeypatch.setattr(JSComponent, "_process_event", lambda _, one: handled.append(("directly", one)))
     Part()._process_bokeh_event(document, event)
     monkeypatch.setattr(JSComponent, "_process_bokeh_event", lambda _, __, one: handled.append(("by Panel", one)))
-    hide(monkeypatch, panel_shortcuts, Part, "_process_event")
+    hide(monkeypatch, panel_overrides, Part, "_process_event")
     Part()._process_bokeh_event(document, event)
     assert handled == [("directly", event), ("by Panel", event)]
 
@@ -78,7 +78,7 @@ def test_an_event_of_a_part_is_handled_with_and_without_panels_private_method(mo
 def test_an_event_of_a_part_is_handled_by_panel_where_that_has_no_set_curdoc(monkeypatch: pytest.MonkeyPatch) -> None:
     """The module is imported without it, and leaves the event to Panel."""
     monkeypatch.delattr(sys.modules["panel.io.state"], "set_curdoc")
-    spec = importlib.util.spec_from_file_location("app.serve.opening.without_set_curdoc", panel_shortcuts.__file__)
+    spec = importlib.util.spec_from_file_location("app.serve.monkeypatches.without_set_curdoc", panel_overrides.__file__)
     assert spec is not None and spec.loader is not None
     without = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(without)

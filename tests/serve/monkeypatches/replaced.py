@@ -1,4 +1,4 @@
-"""The functions of Bokeh that `remember_defaults` replaces, and Bokeh's own ones."""
+"""The functions of Bokeh that `install_defaults_cache` replaces, and Bokeh's own ones."""
 
 from __future__ import annotations
 

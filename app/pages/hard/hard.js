@@ -1,4 +1,4 @@
-// The Hard cases page, over the pictures: a card for each case, which runs when the visitor asks for it.
+// The Hard cases page, an overlay: a card for each case, which runs when the visitor asks for it.
 
 import { button, element, meter, pageHead, table } from "../../parts/toolkit/dom.js";
 import { ResultFigure } from "../../parts/figures/result_figure.js";

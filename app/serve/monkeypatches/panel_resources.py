@@ -1,4 +1,4 @@
-"""Scripts and style sheets, worked out once: they are the same for every page, but Panel works them out for each."""
+"""Monkeypatches of Panel: scripts and style sheets, worked out once; Panel works them out again for every page."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NEEDED = (
 )
 
 
-def remember_resources() -> None:
+def install_resources_cache() -> None:
     """Ask Panel once for the scripts that a page loads, and once per kind of part where its style sheets are.
 
     Panel goes through all models of a page for both, which takes a tenth of an opening; all pages of this server have

@@ -1,8 +1,8 @@
 """Where computations of the dashboard run.
 
-All visitors share named queues. Each visitor has two latest-wins jobs, one for the picture and one for drafts of the
-curve. Kernels release the GIL, so threads are enough; those that compute pictures take fair turns (turns.py). Long work
-has queues of its own, because a picture must never wait for it.
+All sessions share named pools of threads. Each session has two latest-wins jobs, one for the picture and one for
+drafts of the curve. Kernels release the GIL, so threads are enough; those that compute pictures take fair turns
+(turns.py). Long work has pools of its own, because a picture must never wait for it.
 """
 
 from __future__ import annotations
@@ -31,32 +31,32 @@ Result = TypeVar("Result")
 log = logging.getLogger("granchain")
 
 
-class Queue:
-    """Work of one kind, first come, first served, on at most `workers` threads, each started when it is needed.
+class WorkerPool:
+    """At most `workers` threads for work of one kind, each started when it is needed. What comes first begins first.
 
     The threads are daemons: a branch or a map lasts minutes, and a server that ends does not wait for it. Those of a
-    `low_priority` queue leave the processor to others (priorities.py).
+    `low_priority` pool leave the processor to others (priorities.py).
 
-    Where a queue has a `share`, at most that many pieces of one owner's work run or wait for a thread. Further ones
-    join the queue, behind the work of others, as the owner's earlier ones end.
+    With a `per_owner_limit`, at most that many pieces of one owner's work run or wait for a thread. Further ones are
+    held; as the owner's earlier ones end they are queued, behind the work of others.
 
     A thread counts as busy from the moment it is given work, before it has begun it: otherwise the next piece of work
     would be given to the same thread, and wait although another thread could begin it.
     """
 
-    def __init__(self, name: str, workers: int, low_priority: bool = False, share: int | None = None) -> None:
+    def __init__(self, name: str, workers: int, low_priority: bool = False, per_owner_limit: int | None = None) -> None:
         self.name = name
-        self.share = share
+        self.per_owner_limit = per_owner_limit
         self._workers = workers
         self._low_priority = low_priority
         self._given: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._threads: list[threading.Thread] = []
         self._numbers = count()
         self._free = 0  # threads without work
-        self.waiting = 0  # work that waits for a thread
+        self.queued = 0  # work that waits for a thread
         self._lock = threading.Lock()
         self._taken: Counter[object] = Counter()  # work of each owner that runs or waits for a thread
-        self._held: dict[object, deque[Callable[[], None]]] = {}  # work of each owner beyond its share
+        self._held: dict[object, deque[Callable[[], None]]] = {}  # work of each owner beyond its limit
 
     @property
     def busy_threads(self) -> int:
@@ -65,18 +65,18 @@ class Queue:
 
     @property
     def held(self) -> int:
-        """How much work waits because its owner has used its share."""
+        """How much work waits because its owner has reached its limit."""
         with self._lock:
             return sum(map(len, self._held.values()))
 
     def submit(self, work: Callable[..., Result], *arguments: object, owner: object = None) -> Future[Result]:
         """Call `work` as soon as a thread is free; the future has what it returns or raises.
 
-        Work without an `owner` counts to nobody's share. If the future is cancelled before the work has begun, the work
+        Work without an `owner` has no limit. If the future is cancelled before the work has begun, the work
         is not done, and nothing keeps it or its arguments any longer.
         """
         future: Future[Result] = Future()
-        shared = self.share is not None and owner is not None
+        limited = self.per_owner_limit is not None and owner is not None
         piece = [partial(work, *arguments)]
 
         def do() -> None:
@@ -86,7 +86,7 @@ class Queue:
             except BaseException as error:
                 future.set_exception(error)
             finally:
-                if shared:
+                if limited:
                     self._ended(owner)
 
         def forget(ended: Future[Result]) -> None:
@@ -97,10 +97,10 @@ class Queue:
         future.add_done_callback(forget)
 
         with self._lock:
-            if shared and self._taken[owner] == self.share:
+            if limited and self._taken[owner] == self.per_owner_limit:
                 self._held.setdefault(owner, deque()).append(do)
             else:
-                self._taken.update([owner] if shared else [])
+                self._taken.update([owner] if limited else [])
                 self._give(do)
         return future
 
@@ -112,7 +112,7 @@ class Queue:
         elif len(self._threads) < self._workers:
             self._begin()
         else:
-            self.waiting += 1
+            self.queued += 1
 
     def _let_go(self, owner: object, do: Callable[[], None]) -> None:
         """Work that was cancelled no longer waits for its owner's share; if it waits for a thread, it does nothing."""
@@ -124,7 +124,7 @@ class Queue:
                     del self._held[owner]
 
     def _ended(self, owner: object) -> None:
-        """Work of this owner has ended: its next work joins the queue."""
+        """Work of this owner has ended: its next work is queued."""
         with self._lock:
             if held := self._held.get(owner):
                 self._give(held.popleft())
@@ -150,52 +150,53 @@ class Queue:
         while True:
             work = self._given.get()
             work()
-            del work  # or a waiting thread would keep objects of the visitor it served last
+            del work  # or a waiting thread would keep objects of the session it served last
             with self._lock:
                 if has_lower_priority() and not self._low_priority:  # this thread ends; the next work gets a new one
                     self._threads.remove(threading.current_thread())
-                    if self.waiting:
-                        self.waiting -= 1
+                    if self.queued:
+                        self.queued -= 1
                         self._begin()
                     return
-                if self.waiting:
-                    self.waiting -= 1
+                if self.queued:
+                    self.queued -= 1
                 else:
                     self._free += 1
 
 
-#: One thread for each visitor whose picture is awaited; live steps, energy accounts and drafts are computed in it. The
+#: One thread for each session whose picture is awaited; live steps, energy accounts and drafts are computed in it. The
 #: number of threads is limited because each takes memory. It is below the largest `--most-visitors`, since most pages
-#: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served.
-VISITORS = Queue("visitors", 1000)
+#: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served. In
+#: `/metrics` the pool keeps its older name.
+SESSION_WORK = WorkerPool("visitors", 1000)
 #: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
 #: for the compiler keeps its thread. While more pictures than this are computed or wait for a turn, the next wait for a
 #: thread, first come, first served: turns do not put a first picture before refinements then.
-PICTURES = Queue("pictures", 200)
+PICTURES = WorkerPool("pictures", 200)
 #: Analyses of a picture while the knobs rest: short, and cancelled when a knob moves.
-ANALYSES = Queue("analyses", 8, low_priority=True)
-#: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody. One visitor's
+ANALYSES = WorkerPool("analyses", 8, low_priority=True)
+#: Reading and writing visitors' files: on the event loop, one visitor's file would hold up everybody. One session's
 #: files are read one by one, so that they cannot take both threads.
-FILES = Queue("files", 2, share=1)
-#: Loading kernels before a visitor asks.
-LOADING = Queue("loading", 1)
-#: One thread for each visitor whose resonance curve is awaited. A map waits for a curve that is under way; in one queue
+FILES = WorkerPool("files", 2, per_owner_limit=1)
+#: Loading kernels before a session needs them.
+LOADING = WorkerPool("loading", 1)
+#: One thread for each session whose resonance curve is awaited. A map waits for a curve that is under way; in one pool
 #: maps could take all threads and wait for curves that have none.
-CURVES = Queue("curves", 200)
+CURVES = WorkerPool("curves", 200)
 #: The computations of these curves. Each uses all cores, which the system divides among them.
-SWEEPS = Queue("sweeps", 8, low_priority=True)
+SWEEPS = WorkerPool("sweeps", 8, low_priority=True)
 #: Work that takes minutes: maps, searches for attractors, branches, analyses, figures of the paper, virtual
-#: experiments. One visitor can start all six, so two visitors could fill the queue: each has two at a time.
-LONG = Queue("long", 8, low_priority=True, share=2)
-#: Timings and hard cases, one at a time for all visitors: two timings at once would disturb each other.
-MEASUREMENTS = Queue("measurements", 1)
+#: experiments. One session can start all six, so two sessions could fill the pool: each has two at a time.
+LONG = WorkerPool("long", 8, low_priority=True, per_owner_limit=2)
+#: Timings and hard cases, one at a time for all sessions: two timings at once would disturb each other.
+MEASUREMENTS = WorkerPool("measurements", 1)
 #: Waiting for processes that compile.
-COMPILATIONS = Queue("compilations", 2)
+COMPILATIONS = WorkerPool("compilations", 2)
 
-#: All queues.
-QUEUES = (VISITORS, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)
-#: Those whose threads compute while they are busy. A thread of `PICTURES` or `VISITORS` computes while it has a turn,
-#: and one of `CURVES` waits for `SWEEPS`.
+#: All pools.
+POOLS = (SESSION_WORK, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG, MEASUREMENTS, COMPILATIONS)
+#: Those whose threads compute while they are busy. A thread of `PICTURES` or `SESSION_WORK` computes while it has a
+#: turn, and one of `CURVES` waits for `SWEEPS`.
 COMPUTING = (ANALYSES, SWEEPS, LONG, MEASUREMENTS)
 
 TurnWork = Callable[[TurnFlag], Iterator[object]]
@@ -237,7 +238,7 @@ _later = _Alarms()
 
 
 class LatestWins:
-    """One running computation for a visitor; a newer one replaces whatever waits.
+    """One running computation for a session; a newer one replaces whatever waits.
 
     A computation is an iterator of ever better results. A newer request stops at once a computation that has had its
     first result. One that has none yet may take up to a second for it: if each were stopped, nothing would be repainted
@@ -277,7 +278,7 @@ class LatestWins:
                 return
             self._running = True
             self._began = time.monotonic()
-        VISITORS.submit(self._drain)
+        SESSION_WORK.submit(self._drain)
 
     def _give_up(self, stop: TurnFlag) -> None:
         """Give up the computation: its first result has not come within a second, and newer work waits."""
@@ -307,7 +308,7 @@ class LatestWins:
         while (work := self._next()) is not None:
             self._do(work)
             if has_lower_priority():
-                VISITORS.submit(self._drain)
+                SESSION_WORK.submit(self._drain)
                 return
 
     def _do(self, work: TurnWork) -> None:

@@ -1,6 +1,7 @@
-"""What a part of the page leaves out of Panel's work: properties, design, busy indicator and changes, each a mixin.
+"""Overrides of Panel's private methods, which leave out what our parts do not need, each a mixin of `Component`.
 
-They override private methods of Panel; where a release has other ones, Panel's own way is taken.
+They concern properties, design, busy indicator and changes. Where a release has other methods, Panel's own way is
+taken.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ _IMPORTED: weakref.WeakKeyDictionary[Document, dict[str, ImportedStyleSheet]] = 
 class WithCommonProperties:
     """A Panel component whose class is asked once for the properties of its model, not each instance.
 
-    Instances differ in their data alone. Panel goes through 40 parameters of each part for every visitor, a tenth of an
+    Instances differ in their data alone. Panel goes through 40 parameters of each part for every session, a tenth of an
     opening's work; it still does where a release has other properties than expected here.
     """
 

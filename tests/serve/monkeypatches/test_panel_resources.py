@@ -9,7 +9,7 @@ import panel.io.server as pages
 import pytest
 from listening import Listening
 
-from app.serve.opening.panel_resources import remember_resources
+from app.serve.monkeypatches.panel_resources import install_resources_cache
 from app.server import Access
 
 
@@ -36,7 +36,7 @@ def test_a_release_without_a_part_of_it_keeps_its_own_way(name: str, monkeypatch
     before = pages.bundle_resources, pages.patch_model_css
     with monkeypatch.context() as lost:
         lost.delattr(where, name)
-        remember_resources()
+        install_resources_cache()
     assert (pages.bundle_resources, pages.patch_model_css) == before
 
 
@@ -45,7 +45,7 @@ def test_remembered_resources_give_panels_page() -> None:
     one = Listening(Access())
     try:
         panels = page_of(one)
-        remember_resources()
+        install_resources_cache()
         assert pages.bundle_resources.known == {}
         assert [page_of(one) for _ in range(3)] == [panels] * 3
         assert len(pages.bundle_resources.known) == 1

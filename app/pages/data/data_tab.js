@@ -1,6 +1,6 @@
 // The data tab: the visitor's own curve, questions about its file, and the misfit of the model.
 
-import { button, download, element, paragraph, table } from "../parts/toolkit/dom.js";
+import { button, download, element, paragraph, table } from "../../parts/toolkit/dom.js";
 
 const FORM =
   "A curve of frequency and largest force, or a series of time, input and output force: CSV or TSV as any spreadsheet " +

@@ -1,4 +1,4 @@
-"""Defaults of Bokeh's properties, found once for all models and made when they are needed.
+"""Monkeypatches of Bokeh: defaults of properties, found once for all models and made when they are needed.
 
 Bokeh finds a default anew for each of a page's models, some 8000 times, and makes ten empty lists and dictionaries for
 each model, which takes more than half of the time of making a page. The functions that are replaced here are not public
@@ -51,7 +51,7 @@ class _Remembered:
     overridden: dict[type, dict[str, Any]] = field(default_factory=dict)
 
 
-def remember_defaults() -> None:
+def install_defaults_cache() -> None:
     """Replace the functions by which Bokeh finds the defaults of its models."""
     if missing(NEEDED) or hasattr(PropertyDescriptor._get_default, "known"):
         return

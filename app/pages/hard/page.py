@@ -1,4 +1,4 @@
-"""The Hard cases page of one visitor: the queue, the case being run, and the results."""
+"""The Hard cases page of one session: the queue, the case being run, and the results."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from granchain_core import BadInput, NumbersFailed
 from granchain_core.hard_cases import CASES, Case, Check, Picture
 
-from ...serve.computing.queues import MEASUREMENTS
+from ...serve.computing.worker_pools import MEASUREMENTS
 from ...session.activities import Activity
 from ...session.host import Host
 from ...session.message_checks import quoted

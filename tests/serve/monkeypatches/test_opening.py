@@ -15,8 +15,8 @@ from replaced import OWN
 
 from app.dashboard import entry
 from app.parts.status.status_line import StatusLine
-from app.serve.opening import panel_shortcuts
-from app.serve.opening.bokeh_defaults import remember_defaults
+from app.serve.monkeypatches import panel_overrides
+from app.serve.monkeypatches.bokeh_defaults import install_defaults_cache
 
 
 def content() -> str:
@@ -36,19 +36,19 @@ def plain(monkeypatch: pytest.MonkeyPatch) -> str:
     for where, name, own in OWN:
         monkeypatch.setattr(where, name, own)
     assert not hasattr(PropertyDescriptor._get_default, "known")
-    monkeypatch.setattr(panel_shortcuts, "_COMMON", {})
-    monkeypatch.setattr(panel_shortcuts, "_CHILDLESS", set())
+    monkeypatch.setattr(panel_overrides, "_COMMON", {})
+    monkeypatch.setattr(panel_overrides, "_CHILDLESS", set())
     with monkeypatch.context() as checked:
         checked.setattr(entry, "validate", lambda _: nullcontext())
         return content()  # asks Panel for the properties and children of each part
 
 
 def test_a_page_with_every_shortcut_is_the_same(plain: str) -> None:
-    """What `remember_resources` shortens is outside of the document: tests/serve/opening/test_panel_resources.py."""
+    """What `install_resources_cache` shortens is outside of the document: test_panel_resources.py beside this file."""
     assert len(json.loads(plain)) > 15
-    assert any(panel_shortcuts._COMMON.values()) and panel_shortcuts._CHILDLESS
+    assert any(panel_overrides._COMMON.values()) and panel_overrides._CHILDLESS
     assert content() == plain  # with remembered properties, and without checks of values
-    remember_defaults()
+    install_defaults_cache()
     assert content() == plain == content()
     assert PropertyDescriptor._get_default.known  # it is in use
 

@@ -1,4 +1,4 @@
-"""The page "Hard cases": a card for each, with values beside their limits and a picture beside a naive solver's."""
+"""The page "Hard cases": a card for each, with values beside their limits and a figure beside a naive solver's."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ ABOUT = ("Cases in which solvers of granular chains go wrong without warning. Ea
 
 
 class HardCases(ResultFigure):
-    """The page over the pictures; rows come in `state`, every picture as one message when its case was run."""
+    """The overlay; rows come in `state`, every figure as one message when its case was run."""
 
-    _esm = module("hard_cases.js")
-    _stylesheets = [text("controls.css"), text("hard_cases.css")]  # noqa: RUF012
+    _esm = module("hard.js")
+    _stylesheets = [text("controls.css"), text("hard.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)
 
     def draw(self, name: str, data: Picture) -> None:
-        """Show the picture of a case in place of an earlier one."""
+        """Show the figure of a case in place of an earlier one."""
         labels = "; ".join(trace.label for trace in data.traces)
         self.show_figure(partial(check, data), f"{data.y_label} over {data.x_label}: {labels}", place=name)
 

@@ -1,1 +1,0 @@
-"""Shortcuts through Bokeh and Panel with which a page opens and changes faster."""

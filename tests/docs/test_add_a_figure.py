@@ -1,0 +1,39 @@
+"""docs/add-a-figure.md is followed to the letter in a copy of the repository."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from documents import ROOT
+from edited_tree import copied, edited_copy, files_of, follow
+
+PAGE = ROOT / "docs" / "add-a-figure.md"
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A copy of the repository with the page's edits made."""
+    copy = tmp_path_factory.mktemp("figure") / "tree"
+    for part in ("granchain", "tests/plots/test_any_result.py", "tests/pages/test_analysis.py"):
+        copied(part, copy)
+    return edited_copy(PAGE, copy)
+
+
+def test_the_page_edits_three_files_and_writes_two() -> None:
+    edits, new = files_of(PAGE)
+    assert (len(edits), len(new)) == (3, 2)
+    assert PAGE.read_text(encoding="utf-8").splitlines()[0].endswith(": edit 3 files, write 2")
+
+
+def test_the_figure_is_drawn_in_a_notebook_in_a_file_and_on_the_page(tree: Path) -> None:
+    """The test that the page writes; no kernel is edited, so it uses those of the repository."""
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "plots", "test_phases_picture.py")),
+                     own_kernels=False)
+    assert "3 passed" in printed
+
+
+def test_the_first_figure_of_a_spectrum_is_as_it_was(tree: Path) -> None:
+    printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "plots", "test_any_result.py")),
+                     "-k", "spectrum and figure_of_a_size", own_kernels=False)
+    assert "1 passed" in printed

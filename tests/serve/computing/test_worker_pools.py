@@ -1,0 +1,135 @@
+"""Work that is given to a pool has a thread while there is one, and a session's computations go on after a failure."""
+
+from __future__ import annotations
+
+import gc
+import threading
+import time
+import weakref
+
+import pytest
+import waiting
+
+from app.serve.computing import worker_pools
+from app.serve.computing.worker_pools import LatestWins, WorkerPool
+
+pytestmark = pytest.mark.quick
+
+
+def test_work_does_not_wait_for_a_thread_that_has_just_been_given_other_work() -> None:
+    """In 300 tries: a thread that had taken work and was not yet counted as busy kept the next waiting behind it."""
+    pool = WorkerPool("tested", 4)
+    for _ in range(300):
+        go_on, done = threading.Event(), threading.Event()
+        first = pool.submit(go_on.wait, 120)
+        pool.submit(done.set)
+        assert done.wait(60), "it waits for the first, which takes long"
+        go_on.set()
+        assert first.result(60)
+
+
+def test_what_waits_and_what_is_under_way_is_counted() -> None:
+    pool, go_on = WorkerPool("tested", 2), threading.Event()
+    ended = [pool.submit(go_on.wait, 120) for _ in range(5)]
+    assert (pool.busy_threads, pool.queued) == (2, 3)
+    go_on.set()
+    assert all(one.result(20) for one in ended)
+    assert pool.queued == 0
+
+
+@pytest.mark.parametrize("limit", [None, 1])
+def test_cancelled_work_that_has_not_begun_is_not_done_and_not_kept(limit: int | None) -> None:
+    """50 uploads that replace each other would otherwise stay in memory until a thread is free."""
+    class File:
+        """What the work would be done with."""
+
+    pool, go_on, done, owner = WorkerPool("tested", 1, per_owner_limit=limit), threading.Event(), list[object](), object()
+    first = pool.submit(go_on.wait, 120, owner=owner)
+    files = [File() for _ in range(50)]
+    kept = weakref.WeakSet(files)
+    futures = [pool.submit(done.append, one, owner=owner) for one in files]
+    del files
+    assert len(kept) == 50
+    assert all(one.cancel() for one in futures[:49])
+    gc.collect()
+    assert len(kept) == 1
+    assert limit is None or pool.held == 1
+    go_on.set()
+    futures[49].result(60)
+    assert len(done) == 1 and first.result(60)
+    waiting.until(lambda: pool.busy_threads == 0)
+    assert not pool._taken and not pool._held and pool.queued == 0
+
+
+def test_an_owner_beyond_its_limit_waits_behind_others() -> None:
+    """Two pieces of work of one owner at a time: the third begins when one of them has ended, and not before."""
+    pool, go_on, order = WorkerPool("tested", 4, per_owner_limit=2), [threading.Event() for _ in range(4)], list[str]()
+
+    def work(name: str, until: threading.Event) -> None:
+        order.append(name)
+        assert until.wait(120)
+
+    mine = [pool.submit(work, name, until, owner="me") for name, until in zip("abc", go_on, strict=False)]
+    other = pool.submit(work, "another's", go_on[3], owner="another")
+    waiting.until(lambda: len(order) == 3)
+    assert set(order) == {"a", "b", "another's"} and pool.busy_threads == 3
+    go_on[1].set()
+    waiting.until(lambda: len(order) == 4)
+    assert order[-1] == "c" and not mine[0].done()
+    for one in go_on:
+        one.set()
+    for future in (*mine, other):
+        future.result(60)
+    waiting.until(lambda: pool.busy_threads == 0)
+    assert pool.held == 0
+
+
+class Owner:
+    """Whoever has work done."""
+
+
+def test_a_pool_keeps_no_owner_whose_work_has_ended() -> None:
+    """Of one whose work was held, too."""
+    pool, owner = WorkerPool("tested", 1, per_owner_limit=1), Owner()
+    given = [pool.submit(time.sleep, 0.0, owner=owner) for _ in range(3)]
+    for future in given:
+        future.result(60)
+    kept = weakref.ref(owner)
+    del owner
+    waiting.until(lambda: kept() is None)
+
+
+def test_work_that_fails_counts_to_no_limit_any_more() -> None:
+    pool = WorkerPool("tested", 1, per_owner_limit=1)
+    failed = pool.submit(int, "no number", owner="me")
+    assert pool.submit(int, "7", owner="me").result(60) == 7
+    assert isinstance(failed.exception(60), ValueError)
+
+
+def test_after_a_failure_that_cannot_be_reported_the_next_picture_comes() -> None:
+    came = threading.Event()
+
+    def fail(error: Exception) -> None:
+        raise RuntimeError("the page is gone") from error
+
+    def broken(_: object) -> object:
+        raise ValueError
+
+    jobs = LatestWins(lambda _: came.set(), fail)
+    jobs.submit(broken)  # type: ignore[arg-type]
+    waiting.until(lambda: not jobs.busy)
+    jobs.submit(lambda _: iter([1]))
+    assert came.wait(20)
+
+
+def test_work_beyond_a_share_is_counted_as_held() -> None:
+    pool, go_on, owner = WorkerPool("tested", 4, per_owner_limit=1), threading.Event(), object()
+    ended = [pool.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
+    assert (pool.busy_threads, pool.queued, pool.held) == (1, 0, 2)
+    go_on.set()
+    assert all(one.result(20) for one in ended)
+    assert pool.held == 0
+
+
+def test_all_queues_are_in_the_metrics() -> None:
+    assert set(worker_pools.POOLS) == {one for one in vars(worker_pools).values() if isinstance(one, WorkerPool)}

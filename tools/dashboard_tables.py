@@ -1,0 +1,60 @@
+"""Tables that follow from the dashboard's code: its pages (docs/design.md) and messages (docs/dashboard.md)."""
+
+from __future__ import annotations
+
+import ast
+import re
+from pathlib import Path
+
+from bokeh.document import Document
+
+from app.dashboard.controller import Controller
+from app.scripts import FILES
+from app.session.session import Session
+
+_PAGES = Path(__file__).resolve().parents[1] / "app" / "pages"
+#: In the scripts: a comparison of the message's type with a name.
+_READS = re.compile(r'(?:\bmessage\.|(?<![.\w]))type [!=]==\s+"([\w-]+)"')
+#: A message whose type no script compares: any message of the chain shows that the server answers.
+_READ_OTHERWISE = {"chain.js": ["pong"]}
+
+
+def table_of_pages() -> str:
+    """The rows of the map for the folders of `app/pages`: what the docstring of each says."""
+    rows = []
+    for folder in sorted(path.parent for path in _PAGES.glob("*/__init__.py")):
+        words = (ast.get_docstring(ast.parse((folder / "__init__.py").read_text(encoding="utf-8"))) or "").removesuffix(".")
+        rows.append(f"| `app/pages/{folder.name}` | {words[:1].lower()}{words[1:]} | – |")
+    return "\n".join(["| page | what is in it | uses |", "|---|---|---|", *rows])
+
+
+def messages_of_the_browser() -> dict[str, list[str]]:
+    """The messages that the dashboard understands, by owner."""
+    dashboard = Controller(Document(), Session())
+    dashboard.close(None)
+    return {owner: list(actions) for owner, actions in dashboard.owners.items() if actions}
+
+
+def messages_of_the_server() -> dict[str, list[str]]:
+    """The messages that the scripts read, by script."""
+    found: dict[str, list[str]] = {}
+    for name, path in sorted(FILES.items()):
+        read = list(dict.fromkeys(_READS.findall(path.read_text(encoding="utf-8")))) + _READ_OTHERWISE.get(name, [])
+        if read:
+            found[name] = read
+    return found
+
+
+def table_of_messages_of_the_browser() -> str:
+    """Each owner with its messages."""
+    return _table("owner", messages_of_the_browser())
+
+
+def table_of_messages_of_the_server() -> str:
+    """Each script with the messages that it reads."""
+    return _table("read by", {f"`{script}`": names for script, names in messages_of_the_server().items()})
+
+
+def _table(title: str, messages: dict[str, list[str]]) -> str:
+    rows = [f"| {owner} | {', '.join(f'`{name}`' for name in names)} |" for owner, names in messages.items()]
+    return "\n".join([f"| {title} | messages |", "|---|---|", *rows])
