@@ -47,7 +47,7 @@ print("| `granchain_uploads_total` | counter | Measurements that visitors upload
 def test_the_tests_of_metrics_pass_and_name_what_is_forgotten(tree: Path) -> None:
     tests = ("-m", "pytest", "-p", "no:cacheprovider", "tests/serve/monitoring/test_metrics.py", "-k", "table or names")
     assert "2 passed" in follow(tree, *tests, own_kernels=False)
-    file = tree / "app" / "dashboard" / "measurement.py"
+    file = tree / "app" / "pages" / "data" / "page.py"
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace('        METRICS.count("uploads")\n', ""), encoding="utf-8")
     try:

@@ -78,6 +78,7 @@ class WorkerPool:
         future: Future[Result] = Future()
         limited = self.per_owner_limit is not None and owner is not None
         piece = [partial(work, *arguments)]
+        owners = [owner]  # emptied at the end: a future keeps its callbacks, and they would keep the owner
 
         def do() -> None:
             try:
@@ -86,13 +87,15 @@ class WorkerPool:
             except BaseException as error:
                 future.set_exception(error)
             finally:
+                ended = owners.pop()
                 if limited:
-                    self._ended(owner)
+                    self._ended(ended)
 
         def forget(ended: Future[Result]) -> None:
             if ended.cancelled():
                 piece.clear()
-                self._let_go(owner, do)
+                if self._let_go(owners[0], do):
+                    owners.clear()
 
         future.add_done_callback(forget)
 
@@ -114,14 +117,19 @@ class WorkerPool:
         else:
             self.queued += 1
 
-    def _let_go(self, owner: object, do: Callable[[], None]) -> None:
-        """Work that was cancelled no longer waits for its owner's share; if it waits for a thread, it does nothing."""
+    def _let_go(self, owner: object, do: Callable[[], None]) -> bool:
+        """Cancelled work that waits because of its owner's limit is dropped; returns whether this was.
+
+        Where it waits for a thread already, it stays and does nothing.
+        """
         with self._lock:
             held = self._held.get(owner)
-            if held is not None and do in held:
-                held.remove(do)
-                if not held:
-                    del self._held[owner]
+            if held is None or do not in held:
+                return False
+            held.remove(do)
+            if not held:
+                del self._held[owner]
+            return True
 
     def _ended(self, owner: object) -> None:
         """Work of this owner has ended: its next work is queued."""

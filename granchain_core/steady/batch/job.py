@@ -26,16 +26,16 @@ from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
-#: Steps of the finer run of a batch for one of the coarse run.
+#: [no threshold] Steps of the finer run of a batch for one of the coarse run.
 FINE_STEPS_PER_COARSE = 3
-#: Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
+#: [no threshold] Setting for the largest forces of an orbit where they jump: finer than the batch that found the orbit.
 _LOCATED_SETTING = fixed_step_setting(8)
 #: [period n] A batch: an orbit found by extrapolation needs multipliers if its decay per orbit is above this.
 _SLOW_DECAY = 0.998
 #: [period n] A batch: such an orbit is accepted if its largest |μ|, by one-sided differences, is below this, else
 #: settled alone.
 _LARGEST_SURE_MULTIPLIER = 0.995
-#: Typical relative error of the finer run.
+#: [no threshold] Typical relative error of the finer run.
 _FINER_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
 
 
