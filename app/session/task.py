@@ -62,7 +62,7 @@ class Job:
     def give_way(self, while_: Callable[[], bool] | None = None) -> None:
         """Wait while the picture for a moved knob is being computed, or while `while_` returns True.
 
-        The longer this takes, the less often it checks: each check takes the interpreter from all other threads.
+        The longer this takes, the less often it checks: each check takes the GIL from all other threads.
         """
         waits, pause = while_ or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
         while waits() and not self.stop:

@@ -1,6 +1,6 @@
 """Fair scheduling: of the visitors who wait, the one who has used least time gets the next turn to compute.
 
-Kernels run without the interpreter's lock, so about as many computations as there are cores run at once. A first
+Kernels run without the GIL, so about as many computations as there are cores run at once. A first
 picture begins at once and is not interrupted, because it is short. A computation that refines a picture, or takes long,
 gives up its turn at the first pause after a slice of time.
 """
@@ -27,7 +27,7 @@ Result = TypeVar("Result")
 #: a tenth of it.
 _BEGINNING_CPU_TIME = 0.03
 #: Time for which a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
-#: another thread costs some waits for the interpreter.
+#: another thread costs some waits for the GIL.
 _TIME_SLICE = 0.02
 #: Most computations that began lately whose waits are averaged.
 _MOST_WAITS = 200
@@ -111,7 +111,7 @@ class FairScheduler:
         with self._lock:
             self._waiting.append(mine)
             self._grant()
-        # One waiting thread checks for all: more checks would keep the interpreter from the event loop and pictures.
+        # One waiting thread checks for all: more checks would keep the GIL from the event loop and pictures.
         while not mine.granted.wait(_CHECK_INTERVAL * min(len(self._waiting), _LONGEST_CHECK_MULTIPLE)):
             if stop:
                 self.stopped(stop)

@@ -84,9 +84,9 @@ def kernel(function):
 
 
 def brief_kernel(function):
-    """`kernel` for one that takes some microseconds: it keeps the interpreter's lock.
+    """`kernel` for one that takes some microseconds: it keeps the GIL.
 
-    To give the lock away and to wait for it again takes longer than such a kernel where another thread wants it too.
+    To give the GIL away and to wait for it again takes longer than such a kernel where another thread wants it too.
     """
     compiled = numba.njit(nogil=False, **_OPTIONS)(function)
     keep_on_disk(compiled)
