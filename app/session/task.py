@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
+from granchain_core import BadInput, Cancelled, ComputationError, Scene
 from granchain_core.execution.stop import Stop
 
 from ..serve.compiling.compiler import COMPILER
@@ -131,7 +131,7 @@ class Task:
             work(job)
         except Cancelled:
             return
-        except (NumbersFailed, BadInput) as problem:
+        except (ComputationError, BadInput) as problem:
             job.next_tick(self._end, "failed", str(problem), problem)
         except Exception as error:
             sentence = (f"{self._title} failed because of an error in granchain ({type(error).__name__}); "
