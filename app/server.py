@@ -34,8 +34,9 @@ from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
 LARGEST_MESSAGE = 4 * LARGEST_UPLOAD // 3 + 100_000
-#: How long a thread may keep the interpreter from the event loop [s]; Python's default is 5 ms. The answer to a moved
-#: knob needs it some ten times. Measurements are in docs/reliability.md, "Many visitors".
+#: How long a thread may keep the GIL from the event loop [s]. The answer to a moved knob takes it some ten times, so
+#: with Python's default, 5 ms, it could wait 50 ms for a busy thread. Measurements are in docs/reliability.md, "Many
+#: visitors".
 SWITCH_INTERVAL = 5e-4
 #: Time until a connection that sends nothing is closed [s]; a request's head must have come by then.
 IDLE_TIME = 60

@@ -17,6 +17,7 @@ from granchain_core import __version__ as __version__
 
 if TYPE_CHECKING:
     from granchain_core import *  # noqa: F403
+    from granchain_core import NumbersFailed as NumbersFailed
     from granchain_core import continue_branch as continue_branch
     from granchain_core import periodic_orbit as periodic_orbit
     from granchain_core import settled as settled

@@ -17,7 +17,8 @@ import sys
 import types
 from typing import TYPE_CHECKING, Any
 
-from .errors import BadInput, Cancelled, NumbersFailed, OverBudget
+from .errors import BadInput, Cancelled, ComputationError, OverBudget
+from .errors import NumbersFailed as NumbersFailed
 from .scene import Amplitude, Bead, Scene, scene, scene_names
 from .version import __version__
 
@@ -79,11 +80,12 @@ _MODULE_OF = {name: module for module, names in _MODULES.items() for name in nam
 _SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 #: Older names, which still work (docs/python.md).
-OLDER_NAMES = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch"}
+OLDER_NAMES = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch",
+               "NumbersFailed": "ComputationError"}
 
 __all__ = [
     "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "BifurcationCurve", "Branch", "Cancelled",
-    "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum", "NumbersFailed",
+    "ComputationError", "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum",
     "Observation", "Orbit", "OverBudget", "Pulse", "Regime", "RotationNumber", "Run", "Runs", "Scene", "Settled",
     "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors",
     "bands", "basins", "bifurcation_curves", "branch", "diagram", "drive", "fit", "iter_curve", "load",

@@ -31,7 +31,7 @@ class BadInput(ValueError):
                                  for letter in sentence))
 
 
-class NumbersFailed(ArithmeticError):
+class ComputationError(ArithmeticError):
     """A computation that could not be finished; the message says which bead, when, why and what to do.
 
     Attributes
@@ -51,8 +51,8 @@ class NumbersFailed(ArithmeticError):
 
     Examples
     --------
-    >>> from granchain_core import NumbersFailed
-    >>> problem = NumbersFailed("Bead 3 is no longer finite.", "not-finite", bead=3)
+    >>> from granchain_core import ComputationError
+    >>> problem = ComputationError("Bead 3 is no longer finite.", "not-finite", bead=3)
     >>> problem.status, problem.bead, str(problem)
     ('not-finite', 3, 'Bead 3 is no longer finite.')
     """
@@ -66,6 +66,10 @@ class NumbersFailed(ArithmeticError):
         self.time = time
         self.step = step
         self.cost = cost
+
+
+#: The older name, which scripts may use.
+NumbersFailed = ComputationError
 
 
 class OverBudget(BadInput):
@@ -110,7 +114,7 @@ class Cancelled(Exception):
     """
 
 
-def outcome_of(problem: NumbersFailed | OverBudget) -> dict[str, Any]:
+def outcome_of(problem: ComputationError | OverBudget) -> dict[str, Any]:
     """The JSON object of a computation that failed or was not begun: status, message, and where and when if known."""
     if isinstance(problem, OverBudget):
         return {"status": problem.status, "message": str(problem), "estimate_s": problem.estimate,

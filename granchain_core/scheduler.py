@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from .errors import BadInput, Cancelled, NumbersFailed
+from .errors import BadInput, Cancelled, ComputationError
 from .execution.stop import Stop
 
 #: Time in which a scheduler must answer [s].
@@ -43,7 +43,7 @@ def results(client: Any, work: Callable[..., Any], tasks: Sequence[tuple[Any, ..
             stop: Stop | None = None) -> Iterator[tuple[int, Any]]:
     """Number and result of each task, `work(*task)`, in the order in which workers return them.
 
-    Tasks that are no longer wanted are cancelled. Raises `Cancelled` when `stop` is set, and `NumbersFailed` where a
+    Tasks that are no longer wanted are cancelled. Raises `Cancelled` when `stop` is set, and `ComputationError` where a
     worker could not do its task.
     """
     number = {client.submit(work, *task, pure=False): i for i, task in enumerate(tasks)}
@@ -72,8 +72,8 @@ def _some(waiting: set[Any]) -> tuple[set[Any], set[Any]]:
 def _result(future: Any) -> Any:
     try:
         return future.result()
-    except (BadInput, NumbersFailed):
+    except (BadInput, ComputationError):
         raise
     except Exception as problem:
-        raise NumbersFailed(f"A worker could not do its part: {type(problem).__name__}: {str(problem)[:200]}; "
-                            "look at its log, and go on with --resume.", "worker-failed") from None
+        raise ComputationError(f"A worker could not do its part: {type(problem).__name__}: {str(problem)[:200]}; "
+                               "look at its log, and go on with --resume.", "worker-failed") from None

@@ -55,7 +55,7 @@ def do(arguments: argparse.Namespace) -> None:
 
 def _why(found: Basins, number: int) -> str:
     """Where the start with this number is in the plane, and why it has no steady state: it is computed once more."""
-    from granchain_core import NumbersFailed, State, settle
+    from granchain_core import ComputationError, State, settle
 
     row, column = divmod(number, len(found.x[1]))
     start = {"u": np.zeros(found.scene.N), "v": np.zeros(found.scene.N)}
@@ -64,7 +64,7 @@ def _why(found: Basins, number: int) -> str:
     where = f"at {found.x[0]} = {found.x[1][column]:g}, {found.y[0]} = {found.y[1][row]:g}"
     try:
         in_background(lambda stop: settle(found.scene, State(start["u"], start["v"]), stop=stop))
-    except NumbersFailed as problem:
+    except ComputationError as problem:
         return f"{where}. {problem}"
     return f"{where}, after it had left an unstable orbit."
 

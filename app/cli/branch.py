@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from granchain_core import BadInput, Cancelled, NumbersFailed
+from granchain_core import BadInput, Cancelled, ComputationError
 from granchain_core.execution.checkpoints import folder_of
 from granchain_core.orbits import CONTINUOUS, Arm, Branch, Continuation, KnobAxis, begin_branch
 from granchain_core.orbits.branch.branch import MOST_POINTS
@@ -116,7 +116,7 @@ def _followed(arguments: argparse.Namespace) -> Branch:
             _remove(begun[0].kept)
             raise Cancelled(written) from None
         raise
-    except NumbersFailed:
+    except ComputationError:
         if begun and begun[0].kept is not None:
             begun[0].kept.kept.write()
         raise

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from typing import NoReturn
 
-from granchain_core import BadInput, Cancelled, NumbersFailed
+from granchain_core import BadInput, Cancelled, ComputationError
 from granchain_core.errors import OverBudget, outcome_of
 from granchain_core.inputs.checks import unknown_name
 
@@ -23,7 +23,7 @@ from .common import say, show_json
 DONE = 0
 #: Exit status of one whose input was refused (`BadInput`).
 BAD_INPUT = 2
-#: Exit status of one whose computation failed (`NumbersFailed`).
+#: Exit status of one whose computation failed (`ComputationError`).
 FAILED = 3
 
 
@@ -85,9 +85,9 @@ def do(words: list[str]) -> int:
             raise unknown_name("command", words[0], COMMANDS)
         parsed = parser_for(words).parse_args(words)
         return parsed.do(parsed) or DONE
-    except (BadInput, NumbersFailed) as problem:
+    except (BadInput, ComputationError) as problem:
         say(problem)
-        if "--json" in words and isinstance(problem, (NumbersFailed, OverBudget)):
+        if "--json" in words and isinstance(problem, (ComputationError, OverBudget)):
             show_json(outcome_of(problem))
         return BAD_INPUT if isinstance(problem, BadInput) else FAILED
     except (KeyboardInterrupt, Cancelled) as end:

@@ -6,7 +6,7 @@ import logging
 from collections.abc import Callable
 from typing import Any
 
-from granchain_core import BadInput, NumbersFailed, Scene
+from granchain_core import BadInput, ComputationError, Scene
 
 from ..parts.status.status_line import StatusLine
 from ..serve.monitoring.metrics import METRICS
@@ -49,7 +49,7 @@ class Sentences:
                 self.show_message(str(error), error.scene)
         elif isinstance(error, BadInput):
             self.show_message(str(error))
-        elif isinstance(error, NumbersFailed):
+        elif isinstance(error, ComputationError):
             self.show_notice(error.sentence)
         else:
             self.report_fault(error, f"Something went wrong inside granchain ({type(error).__name__}); the last "

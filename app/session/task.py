@@ -7,7 +7,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Any
 
-from granchain_core import BadInput, Cancelled, NumbersFailed, Scene
+from granchain_core import BadInput, Cancelled, ComputationError, Scene
 from granchain_core.execution.stop import Stop
 
 from ..serve.compiling.compiler import COMPILER
@@ -63,7 +63,7 @@ class Job:
     def give_way(self, while_: Callable[[], bool] | None = None) -> None:
         """Wait while the picture for a moved knob is being computed, or while `while_` returns True.
 
-        The longer this takes, the less often it checks: each check takes the interpreter from all other threads.
+        The longer this takes, the less often it checks: each check takes the GIL from all other threads.
         """
         waits, pause = while_ or (lambda: self._host.awaiting_picture), _PICTURE_CHECK_INTERVAL
         while waits() and not self.stop:
@@ -139,7 +139,7 @@ class Task:
             work(job)
         except Cancelled:
             return
-        except (NumbersFailed, BadInput) as problem:
+        except (ComputationError, BadInput) as problem:
             job.next_tick(self._end, "failed", str(problem), problem)
         except Exception as error:
             sentence = (f"{self._title} failed because of an error in granchain ({type(error).__name__}); "

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from ..execution.stop import Stop
 from ..integrate import METHODS, Engine, Setting, adaptive_setting
 from ..integrate.scaling import ScaledChain
@@ -62,7 +62,7 @@ class Lesson:
 
 
 def lesson(scene: Scene, stop: Stop) -> Lesson:
-    """Run the naive methods at usual steps. Raises `NumbersFailed` where the reference fails, and `Cancelled`."""
+    """Run the naive methods at usual steps. Raises `ComputationError` where the reference fails, and `Cancelled`."""
     first = (_RUN - _SHOWN) * _SAMPLES if scene.is_driven else 0
     whole = output_force(scene, _TRUE, stop)
     true = whole[first:]
@@ -75,7 +75,7 @@ def lesson(scene: Scene, stop: Stop) -> Lesson:
         for steps in NATURAL_STEPS:
             try:
                 force = output_force(scene, PlainSteps(method.name, steps=steps), stop)[first:]
-            except NumbersFailed as problem:
+            except ComputationError as problem:
                 found.drawn.append(Naive(method.name, steps, float("inf"), np.zeros(0), problem.sentence))
                 continue
             error = float(np.abs(force - true).max()) / largest if largest > 0.0 else 0.0

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import Cancelled, NumbersFailed
+from ..errors import Cancelled, ComputationError
 from ..execution.stop import Stop
 from ..integrate import Counts
 from ..integrate.error_controlled import LEAST_STEPS_PER_PERIOD
@@ -90,7 +90,7 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
     """Scaled displacements (periods · samples + 1, N) from rest at `samples` a period; atol = rtol = tolerance.
 
     Solved period by period, so that the drive phase stays exact; with `located` the solver is also started anew
-    wherever a contact opens or closes, as a careful user would do it. Raises `NumbersFailed` and `Cancelled`.
+    wherever a contact opens or closes, as a careful user would do it. Raises `ComputationError` and `Cancelled`.
     """
     scaled = scale_chain(scene)
     motion = ScipyMotion(scaled, Stop() if stop is None else stop)
@@ -101,8 +101,8 @@ def solve(scene: Scene, solver: str, tolerance: float, periods: int, samples: in
         inner, rows = _period(motion, SOLVERS[solver], tolerance, inner, samples, located)
         out[p * samples + 1 : (p + 1) * samples + 1] = rows
         if not np.isfinite(inner).all():  # LSODA calls that a success
-            raise NumbersFailed(f"SciPy's {solver} failed in drive period {p + 1}: its state is no longer "
-                                f"finite, at tolerance {tolerance:g}.", "not-finite")
+            raise ComputationError(f"SciPy's {solver} failed in drive period {p + 1}: its state is no longer "
+                                   f"finite, at tolerance {tolerance:g}.", "not-finite")
     counts = Counts()
     counts.array[EVALUATIONS] = motion.evaluations
     return out, counts
@@ -112,7 +112,7 @@ def _period(motion: ScipyMotion, solver: Solver, tolerance: float, inner: np.nda
             located: bool) -> tuple[np.ndarray, np.ndarray]:
     """One drive period from the state `inner` (2N,): the state at its end, and the displacements (samples, N).
 
-    The start is not a sample. Raises `NumbersFailed` and `Cancelled`.
+    The start is not a sample. Raises `ComputationError` and `Cancelled`.
     """
     from scipy import integrate
 
@@ -132,8 +132,8 @@ def _period(motion: ScipyMotion, solver: Solver, tolerance: float, inner: np.nda
         before = one.y.copy()
         one.step()
         if one.status == "failed":
-            raise NumbersFailed(f"SciPy's {solver.name} gave up after {t / period:.3g} of a drive period at "
-                                f"tolerance {tolerance:g}.", "solver-gave-up")
+            raise ComputationError(f"SciPy's {solver.name} gave up after {t / period:.3g} of a drive period at "
+                                   f"tolerance {tolerance:g}.", "solver-gave-up")
         dense = one.dense_output()
         if located and one.t_bound == period:
             event = _first_event(motion, dense, one, before)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed
+from ..errors import BadInput, Cancelled, ComputationError
 from ..execution.stop import Stop
 from ..integrate import METHODS, Engine, Setting, adaptive_setting
 from ..integrate.stated import relative_difference
@@ -84,7 +84,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
 
     Raises
     ------
-    NumbersFailed
+    ComputationError
         The reference cannot be computed.
     Cancelled
         `stop` was set.
@@ -128,7 +128,7 @@ def work_precision(scene: Scene, stop: Stop | None = None, progress: Callable[[f
     try:
         other = _within("It", stop, _REFERENCE_LIMIT, lambda stop: _scipys(scene, *_SECOND, stop, located=True))
         found.agreement = _distance(other.moved, exact)
-    except NumbersFailed as problem:
+    except ComputationError as problem:
         found.disagreement = problem.sentence
     advance()
     return found
@@ -151,7 +151,7 @@ def _row(scene: Scene, choice: MeasuredSetting, exact: np.ndarray, stop: Stop) -
 
     try:
         best = _fastest(stop, measure)
-    except (NumbersFailed, BadInput) as problem:
+    except (ComputationError, BadInput) as problem:
         return Row(choice.method, choice.label, float("inf"), 0.0, 0, choice.value, str(problem))
     return Row(choice.method, choice.label, _distance(best.moved, exact), best.seconds, best.rhs, choice.value)
 
@@ -183,7 +183,7 @@ def _within(what: str, stop: Stop, seconds: float, measure: Measure) -> Computed
     except Cancelled:
         if stop:
             raise
-        raise NumbersFailed(f"{what} was not done after {seconds:g} s and was stopped.", "too-slow") from None
+        raise ComputationError(f"{what} was not done after {seconds:g} s and was stopped.", "too-slow") from None
 
 
 def _periods(scene: Scene) -> int:

@@ -109,7 +109,7 @@ def basins(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[
     ------
     BadInput
         An unknown coordinate, the same one twice, or too many starts.
-    NumbersFailed
+    ComputationError
         No start stays finite.
 
     Examples

@@ -178,7 +178,7 @@ def lyapunov_spectrum(scene: Scene, periods: int = 400, start: State | None = No
     ------
     BadInput
         Too many beads, tension cut, or a number of periods out of range.
-    NumbersFailed
+    ComputationError
         The motion did not stay finite.
 
     Examples

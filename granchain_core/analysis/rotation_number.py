@@ -204,7 +204,7 @@ def rotation_number(scene: Scene, periods: int = 4000, start: State | None = Non
     ------
     BadInput
         A chain that is not driven, or a number of periods out of range.
-    NumbersFailed
+    ComputationError
         The motion did not stay finite.
 
     Examples

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed
+from ..errors import BadInput, ComputationError
 from ..execution.stop import Stop
 from ..inputs.checks import numbers_in, unknown_name, whole_number
 from ..integrate import Engine
@@ -231,7 +231,7 @@ def _point(value: float, chain: Scene, start: State | None, keep: int, stop: Sto
     try:
         settling = run_until_settled(chain, start, stop)
         engine, strobes, error = _refined(settling) or (settling.engine, settling.engine.periods(keep)[0][1:], None)
-    except NumbersFailed as failed:
+    except ComputationError as failed:
         return StrobePoint(value, Regime.unsettled(0), np.zeros((0, 2, chain.N)), start, failed.sentence)
     scales = settling.engine.scaled.scales
     units = np.array([scales.length, scales.velocity])[:, None]

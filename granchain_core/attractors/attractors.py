@@ -12,7 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from ..execution.stop import Stop
 from ..inputs.checks import whole_number
 from ..integrate import Engine, following_setting
@@ -80,7 +80,7 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
     ------
     BadInput
         `random_states` or `seed` is not a whole number or out of range.
-    NumbersFailed
+    ComputationError
         No start stays finite.
 
     Examples
@@ -113,7 +113,7 @@ def attractors_from(scene: Scene, origins: list[Origin], stop: Stop | None = Non
     starts = [Start(scene, origin.state, number) for number, origin in enumerate(origins)]
     results = _settled(starts, stop, progress)
     if results and not any(not result.failure for result in results):
-        raise NumbersFailed(results[0].failure, "not-finite")
+        raise ComputationError(results[0].failure, "not-finite")
     failed = {result.number for result in results if result.failure}
     groups = merged([found(result) for result in results if not result.failure])
     for _ in range(_MOST_ROUNDS):

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed
+from ..errors import BadInput, ComputationError
 from ..integrate import Engine, Setting, adaptive_setting, following_setting
 from ..integrate.scaling import scale_chain
 from ..orbits import Orbit, periodic_orbit
@@ -128,7 +128,7 @@ def _polished(one: Found) -> Found:
         shortest = least_period_of(orbit)
         if shortest < period:  # in the batch a slow approach with alternating sign looked like twice the period
             orbit = periodic_orbit(one.result.scene, shortest, orbit.state)
-    except (BadInput, NumbersFailed):  # a scene that cuts tension has no converged orbits
+    except (BadInput, ComputationError):  # a scene that cuts tension has no converged orbits
         return one
     # states are known less well than forces; a stable orbit that is as near as this is the one the motion settled on
     most = _LARGEST_DIFFERENCE if orbit.stable else 10.0 * one.tolerance + 1e-6

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed
+from ..errors import BadInput, Cancelled, ComputationError
 from ..execution.stop import Stop
 from ..inputs.checks import unknown_name
 from ..orbits.branch.special import BIFURCATIONS
@@ -111,7 +111,7 @@ class _Branch:
             X = X - np.linalg.solve(matrix, off)
             if not np.isfinite(X).all() or X[-1] <= 0.0:
                 break
-        raise NumbersFailed("Newton's method lost the branch.", "no-convergence")
+        raise ComputationError("Newton's method lost the branch.", "no-convergence")
 
     @staticmethod
     def tangent(derivative: np.ndarray, slope: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -134,7 +134,7 @@ def critical(derivative: np.ndarray, kind: str, near: complex | None = None) -> 
         return float(np.prod(multipliers - target).real), complex(multipliers[nearest])
     pairs = multipliers[np.abs(multipliers.imag) > _REAL_ANGLE]
     if len(pairs) == 0:
-        raise NumbersFailed("The orbit has no complex multipliers, which a Neimark–Sacker point needs.", "no-point")
+        raise ComputationError("The orbit has no complex multipliers, which a Neimark–Sacker point needs.", "no-point")
     away = np.abs(np.abs(pairs) - 1.0) if near is None else np.abs(pairs - complex(near.real, abs(near.imag)))
     nearest = int(np.argmin(np.where(pairs.imag > 0.0, away, np.inf)))
     return float(abs(pairs[nearest]) - 1.0), complex(pairs[nearest])
@@ -150,8 +150,8 @@ def bifurcation_point(scene: Scene, kind: str, state: State | np.ndarray, period
                    stop: Stop | None = None) -> BifurcationPoint:
     """The point of `kind` on the branch over knob x nearest to an orbit through `state`.
 
-    `state` is at phase 0, in SI or scaled (2N,) of displacements, then w. Raises `BadInput`, and `NumbersFailed` where
-    there is none near.
+    `state` is at phase 0, in SI or scaled (2N,) of displacements, then w. Raises `BadInput`, and `ComputationError`
+    where there is none near.
     """
     _check(scene, kind, x, y)
     branch = _Branch(scene, x, value_of(scene, x), period, stop)
@@ -195,9 +195,9 @@ def _nearest(branch: _Branch, kind: str, guess: np.ndarray, along: np.ndarray, y
             step = (X - before) * float(np.clip(factor, -_LONGEST_SECANT, _LONGEST_SECANT))
             before, condition = X, there
     except (np.linalg.LinAlgError, BadInput) as problem:
-        raise NumbersFailed(f"The branch could not be followed: {problem}.", "no-convergence") from None
-    raise NumbersFailed(f"No {kind.replace('_', ' ')} was found on this branch near {branch.knob} = "
-                        f"{guess[-1] * branch.unit:g}; start from an orbit nearer to it.", "no-point")
+        raise ComputationError(f"The branch could not be followed: {problem}.", "no-convergence") from None
+    raise ComputationError(f"No {kind.replace('_', ' ')} was found on this branch near {branch.knob} = "
+                           f"{guess[-1] * branch.unit:g}; start from an orbit nearer to it.", "no-point")
 
 
 def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,
@@ -208,9 +208,9 @@ def _advanced(branch: _Branch, kind: str, before: np.ndarray, step: np.ndarray,
         try:
             X, derivative = branch.solve(before + shorter, shorter / np.linalg.norm(shorter), slope)
             return X, *critical(derivative, kind, branch.near)
-        except NumbersFailed:
+        except ComputationError:
             shorter = 0.5 * shorter
-    raise NumbersFailed("Newton's method lost the branch.", "no-convergence")
+    raise ComputationError("Newton's method lost the branch.", "no-convergence")
 
 
 def points_of_curve(scene: Scene, kind: str, state: State | np.ndarray, values: Iterable[float], period: int = 1,
@@ -220,7 +220,7 @@ def points_of_curve(scene: Scene, kind: str, state: State | np.ndarray, values: 
 
     It is followed to both sides of the scene's own y, as far as it goes: where the branch or the critical multiplier is
     lost the curve ends, and points beyond that are left out. Points come back in ascending y, that at the scene's own y
-    included. Raises `BadInput`, `Cancelled`, and `NumbersFailed` where there is no such point to begin with.
+    included. Raises `BadInput`, `Cancelled`, and `ComputationError` where there is no such point to begin with.
     """
     first = bifurcation_point(scene, kind, state, period, x, y, stop)
     wanted = sorted({float(QUANTITIES[y].check(value)) for value in values} - {first.y})
@@ -267,7 +267,7 @@ def _stepped(scene: Scene, kind: str, way: list[BifurcationPoint], end: float, p
         branch = _Branch(scene.evolve(**{x: guess, y: end}), x, guess, period, stop, way[-1].multiplier)
         along = _inwards(branch, state) if kind == "fold" else np.append(np.zeros(len(state)), 1.0)
         found = _nearest(branch, kind, np.append(state, 1.0), along, y)
-    except (NumbersFailed, BadInput):
+    except (ComputationError, BadInput):
         return None
     return found if _continues(way[-1], found) else None
 

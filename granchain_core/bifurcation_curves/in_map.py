@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed
+from ..errors import BadInput, ComputationError
 from ..execution.stop import Stop
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.stroboscopic_map import refuse_cut
@@ -132,7 +132,7 @@ def bifurcation_curves(found: Diagram, rows: Iterable[int] | None = None, values
             try:
                 points = points_of_curve(scene, pair.kind, point.state, heights, pair.period, grid.x.knob, grid.y.knob,
                                          stop)
-            except NumbersFailed:
+            except ComputationError:
                 continue
             curves.append(BifurcationCurve(pair.kind, pair.period, points))
             if on_curve is not None:
@@ -172,13 +172,13 @@ def _between(found: Diagram, pair: _Pair, stop: Stop | None) -> BifurcationPoint
             away = _away(orbit, pair.kind)
             if away < nearest:
                 best, nearest = orbit, away
-    except NumbersFailed:
+    except ComputationError:
         pass  # beyond a fold there is no orbit: the last one is the nearest
     if best is None:
         return None
     try:
         point = bifurcation_point(best.scene, pair.kind, best.state, pair.period, grid.x.knob, grid.y.knob, stop)
-    except (BadInput, NumbersFailed):
+    except (BadInput, ComputationError):
         return None
     low, high = min(a, b) - _CELLS_OUTSIDE * abs(b - a), max(a, b) + _CELLS_OUTSIDE * abs(b - a)
     return point if low <= point.x <= high else None

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed
+from ..errors import BadInput, Cancelled, ComputationError
 from ..execution.stop import Stop
 from ..experiment import Feature, Measured, Series, model_minus_measured
 from ..results.regime import Regime
@@ -222,7 +222,7 @@ class SeriesTarget(Compared):
         sigma = self.error or ASSUMED * largest
         try:
             found = settle(self.driven(scene, amplitude), samples=_TRAIN, stop=stop)
-        except NumbersFailed:
+        except ComputationError:
             count = sum(map(len, measured.values()))
             return Evaluation(np.full(count, FAILED), 0.0, ("failed",), np.full(count, np.nan))
         trains = {name: Train.of(found.run, name) for name in measured}

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed
+from ..errors import BadInput, ComputationError
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def run_case(case: Case, quick: bool) -> list[Check]:
     began = time.perf_counter()
     try:
         measurements = list(case.measure(quick))
-    except (NumbersFailed, BadInput) as problem:
+    except (ComputationError, BadInput) as problem:
         measurements = [Measurement("could not be computed", math.nan, 0.0, str(problem))]
     spent = time.perf_counter() - began
     return [Check(f"{case.name}: {f.name}", f.value, f.limit, bool(f.value <= f.limit), spent if i == 0 else 0.0,

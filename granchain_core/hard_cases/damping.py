@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from ..integrate import Engine, Setting, adaptive_setting
 from ..run.to_accuracy import run
 from ..scene import Scene, scene
@@ -42,7 +42,7 @@ def strong_damping_picture() -> Picture:
     for row in range(samples):
         try:
             kept[row : row + 2] = naive.record(1).displacement[:, 0]
-        except NumbersFailed:
+        except ComputationError:
             break
     kept[np.abs(kept) > 3.0] = np.nan
     return Picture(np.arange(samples + 1) / samples, "drive periods", "first bead, in amplitudes",

@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from ..integrate import METHODS, Engine, Setting
 from ..integrate.methods import ADAPTIVE, FIXED_STEP
 from ..scene import scene
@@ -71,11 +71,11 @@ class Injector:
         self.engine.stepper.drive[row] = before
         return found is not None and (found.bead, found.step) == (1, step)
 
-    def outcome(self) -> NumbersFailed | None:
+    def outcome(self) -> ComputationError | None:
         """The typed failure of the next sample, None if it went unnoticed."""
         try:
             self.engine.record(1)
-        except NumbersFailed as found:
+        except ComputationError as found:
             return found if found.status == "not-finite" and found.time is not None else None
         finally:
             self.restore()

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from ..scene import Scene
 from ..scene.laws import LAWS
 
@@ -75,7 +75,7 @@ def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str 
            rtol: float = 1e-12) -> np.ndarray:
     """States (T, 2N) of displacements and velocities at scaled `times` (T,), from `start` (2N,) at the first of them.
 
-    Raises `NumbersFailed` where SciPy gives up.
+    Raises `ComputationError` where SciPy gives up.
     """
     from scipy.integrate import solve_ivp
 
@@ -91,7 +91,8 @@ def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str 
                                max_step=chain.period / _LEAST_STEPS,
                                events=[_event(chain, c, bool(closed[c])) for c in range(n + 1)])
         if found.status < 0:
-            raise NumbersFailed(f"SciPy's {method} gave up at scaled time {t:.6g}: {found.message}", "solver-gave-up")
+            raise ComputationError(f"SciPy's {method} gave up at scaled time {t:.6g}: {found.message}",
+                                   "solver-gave-up")
         end = float(found.t[-1])
         while row < len(times) and times[row] <= end:
             out[row] = found.sol(times[row])
@@ -102,7 +103,7 @@ def solved(chain: PlainChain, start: np.ndarray, times: np.ndarray, method: str 
         closed = closed.copy()
         closed[changed] = not closed[changed]
         t, state = end, found.y[:, -1]
-    raise NumbersFailed(f"SciPy's {method} met more than {_MOST_EVENTS} contact events.", "chatter")
+    raise ComputationError(f"SciPy's {method} met more than {_MOST_EVENTS} contact events.", "chatter")
 
 
 def _event(chain: PlainChain, contact: int, closed: bool) -> Callable[[float, np.ndarray], float]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from concurrent.futures import Future, as_completed
 from concurrent.futures.process import BrokenProcessPool
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from ..execution.child_processes import pool, starting
 from ..execution.cores import usable_cores
 from .case import Check, run_case
@@ -20,7 +20,7 @@ def _run(name: str, quick: bool) -> list[Check]:
 def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, list[Check]]]:
     """Case names with their rows as they are finished; closing the generator ends what has not begun.
 
-    Processes, because much of the oracles is Python, which only one thread at a time can run. Raises `NumbersFailed`
+    Processes, because much of the oracles is Python, which only one thread at a time can run. Raises `ComputationError`
     where one of them is ended from outside.
     """
     count = workers or min(2, usable_cores())
@@ -32,8 +32,8 @@ def run_cases(quick: bool, workers: int | None = None) -> Iterator[tuple[str, li
         for done in as_completed(running):
             yield running[done], done.result()
     except BrokenProcessPool:
-        raise NumbersFailed("A process that ran hard cases was ended from outside, perhaps for its memory; run the "
-                            "check again.", "worker-failed") from None
+        raise ComputationError("A process that ran hard cases was ended from outside, perhaps for its memory; run the "
+                               "check again.", "worker-failed") from None
     finally:
         processes.shutdown(wait=False, cancel_futures=True)
 

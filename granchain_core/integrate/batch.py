@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from ..kernels.batch.run import IS_SHADOW, NO_SHADOW, BatchState, Members, run_b
 from ..kernels.batch.unequal import Unequal
 from ..kernels.batch_size import BATCH_SIZE
 from ..kernels.compiling.by_address import address_of
-from ..kernels.compiling.entry import entry
+from ..kernels.compiling.entry import entry, type_guard
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.equations.motion import Slots
 from ..kernels.forces.peaks import PEAKS
@@ -75,6 +76,7 @@ class Batch:
         self.stop = stop
         self._run: Any = None
         self._check = 0
+        self._guard: Callable[..., None] = lambda *later: None
         n = example.N
         self.members = Members(
             wall=_rows(1), unequal=None if is_uniform(scaled) else Unequal(_rows(n + 2), _rows(n + 1)),
@@ -179,6 +181,8 @@ class Batch:
         if self._run is None:
             self._run = entry(run_batch, self.members, self.state, self.stop.flag, 0)
             self._check = self.checks_address()
+            self._guard = type_guard(check_member, self.state, 0)
+        self._guard(self.state, 0)
         arguments = self.members, self.state, self.stop.flag, self._check
         status, member = self._run(*arguments)
         if status == CANCELLED:

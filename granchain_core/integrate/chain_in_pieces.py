@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed
+from ..errors import BadInput, Cancelled, ComputationError
 from ..execution.stop import Stop
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
 from ..kernels.forces.largest import new_log
@@ -96,9 +96,9 @@ class ChainInPieces:
         if status == NOT_FINITE:
             bead = first_not_finite(y, row)
             whose = f" of bead {bead}" if bead else ""
-            raise NumbersFailed(f"The motion{whose} stopped being a finite number at about "
-                                f"{self._time[done - 1]:.6g} s; look at the force there, or lower the damping.",
-                                "not-finite", bead or None)
+            raise ComputationError(f"The motion{whose} stopped being a finite number at about "
+                                   f"{self._time[done - 1]:.6g} s; look at the force there, or lower the damping.",
+                                   "not-finite", bead or None)
         return samples
 
 

@@ -119,7 +119,7 @@ class Engine:
     def record(self, count: int) -> Samples:
         """Advance by `count` samples and keep them, the present one first: count + 1 rows.
 
-        Raises `NumbersFailed`, `Cancelled`.
+        Raises `ComputationError`, `Cancelled`.
         """
         self.stop.pause()
         self._remember()
@@ -219,7 +219,7 @@ class Engine:
     def raise_for(self, status: int, done: float, before: CallStart | None = None) -> None:
         """Raise the error for a kernel's status, after `done` periods of a call from `before`, None if unknown.
 
-        Raises `NumbersFailed`, `Cancelled`.
+        Raises `ComputationError`, `Cancelled`.
         """
         if status == DONE:
             return

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ..errors import Cancelled, NumbersFailed
+from ..errors import Cancelled, ComputationError
 from ..kernels.status import CANCELLED, CHATTER, NOT_FINITE, STEP_TOO_SMALL, TOO_MANY_STEPS
 from ..scene import Scene
 
@@ -26,7 +26,7 @@ class Failure:
     method: str
 
     @property
-    def error(self) -> Cancelled | NumbersFailed:
+    def error(self) -> Cancelled | ComputationError:
         """The outcome as something to raise. `ValueError` for a status that is not a failure."""
         if self.status == CANCELLED:
             return Cancelled()
@@ -35,18 +35,18 @@ class Failure:
         if self.status == NOT_FINITE:
             where = "" if self.step is None else f" in step {self.step} of its period"
             whose = f" of bead {self.bead}" if self.bead else ""
-            return NumbersFailed(f"The motion{whose} stopped being a finite number {when}{where}; "
-                                 f"lower the damping or ask for a higher accuracy.", "not-finite", self.bead or None,
-                                 time, self.step, self.cost)
+            return ComputationError(f"The motion{whose} stopped being a finite number {when}{where}; "
+                                    f"lower the damping or ask for a higher accuracy.", "not-finite", self.bead or None,
+                                    time, self.step, self.cost)
         if self.status == STEP_TOO_SMALL:
-            return NumbersFailed(f"The step of {self.method} became too small {when}; ask for less accuracy than "
-                                 f"{self.scene.accuracy:g}, or on the command line for --method rk4-split.",
-                                 "step-too-small", time=time, cost=self.cost)
+            return ComputationError(f"The step of {self.method} became too small {when}; ask for less accuracy than "
+                                    f"{self.scene.accuracy:g}, or on the command line for --method rk4-split.",
+                                    "step-too-small", time=time, cost=self.cost)
         if self.status == TOO_MANY_STEPS:
-            return NumbersFailed(f"One drive period needs millions of steps of {self.method} {when}; raise the "
-                                 f"frequency f.", "too-many-steps", time=time, cost=self.cost)
+            return ComputationError(f"One drive period needs millions of steps of {self.method} {when}; raise the "
+                                    f"frequency f.", "too-many-steps", time=time, cost=self.cost)
         if self.status == CHATTER:
-            return NumbersFailed(f"Contacts open and close endlessly {when}; the chain chatters: raise the damping "
-                                 f"D, or on the command line use --method rk4-split.", "chatter", time=time,
-                                 cost=self.cost)
+            return ComputationError(f"Contacts open and close endlessly {when}; the chain chatters: raise the damping "
+                                    f"D, or on the command line use --method rk4-split.", "chatter", time=time,
+                                    cost=self.cost)
         raise ValueError(f"{self.status} is not the status of a computation that failed")

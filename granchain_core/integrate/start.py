@@ -28,7 +28,7 @@ def at_phase_0(scene: Scene, start: State, stop: Stop | None = None) -> State:
     """The state in which a motion from `start` comes to its next drive phase 0 (`following_setting`).
 
     A state at phase 0 is returned as it is. Raises `BadInput` where `start` is not a state of this chain, or its phase
-    is not a fraction k/n with n up to 10,000; `NumbersFailed` and `Cancelled`.
+    is not a fraction k/n with n up to 10,000; `ComputationError` and `Cancelled`.
     """
     begin = checked_start(scene, start)
     part, same = nearest_fraction(begin.phase)

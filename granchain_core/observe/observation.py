@@ -185,7 +185,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
     ------
     BadInput
         The arrays do not fit together, times do not ascend, or there is a gap.
-    NumbersFailed
+    ComputationError
         The motion is no longer finite.
     Cancelled
         `stop` was set.

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ..errors import BadInput, NumbersFailed
+from ..errors import BadInput, ComputationError
 from ..execution.stop import Stop
 from ..orbits import CONTINUOUS, Orbit, periodic_orbit
 from ..scene import Scene
@@ -97,11 +97,11 @@ def _follow(scene: Scene, before: Orbit | None, period: int | None,
     if before is not None:
         try:
             return periodic_orbit(scene, before.period, before.state, observer=True, stop=stop), ""
-        except NumbersFailed:
+        except ComputationError:
             pass  # the orbit before has ended or is too far away: the steady state from rest is tried next
     try:
         return periodic_orbit(scene, period, observer=True, stop=stop), ""
-    except NumbersFailed as problem:
+    except ComputationError as problem:
         return None, problem.sentence
 
 

@@ -179,7 +179,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
 
     The chain starts on its settled orbit. `perturbation` is the observer's first distance: a number moves its beads at
     random (always the same) by that fraction of A0, root mean square; a `State` is where it starts, `rest(scene)` for
-    one without any knowledge of the chain. Raises `BadInput`, `NumbersFailed`, `Cancelled`.
+    one without any knowledge of the chain. Raises `BadInput`, `ComputationError`, `Cancelled`.
     """
     require_scene(scene)
     periods = whole_number("periods =", periods, 1, MOST_PERIODS)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from .stroboscopic_map import StroboscopicMap
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def derivative_at(stroboscopic_map: StroboscopicMap, x: np.ndarray, observer: bo
 def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarray) -> np.ndarray:
     """The step d of Newton's method towards a fixed point: (M − I) d = x − end, by GMRES.
 
-    Raises `NumbersFailed` where it does not converge: the derivative then has a multiplier close to 1.
+    Raises `ComputationError` where it does not converge: the derivative then has a multiplier close to 1.
     """
     from scipy.sparse.linalg import LinearOperator, gmres
 
@@ -52,8 +52,8 @@ def newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, end: np.ndarra
     step, status = gmres(system, x - end, rtol=_GMRES_TOLERANCE, restart=_PRODUCTS_TO_RESTART, maxiter=_MOST_RESTARTS)
     if status != 0:
         products = _PRODUCTS_TO_RESTART * _MOST_RESTARTS
-        raise NumbersFailed(f"Newton's step was not found in {products} products with the derivative: a multiplier is "
-                            "close to 1; move the knob a little.", "no-convergence")
+        raise ComputationError(f"Newton's step was not found in {products} products with the derivative: a multiplier "
+                               "is close to 1; move the knob a little.", "no-convergence")
     return np.asarray(step)
 
 
@@ -61,7 +61,7 @@ def leading_multipliers(stroboscopic_map: StroboscopicMap, x: np.ndarray, observ
                         count: int = LEADING) -> np.ndarray:
     """The `count` multipliers of largest modulus at the fixed point x, largest first, by Arnoldi iteration.
 
-    Raises `NumbersFailed` where they do not converge.
+    Raises `ComputationError` where they do not converge.
     """
     found = arnoldi(stroboscopic_map, x, count, observer)
     return found[np.argsort(-np.abs(found), kind="stable")]
@@ -73,7 +73,7 @@ def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observ
 
     With `vectors` a pair: the multipliers, and their eigenvectors (2N, count).
 
-    Raises `NumbersFailed` where they do not converge.
+    Raises `ComputationError` where they do not converge.
     """
     from scipy.sparse.linalg import ArpackNoConvergence, eigs
 
@@ -83,5 +83,5 @@ def arnoldi(stroboscopic_map: StroboscopicMap, x: np.ndarray, count: int, observ
         return eigs(derivative_at(stroboscopic_map, x, observer), k=count, which="LM", v0=start, tol=_EIGENVALUE_ERROR,
                     return_eigenvectors=vectors)
     except ArpackNoConvergence as problem:
-        raise NumbersFailed(f"Only {len(problem.eigenvalues)} of {count} leading multipliers converged; the others are "
-                            f"too close together.", "no-convergence") from None
+        raise ComputationError(f"Only {len(problem.eigenvalues)} of {count} leading multipliers converged; the others "
+                               "are too close together.", "no-convergence") from None

@@ -48,7 +48,7 @@ class Mode:
 def mode(orbit: Orbit, rank: int = 0, samples: int = 48, stop: Stop | None = None) -> Mode:
     """The mode of the multiplier at place `rank` by modulus; of a complex pair the one with positive imaginary part.
 
-    Raises `BadInput` for a rank that is not there, `NumbersFailed`, `Cancelled`.
+    Raises `BadInput` for a rank that is not there, `ComputationError`, `Cancelled`.
     """
     rank = whole_number("mode", rank, 0, len(orbit.multipliers) - 1)
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)

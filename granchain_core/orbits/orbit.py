@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from ..execution.stop import Stop
 from ..inputs.checks import whole_number
 from ..integrate.scaling import scales_of
@@ -218,7 +218,7 @@ def periodic_orbit(scene: Scene, period: int | None = None, start: State | None 
     ------
     BadInput
         The period is out of range, or the scene cuts tension.
-    NumbersFailed
+    ComputationError
         Newton's method did not converge; the message has its residuals.
     Cancelled
         `stop` was set.
@@ -265,7 +265,7 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
             trial = x + step / 2**halving
             try:
                 after = _flow(stroboscopic_map, trial)
-            except NumbersFailed:  # a state too far away to be followed: a shorter step is nearer
+            except ComputationError:  # a state too far away to be followed: a shorter step is nearer
                 continue
             if relative_change(after.end - trial, trial) < history[-1]:
                 break
@@ -275,8 +275,8 @@ def _newton(stroboscopic_map: StroboscopicMap, x: np.ndarray) -> tuple[np.ndarra
         history.append(relative_change(flow.end - x, x))
     if history[-1] > 100.0 * CONVERGED:
         shown = ", ".join(f"{r:.1e}" for r in history)
-        raise NumbersFailed(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "
-                            f"start: its residuals were {shown}; give another period or start.", "no-convergence")
+        raise ComputationError(f"Newton's method found no orbit of {stroboscopic_map.periods} drive periods near this "
+                               f"start: its residuals were {shown}; give another period or start.", "no-convergence")
     return x, flow, history
 
 
@@ -297,8 +297,8 @@ def _newton_step(stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow) -
     try:
         return np.linalg.solve(flow.derivative - np.eye(len(x)), x - flow.end)
     except np.linalg.LinAlgError:
-        raise NumbersFailed("Newton's step does not exist: a multiplier is 1, as at a fold; move the knob a little.",
-                            "no-convergence") from None
+        raise ComputationError("Newton's step does not exist: a multiplier is 1, as at a fold; move the knob a little.",
+                               "no-convergence") from None
 
 
 def _orbit(scene: Scene, n: int, stroboscopic_map: StroboscopicMap, x: np.ndarray, flow: Flow, history: list[float],

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..errors import NumbersFailed
+from ..errors import ComputationError
 from ..execution.stop import Stop
 from ..integrate.scaling import scale_chain
 from ..scene import Scene
@@ -34,22 +34,22 @@ def search_orbit(scene: Scene, period: int, start: State, strobes: np.ndarray,
     """An orbit of `period` drive periods near `start` or near where its section passes one.
 
     `strobes` (P, 2, N) are states at phase 0 in SI, the transient left out; P may be 0. Of an orbit that repeats sooner
-    the least period is returned. Raises `BadInput` for a period out of range, `NumbersFailed` where no start leads to
-    an orbit, and `Cancelled`.
+    the least period is returned. Raises `BadInput` for a period out of range, `ComputationError` where no start leads
+    to an orbit, and `Cancelled`.
     """
     tried = 0
     for begin in (start, *_middle(strobes, period), *_close_returns(strobes, period)):
         tried += 1
         try:
             found = periodic_orbit(scene, period, begin, stop=stop)
-        except NumbersFailed as failure:
+        except ComputationError as failure:
             if failure.status != "no-convergence":
                 raise
             continue
         least = least_period_of(found, stop)
         return found if least == period else periodic_orbit(scene, least, found.state, stop=stop)
-    raise NumbersFailed(f"Newton's method found no orbit of {period} drive periods from the present state or from "
-                        f"{tried - 1} places of the section; try another period.", "no-convergence")
+    raise ComputationError(f"Newton's method found no orbit of {period} drive periods from the present state or from "
+                           f"{tried - 1} places of the section; try another period.", "no-convergence")
 
 
 def _middle(strobes: np.ndarray, period: int) -> Iterator[State]:

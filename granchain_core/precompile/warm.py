@@ -24,9 +24,9 @@ from ..execution.child_processes import pool, starting
 from ..execution.stop import Stop
 from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting, following_setting
 from ..integrate.batch import Batch, can_share_batch, is_uniform
+from ..integrate.fixed import chain_width
 from ..integrate.scaling import scale_chain
 from ..kernels.compiling.cache_folder import CACHE_FOLDER, MARK
-from ..kernels.equations.chain_in_vector import CHAIN_WIDTHS
 from ..observe.pair import Pair
 from ..orbits.branch.axis import KnobAxis
 from ..orbits.branch.equations import BranchEquations
@@ -56,10 +56,12 @@ from .pieces import (
 
 def structure(shown: Scene) -> str:
     """Name of a scene's structure."""
-    width = next((f"vector of {width}" for width in CHAIN_WIDTHS if width >= shown.N + 2), "long")
+    scaled = scale_chain(shown)
+    lanes = chain_width(scaled)
+    width = f"vector of {lanes}" if lanes else "long"
     effects = [effect.key(shown) for effect in effects_of(shown)]
     law = [] if shown.has_dissipation else ["none"]
-    beads = [] if is_uniform(scale_chain(shown)) else ["unequal beads"]
+    beads = [] if is_uniform(scaled) else ["unequal beads"]
     return "+".join([*law, *effects, *beads]) + f", {width}"
 
 

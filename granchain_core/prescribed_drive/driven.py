@@ -154,7 +154,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
     ------
     BadInput
         It is not a signal, or has too many knots for the chain, or needs too many steps.
-    NumbersFailed
+    ComputationError
         The motion is no longer finite.
     Cancelled
         `stop` was set.

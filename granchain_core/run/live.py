@@ -109,7 +109,7 @@ class LiveChain:
         """Advance by `count` samples: count + 1 rows, the present state first; `time` continues from call to call.
 
         The largest forces are those of this stretch. Raises `BadInput` for a `count` that is not a whole number from 1,
-        `NumbersFailed`, `Cancelled`.
+        `ComputationError`, `Cancelled`.
         """
         count = whole_number("count =", count, 1, MOST_RECORDED // self.scene.N)
         began = time.perf_counter()

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ..errors import BadInput, Cancelled, NumbersFailed, OverBudget
+from ..errors import BadInput, Cancelled, ComputationError, OverBudget
 from ..execution.stop import Stop
 from ..inputs.checks import series_in
 from ..results.regime import Regime
@@ -183,5 +183,5 @@ def attempted(work: Callable[..., Any], chain: Scene, options: dict[str, Any]) -
     """What `work` makes of a chain, or the sentence with which its computation failed."""
     try:
         return work(chain, **options), ""
-    except (NumbersFailed, OverBudget) as problem:
+    except (ComputationError, OverBudget) as problem:
         return None, str(problem)

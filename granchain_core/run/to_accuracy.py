@@ -100,7 +100,7 @@ def run(scene: Scene, periods: int = 100, record: int = 20, samples: int = 96, m
         A number of periods or samples is not a whole number or out of range, or there is no such method.
     OverBudget
         The run would take longer than `budget` from the beginning; it is a `BadInput`.
-    NumbersFailed
+    ComputationError
         The motion is no longer finite, a step has shrunk to nothing, a period takes millions of steps, or contacts open
         and close endlessly (chatter); the message says when and why.
     Cancelled

@@ -63,7 +63,7 @@ def iter_section(scene: Scene, start: State | None, periods: int, samples: int =
                  stop: Stop | None = None) -> Iterator[Section]:
     """The section from `start` (None is the scene's own start), ever longer: about every `seconds`.
 
-    It ends after `most_periods` of `periods`. Raises `NumbersFailed`, `Cancelled`.
+    It ends after `most_periods` of `periods`. Raises `ComputationError`, `Cancelled`.
     """
     engine = Engine(scene, following_setting(scene.cuts_tension), samples, stop=stop)
     engine.start(rest(scene) if start is None else at_phase_0(scene, start, engine.stop))

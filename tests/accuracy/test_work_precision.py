@@ -14,7 +14,7 @@ import scipy.integrate
 
 import granchain_core.accuracy
 from app.cli import main
-from granchain_core import Cancelled, NumbersFailed, scene, settle
+from granchain_core import Cancelled, ComputationError, scene, settle
 from granchain_core.accuracy import Row, WorkPrecision, cheapest, compared_methods, work_precision
 from granchain_core.accuracy import work_precision as entry
 from granchain_core.accuracy.compared_methods import measured_settings
@@ -95,7 +95,7 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
 
     def solver(shown, name, tolerance, periods, samples, stop, located=False):
         if name == "LSODA":
-            raise NumbersFailed("SciPy's LSODA lost the motion.", "not-finite")
+            raise ComputationError("SciPy's LSODA lost the motion.", "not-finite")
         if name == "RK45" and next(slow, False):
             while not stop:
                 time.sleep(0.005)

@@ -14,7 +14,7 @@ import pytest
 
 from app.cli import main
 from app.session.share import decode
-from granchain_core import BadInput, NumbersFailed, run, scene
+from granchain_core import BadInput, ComputationError, run, scene
 from granchain_core.hdf5 import seal
 from granchain_core.kernels.batch_size import machine
 from granchain_core.run import to_accuracy
@@ -84,7 +84,7 @@ def test_a_long_run_keeps_only_the_states_that_decide_its_regime():
 def test_numbers_that_fail_in_a_run_exit_with_3_and_one_sentence(monkeypatch, capsys):
     """Status 3 with which bead, when and why, from `run` as well."""
     def fails(*_, **__):
-        raise NumbersFailed("The motion of bead 3 stopped being a finite number at about 1 s.", "not-finite")
+        raise ComputationError("The motion of bead 3 stopped being a finite number at about 1 s.", "not-finite")
 
     monkeypatch.setattr(to_accuracy, "run", fails)
     assert main(["run", "sec2", *SHORT, "--json"]) == 3

@@ -40,7 +40,7 @@ def test_the_equations_of_the_paper_hold_with_the_new_law(tree: Path) -> None:
     """The quick tests whose reference has exponents of its own take their cases from the table of laws."""
     printed = follow(tree, "-m", "pytest", "-p", "no:cacheprovider", str(Path("tests", "kernels", "equations")),
                      "-k", "three-quarters")
-    assert "15 passed" in printed
+    assert " failed" not in printed and re.search(r"\b[1-9]\d* passed", printed)
 
 
 def test_the_new_law_is_seen(tree: Path) -> None:

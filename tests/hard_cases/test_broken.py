@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from granchain_core import NumbersFailed, Scene
+from granchain_core import ComputationError, Scene
 from granchain_core.hard_cases import (
     Case,
     Measurement,
@@ -46,7 +46,7 @@ def test_nan_is_above_every_bar() -> None:
 
 def test_a_case_that_cannot_be_computed_is_a_row_that_did_not_pass() -> None:
     def refuse(quick: bool) -> list[Measurement]:
-        raise NumbersFailed("bead 3", "not-finite")
+        raise ComputationError("bead 3", "not-finite")
 
     row, = run_case(Case("x", "", "", "", refuse), True)
     assert not row.passed and row.note == "bead 3"

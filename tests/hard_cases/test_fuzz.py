@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from granchain_core import Cancelled, NumbersFailed, Run, run
+from granchain_core import Cancelled, ComputationError, Run, run
 from granchain_core.errors import OverBudget
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate.scaling import scale_chain
@@ -122,8 +122,8 @@ def raising(problem: Exception) -> Callable[..., Run]:
 @pytest.mark.parametrize(("problem", "outcome", "noticed"), [
     (ZeroDivisionError("x"), "untyped", ["untyped failure"]),
     (FloatingPointError("x"), "untyped", ["untyped failure"]),
-    (NumbersFailed("", "not-finite"), "failed: not-finite", ["no sentence"]),
-    (NumbersFailed("Bead 3 is no longer finite.", "not-finite"), "failed: not-finite", []),
+    (ComputationError("", "not-finite"), "failed: not-finite", ["no sentence"]),
+    (ComputationError("Bead 3 is no longer finite.", "not-finite"), "failed: not-finite", []),
     (OverBudget("This would take 3 years.", 1e8, 1.0), "refused: over budget", []),
 ])
 def test_a_failure_without_type_or_sentence_is_noticed(problem: Exception, outcome: str, noticed: list[str]) -> None:

@@ -13,7 +13,7 @@ import pytest
 import app
 import granchain_core
 from app.cli import main
-from granchain_core import BadInput, Cancelled, NumbersFailed, State, run, scene
+from granchain_core import BadInput, Cancelled, ComputationError, State, run, scene
 from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting, method_for
@@ -102,7 +102,7 @@ def test_not_finite_says_bead_time_and_step() -> None:
     engine = Engine(chosen, Setting("rk4"), 8)
     engine.record(16)
     engine.y[7] = np.inf
-    with pytest.raises(NumbersFailed, match=r"bead 7 .* in step 0 ") as caught:
+    with pytest.raises(ComputationError, match=r"bead 7 .* in step 0 ") as caught:
         engine.record(1)
     found = caught.value
     assert (found.status, found.bead, found.step) == ("not-finite", 7, 0)
@@ -114,7 +114,7 @@ def test_a_step_in_the_middle_of_a_long_call_is_found_again() -> None:
     engine.periods(3)
     step = engine.grid // 3
     engine.stepper.drive[2 * step + 2] = np.nan
-    with pytest.raises(NumbersFailed) as caught:
+    with pytest.raises(ComputationError) as caught:
         engine.periods(4)
     assert (caught.value.bead, caught.value.step) == (1, step)
 
@@ -125,7 +125,7 @@ def test_step_too_small() -> None:
     engine.record(1)
     engine.scaled.slots.chain.stiffness[:] = 1e30
     engine.stepper.work.next_step[0] = 1e-14
-    with pytest.raises(NumbersFailed, match="became too small") as caught:
+    with pytest.raises(ComputationError, match="became too small") as caught:
         engine.record(8)
     assert caught.value.status == "step-too-small"
 
@@ -134,13 +134,13 @@ def test_endless_touches_fail_with_a_sentence() -> None:
     """One bead between a slow driver and the wall, undamped: thousands of touches in one drive period."""
     engine = Engine(scene("sec2").evolve(N=1, dissipation="none", f=1.0), Setting("dop853", 1.0, 1e-4), 1)
     engine.start(State(np.zeros(1), np.array([0.5])))
-    with pytest.raises(NumbersFailed, match="endlessly") as caught:
+    with pytest.raises(ComputationError, match="endlessly") as caught:
         engine.periods(1)
     assert caught.value.status == "chatter"
 
 
 def test_no_convergence_with_its_history() -> None:
-    with pytest.raises(NumbersFailed, match=r"residuals were \d") as caught:
+    with pytest.raises(ComputationError, match=r"residuals were \d") as caught:
         periodic_orbit(scene("rig").evolve(f=140.0, k=0.0), period=1)
     assert caught.value.status == "no-convergence"
 
@@ -149,7 +149,7 @@ def test_every_failure_has_a_known_name() -> None:
     """Each status that is written in the source is in FAILURES, and FAILURES has no other."""
     written = {node.args[1].value for package in (granchain_core, app) for path in Path(package.__path__[0]).rglob("*.py")
                for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Call)
-               and getattr(node.func, "id", "") == "NumbersFailed" and isinstance(node.args[1], ast.Constant)}
+               and getattr(node.func, "id", "") == "ComputationError" and isinstance(node.args[1], ast.Constant)}
     assert written == set(FAILURES)
 
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from granchain_core import NumbersFailed, Scene, run, scene
+from granchain_core import ComputationError, Scene, run, scene
 from granchain_core.integrate import Engine, Setting
 from granchain_core.scene.state import rest
 
@@ -85,7 +85,7 @@ def judge(chosen: Scene) -> Verdict | None:
     try:
         found = run(chosen, periods=0, record=PERIODS, samples=SAMPLES)
         true, nearly = reference(chosen, 3e-15), reference(chosen, 3e-14)
-    except NumbersFailed:
+    except ComputationError:
         return None
     largest = np.abs(true).max()
     return Verdict(chosen, float(np.abs(found.displacement - true).max() / largest), found.displacement_error,

@@ -98,13 +98,13 @@ def test_a_file_that_is_no_branch_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_branch_that_cannot_be_followed_says_so_with_residuals(monkeypatch: pytest.MonkeyPatch) -> None:
-    from granchain_core import NumbersFailed
+    from granchain_core import ComputationError
     from granchain_core.orbits.branch.equations import BranchEquations
 
     branch = begin_branch(scene("sec2"), "f", 2000.0, 2100.0, 1)
 
     def nothing(*_: object) -> None:
-        raise NumbersFailed("Newton's residuals were 1e-3, 2e-3.", "no-convergence")
+        raise ComputationError("Newton's residuals were 1e-3, 2e-3.", "no-convergence")
 
     monkeypatch.setattr(BranchEquations, "solve_near", nothing)
     assert list(Continuation(branch)) == [] and branch.arms[0].ended == "lost"

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, Cancelled, LiveChain, NumbersFailed, Scene, State, scene, settle
+from granchain_core import BadInput, Cancelled, ComputationError, LiveChain, Scene, State, scene, settle
 from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import mode, orbit_section
@@ -138,7 +138,7 @@ def test_an_orbit_has_its_least_period() -> None:
 def test_a_search_without_success_says_where_it_looked() -> None:
     shown = scene("rig").evolve(f=140.0, kappa=0.0)
     state = State(np.full(11, 1e-6), np.zeros(11))
-    with pytest.raises(NumbersFailed, match="no orbit of 1 drive periods from the present state or from 0 places"):
+    with pytest.raises(ComputationError, match="no orbit of 1 drive periods from the present state or from 0 places"):
         search_orbit(shown, 1, state, np.zeros((0, 2, 11)))
 
 

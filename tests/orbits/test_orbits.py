@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from linear_chain import linear_multipliers
 
-from granchain_core import BadInput, NumbersFailed, scene
+from granchain_core import BadInput, ComputationError, scene
 from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
@@ -85,7 +85,7 @@ def test_figure_11_the_observer_needs_the_foundation(frequency: float) -> None:
 
 
 def test_a_start_that_leads_to_no_orbit_is_a_failure_with_its_residuals() -> None:
-    with pytest.raises(NumbersFailed, match="residuals were"):
+    with pytest.raises(ComputationError, match="residuals were"):
         periodic_orbit(scene("rig").evolve(f=140.0, k=0.0), period=1)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import NumbersFailed, scene
+from granchain_core import ComputationError, scene
 from granchain_core.orbits import Branch, SpecialPoint, check_branch, continue_branch
 from granchain_core.orbits.branch import special
 from granchain_core.orbits.branch.between import Between
@@ -36,7 +36,7 @@ def test_the_careful_search_takes_over_and_finds_the_same(fast: Branch, broken: 
     used = []
 
     def no_solution(self: Between, point: object) -> object:
-        raise NumbersFailed("Newton's residuals were 1e-3, 2e-3.", "no-convergence")
+        raise ComputationError("Newton's residuals were 1e-3, 2e-3.", "no-convergence")
 
     def other_side(self: Between, point: object) -> object:
         return self.b if point is self.a else self.a

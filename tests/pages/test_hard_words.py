@@ -10,7 +10,7 @@ import pytest
 
 from app.pages.hard.view import described_cases, described_results, digits_of, summary, value_beside
 from app.pages.hard.work import CaseProcess, Ended, case_of
-from granchain_core import Cancelled, NumbersFailed
+from granchain_core import Cancelled, ComputationError
 from granchain_core.execution.stop import Stop
 from granchain_core.hard_cases import CASES, Case, Check, Measurement, run_case
 
@@ -35,7 +35,7 @@ def test_a_row_that_fails_keeps_its_figure_and_one_that_is_not_computed_its_sent
         ("missed", "3", "0", False), ("moment", "5e-11", "1e-9", True)]
 
     def fails(quick: bool) -> list[Measurement]:
-        raise NumbersFailed("It gave up.", "chatter")
+        raise ComputationError("It gave up.", "chatter")
 
     (row,) = described_results("x", run_case(Case("x", "h", "n", "o", fails), quick=True))["rows"]
     assert not row["passed"] and row["value"] == "no number" and row["note"] == "It gave up."

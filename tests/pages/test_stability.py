@@ -26,7 +26,7 @@ from app.pages.stability.view import (
 )
 from app.pages.stability.work import OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 from app.session.session import Session
-from granchain_core import BadInput, NumbersFailed, Settled, scene, settled
+from granchain_core import BadInput, ComputationError, Settled, scene, settled
 from granchain_core.execution.stop import Stop
 from granchain_core.results.regime import Regime, exponent_words, modulus_words
 
@@ -148,14 +148,14 @@ def test_the_sections_points_are_the_computed_ones() -> None:
 def test_multipliers_that_contradict_the_motion_are_not_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     found = replace(analysis().mode, closure=0.06)
     monkeypatch.setattr(work, "mode", lambda *_: found)
-    with pytest.raises(NumbersFailed, match=r"a small disturbance differs from their prediction by 0\.06 of its size"):
+    with pytest.raises(ComputationError, match=r"a small disturbance differs from their prediction by 0\.06 of its size"):
         analyse(analysis().target, False, 0, Stop())
 
 
 def test_another_orbit_than_the_settled_one_is_not_shown_for_it() -> None:
     shown = picture()
     far = replace(shown.state, displacement=1.01 * shown.state.displacement)
-    with pytest.raises(NumbersFailed, match="ended 1e-02 away"):
+    with pytest.raises(ComputationError, match="ended 1e-02 away"):
         analyse(OrbitTarget(shown.run.scene, 1, far, True), False, 0, Stop())
 
 
@@ -274,7 +274,7 @@ def test_a_scene_without_multipliers_says_so_and_has_its_section(page: Page) -> 
 def test_the_followed_orbit_is_not_called_another_one() -> None:
     for found, period in ((picture(), 1), (picture(f=1130.0), 3)):
         *_, section = section_of(found, None, Stop())
-        with pytest.raises(NumbersFailed, match=f"the orbit that the chain follows, of {period} drive period"):
+        with pytest.raises(ComputationError, match=f"the orbit that the chain follows, of {period} drive period"):
             search(found, section, period, Stop())
 
 

@@ -18,7 +18,7 @@ from app.cli import main
 from granchain_core import (
     BadInput,
     Cancelled,
-    NumbersFailed,
+    ComputationError,
     Stop,
     branch,
     diagram,
@@ -103,7 +103,7 @@ def fails(message: str) -> None:
 
 
 def test_what_fails_on_a_worker_is_one_sentence_and_what_is_stopped_ends(client: Any) -> None:
-    with pytest.raises(NumbersFailed, match="A worker could not do its part: ValueError: no disk; look at its log"):
+    with pytest.raises(ComputationError, match="A worker could not do its part: ValueError: no disk; look at its log"):
         list(results(client, fails, [("no disk",)]))
     stop = Stop()
     stop.set()

@@ -15,7 +15,7 @@ from host import FakeHost
 
 from app.serve.computing.worker_pools import WorkerPool
 from app.session.task import Job, Task, report_nothing
-from granchain_core import BadInput, Cancelled, NumbersFailed, scene
+from granchain_core import BadInput, Cancelled, ComputationError, scene
 
 
 class SayingHost(FakeHost):
@@ -79,7 +79,7 @@ def test_a_task_ends_when_the_visitor_leaves(host: SayingHost, task: Task) -> No
 
 
 @pytest.mark.parametrize(("error", "sentence", "told"), [
-    (NumbersFailed("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
+    (ComputationError("Bead 3 is not finite.", "not-finite"), "Bead 3 is not finite.", False),
     (BadInput("f must be positive."), "f must be positive.", False),
     (ZeroDivisionError("1/0"), FAULT, True)])
 def test_a_failure_is_said_and_a_fault_is_told_to_the_host(error: Exception, sentence: str, told: bool, host: SayingHost,

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from granchain_core import NumbersFailed, resonance_curve, scene
+from granchain_core import ComputationError, resonance_curve, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.results.regime import Regime
 from granchain_core.scene.state import State, rest
@@ -84,7 +84,7 @@ def test_a_chain_that_fails_alone_has_run_what_its_batch_ran(monkeypatch):
     from granchain_core.steady.settling import single_chain as module
 
     def fails(*_):
-        raise NumbersFailed("made to fail", "not-finite")
+        raise ComputationError("made to fail", "not-finite")
 
     monkeypatch.setattr(module, "settle_to_forces", fails)
     chain = scene("sec2").evolve(N=3)
@@ -101,7 +101,7 @@ def test_a_failing_frequency_does_not_lose_the_curve(monkeypatch):
 
     def fails_at_600(one, *words):
         if one.f == 600.0:
-            raise NumbersFailed("made to fail", "not-finite")
+            raise ComputationError("made to fail", "not-finite")
         return true(one, *words)
 
     monkeypatch.setattr(module, "settle_to_forces", fails_at_600)

@@ -16,7 +16,7 @@ import threading
 import time
 
 from app.frames import samples_for
-from granchain_core import BadInput, Cancelled, NumbersFailed, Scene, Stop, scene, settling
+from granchain_core import BadInput, Cancelled, ComputationError, Scene, Stop, scene, settling
 from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
 from granchain_core.precompile.warm import compile_piece
 
@@ -47,7 +47,7 @@ def cancelled_after(chain: Scene, instant: float) -> tuple[float, float] | None:
         try:
             for _ in settling(chain, samples=samples_for(chain), stop=stop):
                 stop.check()
-        except (Cancelled, NumbersFailed, BadInput):
+        except (Cancelled, ComputationError, BadInput):
             pass
         ended[:] = time.perf_counter(), time.thread_time()
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from granchain_core import BadInput, Cancelled, NumbersFailed, Run, Scene, run
+from granchain_core import BadInput, Cancelled, ComputationError, Run, Scene, run
 from granchain_core.errors import OverBudget
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting, method_for
@@ -95,7 +95,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
             _properties(verdict, chosen, stop)
     except Cancelled:  # the adaptive method at its finest takes longer than the run: counted as not judged
         return verdict
-    except NumbersFailed as problem:
+    except ComputationError as problem:
         verdict.sentence = f"the judge failed: {problem}"
         return verdict
     if scipy > _SCIPY_STEP * verdict.steps:
@@ -133,7 +133,7 @@ def _outcome(draw: Draw, chosen: Scene, compute: Callable[..., Run], budget: flo
         outcome, sentence = "refused: over budget", str(refusal)
     except BadInput as refusal:
         outcome, sentence = "refused: BadInput", str(refusal)
-    except NumbersFailed as failure:
+    except ComputationError as failure:
         outcome, sentence = f"failed: {failure.status}", failure.sentence
     except Cancelled:
         outcome, sentence, fault = "hang", f"stopped after {most:g} s", "hang"
@@ -204,7 +204,7 @@ def _second_judge(verdict: Verdict, found: Run, seconds: float) -> None:
     """Compare the run with SciPy's DOP853 in (u, v), restarted at every event, within the error of that."""
     try:
         nearly, true = (oracle.located(found.scene, PERIODS, SAMPLES, rtol, seconds) for rtol in (1e-9, 1e-11))
-    except (oracle.TooLong, NumbersFailed):
+    except (oracle.TooLong, ComputationError):
         return
     known = distance(nearly, true)
     if known < 0.3 * max(verdict.stated, SILENT):
@@ -225,7 +225,7 @@ def _others(verdict: Verdict, chosen: Scene, true: np.ndarray, seconds: float) -
     for name, compute in (("naive RK4", naive), ("LSODA", lambda: oracle.as_a_user(chosen, PERIODS, SAMPLES, seconds))):
         try:
             verdict.others[name] = "returned", distance(compute(), true)
-        except NumbersFailed as failure:
+        except ComputationError as failure:
             verdict.others[name] = "failed, and said so", np.nan
             del failure
         except (Cancelled, oracle.TooLong):

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.integrate import DOP853, solve_ivp
 from scipy.optimize import brentq
 
-from granchain_core import NumbersFailed, Scene
+from granchain_core import ComputationError, Scene
 from granchain_core.scene.state import rest
 
 #: Power of the overlap in the damping force; not taken from granchain_core, which is judged by this.
@@ -89,7 +89,7 @@ class Chain:
 
 
 def located(scene: Scene, periods: int, samples: int, rtol: float, seconds: float) -> np.ndarray:
-    """Displacements (periods·samples + 1, N) [m]. Raises `TooLong`, and `NumbersFailed` where SciPy gives up."""
+    """Displacements (periods·samples + 1, N) [m]. Raises `TooLong`, and `ComputationError` where SciPy gives up."""
     chain, deadline = Chain.of(scene, True), time.perf_counter() + seconds
     times = chain.period * np.arange(periods * samples + 1) / samples
     out = np.zeros((len(times), scene.N))
@@ -106,7 +106,7 @@ def located(scene: Scene, periods: int, samples: int, rtol: float, seconds: floa
                          max_step=chain.period / 16.0)
         one.step()
         if one.status == "failed":
-            raise NumbersFailed(f"SciPy's DOP853 gave up at scaled time {one.t:.6g}.", "solver-gave-up")
+            raise ComputationError(f"SciPy's DOP853 gave up at scaled time {one.t:.6g}.", "solver-gave-up")
         dense = one.dense_output()
         end, contact = _first(chain, dense, one.t_old, one.t, closed)
         while row < len(times) and times[row] <= end:
@@ -141,7 +141,7 @@ def _root(chain: Chain, dense: Any, low: float, high: float, contact: int, sign:
 def as_a_user(scene: Scene, periods: int, samples: int, seconds: float) -> np.ndarray:
     """Displacements [m] from `solve_ivp(..., "LSODA", rtol=accuracy)`, NaN and all, as long as it says success.
 
-    Raises `NumbersFailed` where SciPy says that it failed, and `TooLong`.
+    Raises `ComputationError` where SciPy says that it failed, and `TooLong`.
     """
     chain, deadline = Chain.of(scene, False), time.perf_counter() + seconds
 
@@ -155,5 +155,5 @@ def as_a_user(scene: Scene, periods: int, samples: int, seconds: float) -> np.nd
         warnings.simplefilter("ignore")  # what matters here is what it returns
         found: Any = solve_ivp(slope, (0.0, times[-1]), chain.start, method="LSODA", rtol=scene.accuracy, t_eval=times)
     if not found.success or found.y.shape[1] != len(times):
-        raise NumbersFailed(f"SciPy's LSODA: {found.message}", "solver-gave-up")
+        raise ComputationError(f"SciPy's LSODA: {found.message}", "solver-gave-up")
     return found.y[: scene.N].T

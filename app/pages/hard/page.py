@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from granchain_core import BadInput, NumbersFailed
+from granchain_core import BadInput, ComputationError
 from granchain_core.hard_cases import CASES, Case, Check, Picture
 
 from ...serve.computing.worker_pools import MEASUREMENTS
@@ -96,7 +96,7 @@ class HardCasesPage(Page):
             job.next_tick(self._measured, case.name, next(answers))
             job.next_tick(self._draw, case.name, next(answers))
         except Ended:
-            raise NumbersFailed(_FAULT, "worker-failed") from None
+            raise ComputationError(_FAULT, "worker-failed") from None
 
     # With the document locked
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from granchain_core import BadInput, NumbersFailed, Scene, Settled, State
+from granchain_core import BadInput, ComputationError, Scene, Settled, State
 from granchain_core.execution.stop import Stop
 from granchain_core.kernels.forces.peaks import next_period
 from granchain_core.observe.drift import departure_words, observer_drift
@@ -93,7 +93,7 @@ class ObserverRun:
             self.orbit = periodic_orbit(self.scene, settled.regime.period, settled.state, observer=True,
                                         stop=self.pair.engine.stop)
             self.drifts = observer_drift(self.orbit) is not None
-        except (NumbersFailed, BadInput) as problem:  # the latter where tension is cut
+        except (ComputationError, BadInput) as problem:  # the latter where tension is cut
             self.failure = str(problem)
 
     @property

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from granchain_core import NumbersFailed, Scene, Settled, State
+from granchain_core import ComputationError, Scene, Settled, State
 from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Orbit, periodic_orbit
 from granchain_core.orbits.modes import Mode, mode, orbit_section
@@ -56,22 +56,22 @@ class OrbitAnalysis:
 def analyse(target: OrbitTarget, observer: bool, rank: int, stop: Stop) -> OrbitAnalysis:
     """Multipliers, the mode at place `rank` and the points of one orbit.
 
-    Raises `BadInput` for a scene without multipliers, `NumbersFailed` where Newton's method ends elsewhere, or where a
-    disturbance that is carried along contradicts its multiplier; `Cancelled`.
+    Raises `BadInput` for a scene without multipliers, `ComputationError` where Newton's method ends elsewhere, or where
+    a disturbance that is carried along contradicts its multiplier; `Cancelled`.
     """
     began = time.perf_counter()
     scene = target.scene
     orbit = periodic_orbit(scene, target.period, target.start, observer=observer, stop=stop)
     distance = _apart(orbit.state, target.start)
     if target.followed and distance > _SAME_ORBIT_DISTANCE:
-        raise NumbersFailed(f"Newton's method ended {distance:.0e} away from the settled motion, on another orbit; its "
-                            "multipliers are not those of what the chain does.", "another-orbit")
+        raise ComputationError(f"Newton's method ended {distance:.0e} away from the settled motion, on another orbit; "
+                               "its multipliers are not those of what the chain does.", "another-orbit")
     orbit.find_errors(stop)  # here, because the words about the orbit are made in the event loop
     samples = next((n for n in (PHASES, 24, 12) if n * orbit.period * scene.N <= _MOST_MODE_VALUES), 8)
     found = mode(orbit, min(rank, len(orbit.multipliers) - 1), samples, stop)
     if not found.closure <= _LARGEST_MODE_ERROR * max(1.0, abs(found.multiplier)):
-        raise NumbersFailed("No multipliers are shown: after one orbit a small disturbance differs from their "
-                            f"prediction by {found.closure:.1g} of its size.", "contradicted")
+        raise ComputationError("No multipliers are shown: after one orbit a small disturbance differs from their "
+                               f"prediction by {found.closure:.1g} of its size.", "contradicted")
     section = orbit_section(orbit, PHASES, stop)
     return OrbitAnalysis(target, orbit, found, section, distance, time.perf_counter() - began)
 
@@ -99,7 +99,7 @@ def transient(settled: Settled, section: Section) -> int:
 def search(settled: Settled, section: Section | None, period: int, stop: Stop) -> OrbitTarget:
     """An orbit near the motion shown, which it does not follow.
 
-    Raises what `search_orbit` raises, and `NumbersFailed` where the search ends on the orbit that is followed.
+    Raises what `search_orbit` raises, and `ComputationError` where the search ends on the orbit that is followed.
     """
     scene = settled.run.scene
     strobes = np.zeros((0, 2, scene.N))
@@ -109,6 +109,6 @@ def search(settled: Settled, section: Section | None, period: int, stop: Stop) -
     run = settled.run
     here = [State(u, v) for u, v in zip(run.displacement[:: run.samples], run.velocity[:: run.samples], strict=True)]
     if settled.regime.name == "periodic" and min(_apart(found.state, one) for one in here) < _SAME_ORBIT_DISTANCE:
-        raise NumbersFailed(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
-                            f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
+        raise ComputationError(f"Newton's method ended on the orbit that the chain follows, of {found.period} drive "
+                               f"period{'s' if found.period > 1 else ''}; try another period.", "same-orbit")
     return OrbitTarget(scene, found.period, found.state, followed=False, residuals=found.newton_residuals)

@@ -1,7 +1,7 @@
 """Compiling outside the server process, so that only the session that needs it waits.
 
-Numba holds the interpreter while it compiles, so kernels that are not cached yet are compiled in processes of
-their own; this one then loads them from the cache.
+Numba holds the GIL while it compiles, so kernels that are not cached yet are compiled in processes of their own; this
+one then loads them from the cache.
 """
 
 from __future__ import annotations

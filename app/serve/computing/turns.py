@@ -1,8 +1,8 @@
 """Fair scheduling: of the sessions that wait, the one that has used least time gets the next turn to compute.
 
-Kernels run without the interpreter's lock, so about as many computations as there are cores run at once. A computation
-is new until it has its first result or has taken long; from then on it is a refinement. A new one begins at once and is
-not interrupted, because it is short. A refinement gives up its turn at the first pause after a time slice.
+Kernels run without the GIL, so about as many computations as there are cores run at once. A computation is new until
+it has its first result or has taken long; from then on it is a refinement. A new one begins at once and is not
+interrupted, because it is short. A refinement gives up its turn at the first pause after a time slice.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Result = TypeVar("Result")
 #: A computation without a result is new for this processor time [s]. A first picture of ten beads takes a tenth of it.
 _NEW_CPU_TIME = 0.03
 #: Time for which a turn is kept although others wait [s]. Giving it up at every pause would be too often: passing it to
-#: another thread costs some waits for the interpreter.
+#: another thread costs some waits for the GIL.
 _TIME_SLICE = 0.02
 #: Most new computations whose waits are averaged.
 _MOST_WAITS = 200
@@ -108,7 +108,7 @@ class FairScheduler:
         with self._lock:
             self._waiting.append(mine)
             self._grant()
-        # One waiting thread checks for all: more checks would keep the interpreter from the event loop and pictures.
+        # One waiting thread checks for all: more checks would keep the GIL from the event loop and pictures.
         while not mine.granted.wait(_CHECK_INTERVAL * min(len(self._waiting), _LONGEST_CHECK_MULTIPLE)):
             if stop:
                 self.stopped(stop)

@@ -17,8 +17,8 @@ from .entry import version_for
 def address_of(kernel: Any, *arguments: Any) -> int:
     """Address of a kernel's version for arguments of these types, compiled first where it is not there yet."""
     _, version = version_for(kernel, arguments)
-    return int(version.  # what Numba calls a library is the code of this one version
-               library.get_pointer_to_function(version.fndesc.llvm_func_name))
+    # what Numba calls a library is the code of this one specialization
+    return int(version.library.get_pointer_to_function(version.fndesc.llvm_func_name))
 
 
 @intrinsic

@@ -22,7 +22,7 @@ from typing import Any
 import numba
 from numba.core import event
 
-from .cache_folder import CACHE_FOLDER, FILE_RIGHTS, MARK, say_once
+from .cache_folder import CACHE_FOLDER, FILE_RIGHTS, MARK, warn_once
 from .compile_lock import CompileLock
 from .sources import FOLDER, constants_hash, hash_of_code
 
@@ -47,21 +47,22 @@ _DIGEST = 32
 
 
 class _Files:
-    """The compiled versions of one function, each in its own file, named by a hash of the version's key.
+    """The specializations of one function, each in its own file, named by a hash of Numba's key for it.
 
-    Numba keeps an index of them. Two processes that compile at once overwrite each other's index and lose versions.
-    Here a file says itself which version it holds, and gets its name when it is complete, so no index is needed.
+    Numba keeps an index of them. Two processes that compile at once overwrite each other's index and lose
+    specializations.
+    Here a file says itself which one it holds, and gets its name when it is complete, so no index is needed.
     """
 
     def __init__(self, folder: str, name: str, stamp: Any) -> None:
         self._folder, self._name, self._stamp = Path(folder), name, stamp
 
     def path(self, key: Any) -> Path:
-        """Where the version of this key is, or would be."""
+        """Where the specialization with this key is, or would be."""
         return self._folder / f"{self._name}.{hashlib.sha256(str(key).encode()).hexdigest()[:16]}.nbc"
 
     def save(self, key: Any, data: Any) -> None:
-        """Keep one compiled version."""
+        """Keep one specialization."""
         content = dumps((numba.__version__, self._stamp, key, data))
         path = self.path(key)
         unfinished = path.with_suffix(f".{uuid.uuid4().hex[:16]}.tmp")
@@ -75,20 +76,20 @@ class _Files:
                 unfinished.unlink(missing_ok=True)
 
     def load(self, key: Any) -> Any:
-        """One compiled version, None where there is none that is whole."""
+        """One specialization, None where there is none that is whole."""
         try:
-            found = pickle.loads(whole(self.path(key)))
+            found = pickle.loads(read_verified(self.path(key)))
         except FileNotFoundError:
             return None
         return found[3] if found[:3] == (numba.__version__, self._stamp, key) else None
 
     def flush(self) -> None:
-        """Forget all versions, as `recompile` of a function asks."""
+        """Forget all specializations, as `recompile` of a function asks."""
         for path in self._folder.glob(f"{self._name}.*.nbc"):
             path.unlink(missing_ok=True)
 
 
-def whole(path: Path) -> bytes:
+def read_verified(path: Path) -> bytes:
     """The content of a file. One with a wrong checksum is deleted, and `FileNotFoundError` raised.
 
     It may belong to anything that is marked as compiled, so all marks are deleted with it.
@@ -97,7 +98,7 @@ def whole(path: Path) -> bytes:
     digest, content = stored[:_DIGEST], stored[_DIGEST:]
     if hashlib.sha256(content).digest() == digest:
         return content
-    say_once(f"Damaged kernels in {path.parent.parent} are dropped and compiled again.")
+    warn_once(f"Damaged kernels in {path.parent.parent} are dropped and compiled again.")
     for file in (path, *path.parent.parent.glob(f"{MARK}*")):
         with contextlib.suppress(OSError):  # another process was first, or it stays and is never read
             os.unlink(file)
@@ -145,7 +146,7 @@ class _Placed(_Impl):
 
 
 class KernelCache(_FunctionCache):
-    """The compiled versions of one function on disk; AttributeError where Numba lacks what it needs."""
+    """The specializations of one function on disk; AttributeError where Numba lacks what it needs."""
 
     _impl_class = _Placed
 
@@ -167,7 +168,7 @@ class KernelCache(_FunctionCache):
         self._locks: dict[Path, CompileLock] = {}
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """A compiled version from disk; None where it has to be compiled, and then no other process compiles it.
+        """A specialization from disk; None where it has to be compiled, and then no other process compiles it.
 
         The lock is then kept until `save_overload`, or until the compiler fails (`_ReleaseAfterFailure`).
         """
@@ -186,28 +187,28 @@ class KernelCache(_FunctionCache):
         return found
 
     def save_overload(self, sig: Any, data: Any) -> None:
-        """Write a compiled version; where that is impossible, go on without."""
+        """Write a specialization; where that is impossible, go on without."""
         try:
             super().save_overload(sig, data)
         except OSError as problem:
-            say_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that "
+            warn_once(f"Compiled kernels cannot be kept in {CACHE_FOLDER} ({problem.strerror or problem}); those that "
                      "are not there are compiled for this process only.")
         finally:
             self.release(self._path(sig, data.codegen))
 
     def release(self, path: Path) -> None:
-        """Let other processes compile the version that is stored at `path`."""
+        """Let other processes compile the specialization that is stored at `path`."""
         lock = self._locks.pop(path, None)
         if lock is not None:
             lock.release()
 
     def release_all(self) -> None:
-        """Let other processes compile every version."""
+        """Let other processes compile every specialization."""
         for path in list(self._locks):
             self.release(path)
 
     def _load(self, sig: Any, target_context: Any) -> Any:
-        """A compiled version from disk, or None.
+        """A specialization from disk, or None.
 
         Numba would first load the types and functions that its compiler knows, SciPy's linear algebra among them, which
         takes half a second in every process. Code that is compiled already needs the runtime alone.
@@ -217,12 +218,12 @@ class KernelCache(_FunctionCache):
             with self._guard_against_spurious_io_errors():
                 return self._load_overload(sig, target_context)
         except OSError as problem:
-            say_once(f"Compiled kernels in {CACHE_FOLDER} cannot be read ({problem.strerror or problem}); they are "
+            warn_once(f"Compiled kernels in {CACHE_FOLDER} cannot be read ({problem.strerror or problem}); they are "
                      "compiled for this process only.")
             return None
 
     def _path(self, sig: Any, codegen: Any) -> Path:
-        """Where a version is, or would be."""
+        """Where a specialization is, or would be."""
         found: Path = self._cache_file.path(self._index_key(sig, codegen))
         return found
 
@@ -230,14 +231,15 @@ class KernelCache(_FunctionCache):
 class _ReleaseAfterFailure(event.Listener):
     """Releases the locks of a function that the compiler has given up: a mistake in its types, or an interruption.
 
-    Nothing is saved then. One thread compiles at a time, so these are the locks of the version that failed.
+    Nothing is saved then. One thread compiles at a time, so these are the locks of the specialization that
+    failed.
     """
 
     def on_start(self, event: Any) -> None:
         """The lock is held already."""
 
     def on_end(self, event: Any) -> None:
-        """A version that is compiled is among the function's versions by now, and is saved next."""
+        """What is compiled is among the function's `overloads` by now, and is saved next."""
         what = event.data or {}  # an event that names no function concerns none of ours
         function: Any = what.get("dispatcher")
         kept = getattr(function, "_cache", None)
@@ -249,7 +251,7 @@ event.register("numba:compile", _ReleaseAfterFailure())
 
 
 def keep_on_disk(compiled: Any) -> None:
-    """Let a compiled function find its versions on disk and keep them there: `cache=True` with `KernelCache`.
+    """Let a compiled function find its specializations on disk and keep them there: `cache=True` with `KernelCache`.
 
     Where this version of Numba lacks something that `KernelCache` needs, say so once and do without.
     """
@@ -261,5 +263,5 @@ def keep_on_disk(compiled: Any) -> None:
         _ = compiled._cache
         compiled._cache = KernelCache(compiled.py_func)
     except AttributeError as missing:
-        say_once(f"Compiled kernels cannot be kept with Numba {numba.__version__} ({missing}); they are compiled for "
+        warn_once(f"Compiled kernels cannot be kept with Numba {numba.__version__} ({missing}); they are compiled for "
                  "this process only.")

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numba
 
-from .sources import sources_hash, wording_hash
+from .sources import source_bytes_hash, sources_hash
 
 #: Where messages for the user go: to stderr, unless the program keeps a log.
 _LOG = logging.getLogger("granchain")
@@ -29,6 +29,8 @@ _MONTH = 30 * 86400.0
 #: Rights of the folder of kernels and of its files, less those that the umask takes away: whatever it leaves to the
 #: group, only this user writes.
 FOLDER_RIGHTS, FILE_RIGHTS = 0o755, 0o644
+#: Rights of others than the owner to write.
+_OTHERS = stat.S_IWGRP | stat.S_IWOTH
 #: Names of the folders of all versions.
 _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
 
@@ -36,24 +38,28 @@ _VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
 def cache_folder() -> Path | None:
     """The folder of the compiled kernels; None, with one message, where nothing can be kept.
 
-    It is in $GRANCHAIN_CACHE, else in the user's cache, if only this user or the administrator can write to it. Where
-    it cannot be written, kernels that are there already are used; else a folder in the temporary directory is, if it is
-    this user's alone.
+    It is in $GRANCHAIN_CACHE, else in the user's cache, if only this user or the administrator can write to it, and
+    nobody else can put another folder in its place. Where it cannot be written, kernels that are there already are
+    used; else a folder in the temporary directory is, if it is this user's alone.
     """
     base, problem = _chosen_base(), "there is no home folder"
     if base is not None:
         name = _version_in(base)
         try:
-            (base / name).mkdir(mode=FOLDER_RIGHTS, parents=True, exist_ok=True)
+            base.mkdir(mode=FOLDER_RIGHTS, parents=True, exist_ok=True)
+            if not os.environ.get("GRANCHAIN_CACHE"):
+                _close_to_others(base)
+            (base / name).mkdir(mode=FOLDER_RIGHTS, exist_ok=True)
             with tempfile.TemporaryFile(dir=base / name):
                 pass
-            if _is_trusted(base / name):
+            open_to_others = _open_to_others(base, base / name)
+            if open_to_others is None:
                 _note_use(base, base / name)
                 return base / name
-            problem = f"others may write to {base / name}"
+            problem = f"others may write to {open_to_others}"
         except OSError as denied:
             problem = f"{base}: {denied.strerror or denied}"
-            if _holds_kernels(base / name) and _is_trusted(base / name):
+            if _holds_kernels(base / name) and _open_to_others(base, base / name) is None:
                 return base / name
     return _temporary_folder(problem)
 
@@ -71,7 +77,7 @@ def _version_in(base: Path) -> str:
 @functools.cache
 def _wording_file() -> str:
     """Name of the empty file by which a folder knows a wording of its sources."""
-    return f"sources-{wording_hash()}"
+    return f"sources-{source_bytes_hash()}"
 
 
 def _chosen_base() -> Path | None:
@@ -91,10 +97,26 @@ def _holds_kernels(folder: Path) -> bool:
         return False
 
 
-def _is_trusted(folder: Path) -> bool:
-    """Whether only this user or the administrator can have written a folder: its files are unpickled and run."""
-    found, others = folder.stat(), stat.S_IWGRP | stat.S_IWOTH
-    return not hasattr(os, "getuid") or (found.st_uid in (0, os.getuid()) and not found.st_mode & others)
+def _close_to_others(base: Path) -> None:
+    """Take the right to write from others: earlier versions left it to them in the user's cache where the umask did."""
+    found = base.stat()
+    if hasattr(os, "getuid") and found.st_uid == os.getuid() and found.st_mode & _OTHERS:
+        base.chmod(stat.S_IMODE(found.st_mode) & ~_OTHERS)
+
+
+def _open_to_others(base: Path, folder: Path) -> Path | None:
+    """The folder of kernels, or the one it is in, if others than this user and the administrator may write there.
+
+    The files are unpickled and run. Whoever may write to `base` could put another folder in the place of the one that
+    was looked at, unless the sticky bit leaves every folder in it to its owner.
+    """
+    if not hasattr(os, "getuid"):
+        return None
+    for one, sticky in ((base, stat.S_ISVTX), (folder, 0)):
+        found = one.stat()
+        if found.st_uid not in (0, os.getuid()) or (found.st_mode & _OTHERS and not found.st_mode & sticky):
+            return one
+    return None
 
 
 def _temporary_folder(problem: str) -> Path | None:
@@ -112,7 +134,7 @@ def _temporary_folder(problem: str) -> Path | None:
             problem = f"{problem}, and {folder} is not a folder of ours with mode 700"
         except OSError as denied:
             problem = f"{problem}, and {base}: {denied.strerror or denied}"
-    say_once(f"Compiled kernels cannot be kept ({problem}); they are compiled for this process only.")
+    warn_once(f"Compiled kernels cannot be kept ({problem}); they are compiled for this process only.")
     return None
 
 
@@ -137,8 +159,8 @@ def _note_use(base: Path, used: Path) -> None:
 
 
 @functools.cache
-def say_once(sentence: str) -> None:
-    """Tell the user something once in the life of this process."""
+def warn_once(sentence: str) -> None:
+    """Warn the user of something once in the life of this process."""
     _LOG.warning(sentence)
 
 

@@ -1,48 +1,65 @@
 """Calls of a kernel without Numba's dispatcher.
 
-At each call the dispatcher reads the names of all fields of every named tuple, to choose the compiled version: 20 to
-40 µs for the tuples that kernels take here, with the interpreter's lock held. Where a kernel is called often, the
-version is chosen once.
+At each call the dispatcher reads the names of all fields of every named tuple, to choose the specialization: 20 to
+40 µs for the tuples that kernels take here, with the GIL held. Where a kernel is called often, the specialization is
+chosen once.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Hashable
 from typing import Any
 
 import numpy as np
 
-#: Whether every call compares the types of its arguments with those of the version it uses: tests set it.
-CHECKED = False
+#: Whether every call compares the types of its arguments with those of the specialization it uses.
+CHECKED = os.environ.get("GRANCHAIN_CHECK_TYPES", "0") not in ("", "0")
 
 
 def entry(kernel: Any, *arguments: Any) -> Callable[..., Any]:
-    """The compiled version of a kernel for arguments of these types, compiled first where it is not there yet.
+    """The specialization of a kernel for arguments of these types, compiled first where it is not there yet.
 
-    It does not check what it is given: later arguments must have the same types, layouts of arrays included.
+    It does not check what it is given unless `CHECKED`: later arguments must have the same types, layouts of arrays
+    included.
     """
-    types, version = version_for(kernel, arguments)
-    compiled: Callable[..., Any] = version.entry_point
+    types, specialization = version_for(kernel, arguments)
+    compiled: Callable[..., Any] = specialization.entry_point
     if not CHECKED:
         return compiled
 
     def checked(*later: Any) -> Any:
-        if (seen := _types(kernel, later)) != types:
-            raise TypeError(f"{kernel.__name__} is called with {seen}, but this is its version for {types}.")
+        _check_types(kernel, types, later)
         return compiled(*later)
 
     return checked
 
 
+def type_guard(kernel: Any, *arguments: Any) -> Callable[..., None]:
+    """What raises `TypeError` for arguments of other types than these; it does nothing unless `CHECKED`.
+
+    For a kernel that compiled code calls by its address.
+    """
+    if not CHECKED:
+        return lambda *later: None
+    types = _types(kernel, arguments)
+    return lambda *later: _check_types(kernel, types, later)
+
+
+def _check_types(kernel: Any, types: tuple[Any, ...], arguments: tuple[Any, ...]) -> None:
+    if (seen := _types(kernel, arguments)) != types:
+        raise TypeError(f"{kernel.__name__} is called with {seen}, but this is its specialization for {types}.")
+
+
 class Entries:
-    """The versions of one kernel, by keys of the caller's: arguments with equal keys must have equal types."""
+    """The specializations of one kernel, by keys of the caller's: arguments with equal keys must have equal types."""
 
     def __init__(self, kernel: Any) -> None:
         self._kernel = kernel
         self._known: dict[Hashable, Callable[..., Any]] = {}
 
     def __call__(self, key: Hashable, *arguments: Any) -> Any:
-        """Call the kernel's version for `key`."""
+        """Call the kernel's specialization for `key`."""
         found = self._known.get((key, CHECKED))
         if found is None:
             found = self._known[key, CHECKED] = entry(self._kernel, *arguments)
@@ -59,7 +76,7 @@ def types_of(value: Any) -> Any:
 
 
 def version_for(kernel: Any, arguments: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
-    """Types of these arguments and a kernel's version for them, compiled first where it is not there yet."""
+    """Types of these arguments and a kernel's specialization for them, compiled first where it is not there yet."""
     types = _types(kernel, arguments)
     if types not in kernel.overloads:
         kernel.compile(types)

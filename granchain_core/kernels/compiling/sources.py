@@ -19,7 +19,7 @@ import numba
 from ..batch_size import BATCH_SIZE, processor
 
 #: Sources that decide where compiled code is stored and how it is called but do not change it.
-_KEEPERS = tuple(f"compiling/{name}.py" for name in ("cache", "cache_folder", "compile_lock", "entry", "sources"))
+_NOT_IN_CODE = tuple(f"compiling/{name}.py" for name in ("cache", "cache_folder", "compile_lock", "entry", "sources"))
 #: Settings of Numba (environment variables with NUMBA_ before them) that change machine code and are not among the
 #: names of its own cache: optimisation level, bounds checks, debug information, vectorisers, AVX.
 _SETTINGS = ("OPT", "BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX")
@@ -30,13 +30,13 @@ FOLDER = Path(__file__).parents[1]
 def sources_hash(folder: Path = FOLDER) -> str:
     """Hash of everything that determines the kernels' machine code.
 
-    That is their parsed sources except `_KEEPERS`, the versions of Numba and llvmlite, the processor, the batch's size,
-    and those settings of Numba that change the code (`_SETTINGS`).
+    That is their parsed sources except `_NOT_IN_CODE`, the versions of Numba and llvmlite, the processor, the batch's
+    size, and those settings of Numba that change the code (`_SETTINGS`).
     """
     return _hash_of_all(folder, hash_of_code)
 
 
-def wording_hash(folder: Path = FOLDER) -> str:
+def source_bytes_hash(folder: Path = FOLDER) -> str:
     """Hash of the same, with the bytes of the sources in place of what they parse to."""
     return _hash_of_all(folder, _hash_of_bytes)
 
@@ -47,7 +47,7 @@ def _hash_of_all(folder: Path, hash_of: Callable[[Path], str]) -> str:
     digest = hashlib.sha256(f"{compiler} {processor()} {BATCH_SIZE}".encode())
     for path in sorted(folder.rglob("*.py")):
         name = path.relative_to(folder).as_posix()
-        if name not in _KEEPERS:
+        if name not in _NOT_IN_CODE:
             digest.update(f"{name} {hash_of(path)}\n".encode())
     return digest.hexdigest()[:12]
 

@@ -183,7 +183,7 @@ def begin_branch(scene: Scene, knob: str, start: float, end: float, period: int 
 
     The seed is the orbit of `period` drive periods at knob = `start` near `start_state`, or near the steady state from
     rest. With `both` it is the orbit at the scene's own value of the knob, and the branch goes both ways, to `start`
-    and to `end`. With `amplitude` A0 follows f. Raises `BadInput`, `NumbersFailed` where there is no such orbit, and
+    and to `end`. With `amplitude` A0 follows f. Raises `BadInput`, `ComputationError` where there is no such orbit, and
     `Cancelled`.
     """
     axis = KnobAxis.of(scene, knob, start, end, amplitude)
@@ -252,7 +252,7 @@ def continue_branch(scene: Scene, knob: str, start: float, end: float, period: i
     ------
     BadInput
         The knob cannot be followed, or a value is out of range.
-    NumbersFailed
+    ComputationError
         There is no orbit to begin with.
     Cancelled
         `stop` was set.

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...errors import NumbersFailed
+from ...errors import ComputationError
 from .between import Between
 from .normal_forms import (
     AMPLITUDES,
@@ -77,7 +77,7 @@ def _map_near(kind: str, between: Between, point: BranchPoint, tolerance: float)
     def product(x: np.ndarray, columns: np.ndarray) -> np.ndarray:
         try:
             flow = between.equations.reused_map(point.knob, tolerance)(x, directions=columns)
-        except NumbersFailed:
+        except ComputationError:
             raise NotSmooth(NO_MAP) from None
         if not same_sequence(kind, flow.contact_events[:, 0], between.contacts(point)):
             raise NotSmooth(SEQUENCE_NEAR)

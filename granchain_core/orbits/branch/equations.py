@@ -106,8 +106,8 @@ class BranchEquations:
               farthest: float = np.inf) -> Solved:
         """The branch's point in the plane through z across `normal`, at most `farthest` from z.
 
-        `slope` is P_p nearby, where it is known. Raises `NumbersFailed` with the residuals where Newton's method does
-        not converge.
+        `slope` is P_p nearby, where it is known. Raises `ComputationError` with the residuals where Newton's method
+        does not converge.
         """
         newton = Newton(self, z, normal, farthest)
         flow = newton.solve_with_derivatives(slope)

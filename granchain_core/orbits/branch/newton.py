@@ -18,7 +18,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ...errors import NumbersFailed
+from ...errors import ComputationError
 from ...steady.returns import relative_change
 from ..stroboscopic_map import TOLERANCE, Flow, StroboscopicMap
 
@@ -192,7 +192,7 @@ class Newton:
             if not found and not self.residuals[-1] < first:
                 self.z, self._quick_end_here = self.start, None
             return found
-        except NumbersFailed:
+        except ComputationError:
             self.z, self._quick_end_here = self.start, None
             return False
 
@@ -218,8 +218,8 @@ class Newton:
         moved = self._step(end)
         far = float(np.linalg.norm(self.z - self.start))
         if not far <= self.farthest:
-            raise NumbersFailed(f"Newton's method went {far:.1e} away after residuals {formatted(self.residuals)}.",
-                                "no-convergence")
+            raise ComputationError(f"Newton's method went {far:.1e} away after residuals {formatted(self.residuals)}.",
+                                   "no-convergence")
         return moved
 
     def _step(self, end: np.ndarray) -> np.ndarray:
@@ -258,8 +258,8 @@ class Newton:
         self._record(flow.end)
         return flow
 
-    def _failure(self) -> NumbersFailed:
-        return NumbersFailed(f"Newton's residuals were {formatted(self.residuals)}.", "no-convergence")
+    def _failure(self) -> ComputationError:
+        return ComputationError(f"Newton's residuals were {formatted(self.residuals)}.", "no-convergence")
 
 
 def formatted(residuals: list[float] | tuple[float, ...]) -> str:

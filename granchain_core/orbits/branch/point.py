@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...errors import NumbersFailed
+from ...errors import ComputationError
 from ...integrate import Engine, adaptive_setting
 from ...integrate.scaling import scale_chain
 from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
@@ -161,7 +161,7 @@ def _counts(contacts: int, record: OrbitRecord, contact_events: np.ndarray) -> n
     numbers = contact_events[:, 0].astype(int)
     closings = np.bincount(numbers[numbers > 0] - 1, minlength=contacts)
     if not np.array_equal(closings, np.bincount(-numbers[numbers < 0] - 1, minlength=contacts)):
-        raise NumbersFailed("A contact closed more often than it opened along a closed orbit.", "contacts")
+        raise ComputationError("A contact closed more often than it opened along a closed orbit.", "contacts")
     for contact in np.flatnonzero(closings == 0):
         overlaps = record.turns[record.turns[:, CONTACT] == contact, OVERLAP]
         if len(overlaps) and overlaps.max() > 0.0:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import NumbersFailed
+from ...errors import ComputationError
 from .axis import KnobAxis
 from .between import Between
 from .normal_forms import NOT_DECIDED, NormalForm
@@ -98,7 +98,7 @@ def special_between(between: Between) -> list[SpecialPoint]:
         brackets = [(between.made_exact(one), between.made_exact(other)) for one, other in rough]
         kept = all(rough_end.signature == end.signature for pair, exact in zip(rough, brackets, strict=True)
                    for rough_end, end in zip(pair, exact, strict=True))
-    except NumbersFailed:
+    except ComputationError:
         kept = False
     if not kept:
         brackets = _brackets(axis, a, b, between, careful=True)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...errors import BadInput, NumbersFailed
+from ...errors import BadInput, ComputationError
 from ...execution.stop import Stop
 from .branch import Branch
 from .equations import BranchEquations, Solved
@@ -27,7 +27,7 @@ _LEAST_DOUBLING = 0.5
 def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None = None) -> Branch:
     """A branch of twice the period, begun near the period doubling `special` of `branch` and leading away from it.
 
-    Raises `BadInput` for another kind of point and `NumbersFailed` where no doubled orbit is found.
+    Raises `BadInput` for another kind of point and `ComputationError` where no doubled orbit is found.
     """
     if special.kind != "period_doubling":
         raise BadInput(f"A doubled branch begins at a period_doubling, not at a {special.kind}.")
@@ -43,7 +43,7 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
     for distance in _DISTANCES:
         try:
             solved = twice.solve(z + distance * direction, direction, farthest=_LARGEST_KNOB_CHANGE)
-        except NumbersFailed as problem:
+        except ComputationError as problem:
             tried.append(problem.sentence)
             continue
         x = twice.state(solved.z)
@@ -51,8 +51,8 @@ def switch_to_doubled(branch: Branch, special: SpecialPoint, stop: Stop | None =
         if np.linalg.norm(halves) / once.weight > _LEAST_DOUBLING * 2.0 * distance:
             return Branch(branch.axis, 2 * branch.period, (_arm(twice, solved, direction),))
         tried.append("the orbit found repeats after half of its period.")
-    raise NumbersFailed(f"No orbit of {2 * branch.period} drive periods was found beside the period doubling at "
-                        f"{branch.axis.text(special.knob)}: {tried[-1]}", "no-convergence")
+    raise ComputationError(f"No orbit of {2 * branch.period} drive periods was found beside the period doubling at "
+                           f"{branch.axis.text(special.knob)}: {tried[-1]}", "no-convergence")
 
 
 def doubling_direction(equations: BranchEquations, x: np.ndarray, value: float) -> np.ndarray:

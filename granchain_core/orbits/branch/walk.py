@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...errors import Cancelled, NumbersFailed
+from ...errors import Cancelled, ComputationError
 from ...execution.cores import usable_cores
 from .between import Between
 from .criticality import with_normal_forms
@@ -93,7 +93,7 @@ class Walk(Iterator[BranchPoint]):
                 one = self._ahead.popleft()
                 try:
                     point, special = one.found.result()
-                except (NumbersFailed, np.linalg.LinAlgError) as problem:
+                except (ComputationError, np.linalg.LinAlgError) as problem:
                     self._go_back(0.5 * one.tried, problem)
                     continue
             except Cancelled:
@@ -124,7 +124,7 @@ class Walk(Iterator[BranchPoint]):
         last, tried = Ending(self._last_two[-1], self._near_last), self._step
         try:
             ending, contact_events = self._next_orbit(last)
-        except (NumbersFailed, np.linalg.LinAlgError) as problem:
+        except (ComputationError, np.linalg.LinAlgError) as problem:
             self._step, self._failure = 0.5 * tried, problem
             return
         before = self._ahead[-1].found if self._ahead else last.point
@@ -152,7 +152,7 @@ class Walk(Iterator[BranchPoint]):
         return self._known[1]
 
     def _next_orbit(self, last: Ending) -> tuple[Ending, np.ndarray | None]:
-        """The next orbit, and whether the branch ends there; `NumbersFailed` where the step is too long.
+        """The next orbit, and whether the branch ends there; `ComputationError` where the step is too long.
 
         With it come its contact events, where its forces and contacts are still to be found. Sets the next step.
         """
@@ -163,8 +163,8 @@ class Walk(Iterator[BranchPoint]):
         tangent = equations.tangent(solved, here.tangent)
         cosine = float(tangent @ here.tangent)
         if cosine < LEAST_COSINE:
-            raise NumbersFailed(f"the branch turns by {np.degrees(np.arccos(np.clip(cosine, -1, 1))):.0f}° in one step",
-                                "no-convergence")
+            turn = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
+            raise ComputationError(f"the branch turns by {turn:.0f}° in one step", "no-convergence")
         chord = float(np.linalg.norm(solved.z - self._z(here)))
         beyond = Ending(unrecorded(equations, solved, tangent, here.arclength + chord), solved.near)
         may_close = len(self.arm.points) + len(self._ahead) >= _POINTS_BEFORE_CLOSING
@@ -209,13 +209,13 @@ class Walk(Iterator[BranchPoint]):
                       f"{formatted(last.residuals)}")
 
     def _refuse_shorter(self, solved: Solved) -> None:
-        """Raise `NumbersFailed` where a step fell onto another branch, whose orbits have a part of the period."""
+        """Raise `ComputationError` where a step fell onto another branch, whose orbits have a part of the period."""
         n = self.equations.period
         x, value = self.equations.state(solved.z), self.equations.value(solved.z)
         least = self.equations.least_period(x, value, _SHORTER_PERIOD_DISTANCE)
         if least < n:
-            raise NumbersFailed(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
-                                "no-convergence")
+            raise ComputationError(f"the step leads to an orbit that repeats after {least} of {n} drive periods",
+                                   "no-convergence")
 
     def _z(self, point: BranchPoint) -> np.ndarray:
         return self.equations.point(point.x, point.knob)

@@ -1,6 +1,6 @@
 """Independent work on all cores: threads take items from one iterator and yield results.
 
-Kernels run without the interpreter's lock, except brief ones, so threads are enough, and a result needs no copy.
+Kernels run without the GIL, except brief ones, so threads are enough, and a result needs no copy.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ...execution.cores import usable_cores
 from ...execution.stop import Stop
 
 #: Time between two looks at what the threads have found, and whether it is still wanted [s]. Waking up for each result
-#: would take the interpreter's lock from the threads hundreds of times a second.
+#: would take the GIL from the threads hundreds of times a second.
 _INTERVAL = 0.005
 
 Item = TypeVar("Item")

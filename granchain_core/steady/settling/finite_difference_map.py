@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import NumbersFailed
+from ...errors import ComputationError
 from ...execution.stop import Stop
 from ...integrate import Engine, fixed_step_setting, following_setting
 from ...scene import Scene
@@ -104,7 +104,7 @@ def fixed_point(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPo
     """
     try:
         return _newton(stroboscopic_map, x)
-    except (NumbersFailed, np.linalg.LinAlgError):  # raised where a trial state cannot be followed, or |μ| = 1
+    except (ComputationError, np.linalg.LinAlgError):  # raised where a trial state cannot be followed, or |μ| = 1
         return None
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...errors import NumbersFailed
+from ...errors import ComputationError
 from ...execution.stop import Stop
 from ...kernels.strobes.periodicity import LONGEST_PERIOD
 from ...scene import Scene
@@ -118,7 +118,7 @@ class NearbyOrbit:
         """Largest lengths of an offset from the orbit, now and after `orbits` orbits; infinite if the map fails."""
         try:
             passed = self.stroboscopic_map.passed(self.point.x + offset, _COMPARED_ORBITS, orbits)
-        except NumbersFailed:
+        except ComputationError:
             return 0.0, np.inf
         now, later = (float(_lengths(rows, states - self.point.x).max()) for states in passed)
         return now, later

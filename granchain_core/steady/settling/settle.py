@@ -47,7 +47,7 @@ def settling(scene: Scene, start: State | None = None, samples: int = PICTURE_SA
     ------
     BadInput
         `samples` is not a whole number from 1.
-    NumbersFailed
+    ComputationError
         The motion is no longer finite.
     Cancelled
         `stop` was set.
@@ -102,7 +102,7 @@ def settle(scene: Scene, start: State | None = None, samples: int = PICTURE_SAMP
     ------
     BadInput
         `samples` is not a whole number from 1.
-    NumbersFailed
+    ComputationError
         The motion is no longer finite.
     Cancelled
         `stop` was set.

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...errors import NumbersFailed
+from ...errors import ComputationError
 from ...execution.stop import Stop
 from ...integrate import Engine
 from ...results.regime import Regime
@@ -51,7 +51,7 @@ def settle_or_failure(scene: Scene, start: State | None, stop: Stop, periods_run
     """A steady state, or one that says why there is none: one failed frequency does not lose a curve."""
     try:
         return settle_to_forces(scene, start, stop, periods_run)
-    except NumbersFailed as failed:
+    except ComputationError as failed:
         resting = State(np.zeros(scene.N), np.zeros(scene.N))
         return SteadyState(scene, np.full(3, np.nan), Regime.unsettled(periods_run), None, start or resting,
                            failed.sentence, failed.status)

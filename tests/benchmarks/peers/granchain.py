@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from granchain_core import Scene, scene
-from granchain_core.errors import NumbersFailed
+from granchain_core.errors import ComputationError
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch
@@ -56,7 +56,7 @@ def _recording(setting: Setting) -> Callable[[], Solved]:
         engine.counts.array[:] = 0
         try:
             samples = engine.record(problem.PERIODS * problem.SAMPLES)
-        except NumbersFailed:
+        except ComputationError:
             return Solved(np.full((problem.PERIODS * problem.SAMPLES + 1, 2 * problem.BEADS), np.nan), None)
         return Solved(np.hstack([samples.displacement, samples.velocity]), engine.counts.rhs)
 

@@ -107,7 +107,7 @@ def test_without_any_of_numbas_private_names_nothing_is_kept(name: str, monkeypa
         return 2 * x
 
     before = object.__getattribute__(twice, "_cache")
-    cache_folder.say_once.cache_clear()
+    cache_folder.warn_once.cache_clear()
     if name:
         take_away(name, monkeypatch)
     cache.keep_on_disk(twice)
@@ -143,7 +143,7 @@ def test_a_damaged_kernel_is_dropped_said_in_one_line_and_compiled_again(damage,
     answer, messages = used(kept)
     assert answer["right"] and answer["loaded"] == 0
     assert len(messages) == 1 and "Damaged kernels" in messages[0] and "compiled again" in messages[0]
-    assert cache.whole(file) == file.read_bytes()[32:] and len(file.read_bytes()) > len(whole) // 2
+    assert cache.read_verified(file) == file.read_bytes()[32:] and len(file.read_bytes()) > len(whole) // 2
     assert not mark.exists(), "a server would compile in its own process what is marked as compiled"
 
 
@@ -164,13 +164,13 @@ def test_flipped_bits_throughout_the_file_are_seen(filled: Path, tmp_path: Path)
     """The checksum is compared before anything is unpickled."""
     for path in shutil.copytree(filled, tmp_path / "cache").rglob("*.nbc"):
         content = path.read_bytes()
-        assert cache.whole(path) == content[32:]
+        assert cache.read_verified(path) == content[32:]
         for bit in range(0, 8 * len(content), max(1, len(content) // 50)):
             changed = bytearray(content)
             changed[bit // 8] ^= 1 << bit % 8
             path.write_bytes(changed)
             with pytest.raises(FileNotFoundError):
-                cache.whole(path)
+                cache.read_verified(path)
             assert not path.exists()
 
 
@@ -263,7 +263,7 @@ def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denie
     monkeypatch.setenv("GRANCHAIN_CACHE", str(denied))
     monkeypatch.setattr(tempfile, "tempdir", None)  # Python remembers where it was
     said: list[str] = []
-    monkeypatch.setattr(cache_folder, "say_once", said.append)
+    monkeypatch.setattr(cache_folder, "warn_once", said.append)
     assert cache_folder.cache_folder() is None
     assert len(said) == 1 and "not a folder of ours with mode 700" in said[0]
     if planted == "open to all":
@@ -303,6 +303,53 @@ def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
     monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
     chosen = cache_folder.cache_folder()
     assert (chosen == folder) is (whose == "ours")
+
+
+@pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
+@pytest.mark.parametrize(("rights", "safe"), [(0o755, True), (0o777, False), (0o775, False), (0o1777, True), (0o1775, True)],
+                         ids=oct)
+def test_kernels_are_run_if_nobody_else_can_put_another_folder_in_their_place(
+        rights: int, safe: bool, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever may write to the folder around them could rename them after they were looked at."""
+    def denied(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    base = tmp_path / "base"
+    folder = base / f"kernels-{cache_folder.sources_hash()}"
+    folder.mkdir(parents=True)
+    (folder / "one.nbc").write_bytes(b"")
+    folder.chmod(0o755)
+    base.chmod(rights)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    chosen = cache_folder.cache_folder()
+    assert (chosen == folder) is safe
+    assert safe or not writable or str(chosen) == f"others may write to {base}"
+
+
+def test_the_users_own_cache_is_closed_to_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is granchain's alone, and earlier versions made it with the rights that a umask of 002 leaves to the group."""
+    base = tmp_path / "granchain"
+    base.mkdir()
+    base.chmod(0o775)
+    monkeypatch.delenv("GRANCHAIN_CACHE", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    chosen = cache_folder.cache_folder()
+    assert chosen is not None and chosen.parent == base and base.stat().st_mode & 0o777 == 0o755
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")
+def test_kernels_in_a_folder_of_another_owner_are_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The owner may rename what is in it whatever its rights are."""
+    base = tmp_path / "base"
+    base.mkdir()
+    os.chown(base, 12345, 12345)
+    base.chmod(0o1755)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    assert str(cache_folder.cache_folder()) == f"others may write to {base}"
 
 
 def test_without_the_compiler_nothing_is_imported(tmp_path: Path) -> None:

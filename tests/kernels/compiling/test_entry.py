@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
 
 from granchain_core import continue_branch, resonance_curve, scene
+from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine
+from granchain_core.integrate.batch import Batch
 from granchain_core.integrate.methods import FIXED_STEP, METHODS, Setting
 from granchain_core.kernels.compiling import entry
 from granchain_core.kernels.samples import first_not_finite
@@ -66,6 +71,27 @@ def test_an_argument_of_another_type_is_refused() -> None:
     assert compiled(np.array([0.0, 0.0, np.nan, *[0.0] * 5]), 4) == 2
     with pytest.raises(TypeError, match="first_not_finite is called with"):
         compiled(np.zeros((8, 2))[:, 0], 4)
+
+
+def test_a_batch_compares_the_types_of_the_kernel_that_it_calls_by_address() -> None:
+    shown = scene("sec2")
+    batch = Batch(shown, Stop())
+    batch.put(0, batch.example, np.zeros(2 * (shown.N + 2)), 1, return_at=1)
+    assert batch.run() == (0, True)
+    batch._run = lambda *arguments: (0, 0)  # alone it would notice the type as well
+    batch.state = batch.state._replace(limit=batch.state.limit.astype(np.float32))
+    with pytest.raises(TypeError, match="check_member is called with"):
+        batch.run()
+
+
+@pytest.mark.parametrize(("value", "checked"), [("1", True), ("0", False), ("", False), (None, False)])
+def test_a_variable_of_the_environment_switches_it_on(value: str | None, checked: bool) -> None:
+    environment = {name: word for name, word in os.environ.items() if name != "GRANCHAIN_CHECK_TYPES"}
+    if value is not None:
+        environment["GRANCHAIN_CHECK_TYPES"] = value
+    done = subprocess.run([sys.executable, "-c", "from granchain_core.kernels.compiling import entry; print(entry.CHECKED)"],
+                          capture_output=True, text=True, env=environment, timeout=300, check=True)
+    assert done.stdout.strip() == str(checked)
 
 
 def test_what_makes_a_type_is_in_the_key() -> None:

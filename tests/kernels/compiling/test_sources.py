@@ -63,19 +63,19 @@ def test_another_compiler_has_other_code(tmp_path: Path, monkeypatch: pytest.Mon
 
 @pytest.mark.parametrize("level", [0, 1, "max"])
 def test_another_optimisation_level_has_other_code(level: int | str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    before = hashed(tmp_path, SOURCE), sources.wording_hash(tmp_path)
+    before = hashed(tmp_path, SOURCE), sources.source_bytes_hash(tmp_path)
     usual = sources.numba.config.OPT
     assert level != usual
     monkeypatch.setattr(sources.numba.config, "OPT", type(usual)(level))
-    assert sources.sources_hash(tmp_path) != before[0] and sources.wording_hash(tmp_path) != before[1]
+    assert sources.sources_hash(tmp_path) != before[0] and sources.source_bytes_hash(tmp_path) != before[1]
 
 
 @pytest.mark.parametrize("name", ["BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX"])
 def test_a_setting_that_changes_the_code_has_other_code(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With a cache filled without bounds checks, NUMBA_BOUNDSCHECK=1 would find no error."""
-    before = hashed(tmp_path, SOURCE), sources.wording_hash(tmp_path)
+    before = hashed(tmp_path, SOURCE), sources.source_bytes_hash(tmp_path)
     monkeypatch.setattr(sources.numba.config, name, not getattr(sources.numba.config, name))
-    assert sources.sources_hash(tmp_path) != before[0] and sources.wording_hash(tmp_path) != before[1]
+    assert sources.sources_hash(tmp_path) != before[0] and sources.source_bytes_hash(tmp_path) != before[1]
 
 
 def made(body: str):

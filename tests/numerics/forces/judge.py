@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from granchain_core import NumbersFailed, Scene, resonance_curve, run
+from granchain_core import ComputationError, Scene, resonance_curve, run
 from granchain_core.errors import OverBudget
 from granchain_core.parameter_map.cells import ERRORS, cell_of
 from granchain_core.parameter_map.compute import iter_diagram
@@ -94,7 +94,7 @@ def judge_run(drawn: Draw, most_steps: int = MOST_STEPS) -> Verdict | str:
     chosen = drawn.scene
     try:
         found = run(chosen, drawn.periods, drawn.record, 16, budget=BUDGET)
-    except (NumbersFailed, OverBudget):
+    except (ComputationError, OverBudget):
         return "refused or failed, and said so"
     try:
         true, nearly = (located(chosen, drawn.periods, drawn.record, 1, tolerance, most_steps=most_steps).maxima for tolerance in (_TIGHT, _LOOSE))
