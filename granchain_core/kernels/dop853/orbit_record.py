@@ -18,7 +18,7 @@ from ..status import CANCELLED, DONE, FULL, NOT_FINITE
 from .bracket import value_at
 from .force_search import update_forces_in_step
 from .run import located_step
-from .step import PERIOD_END, Overlap, Step, evaluate, new_scale, prepare_dense, turning_point
+from .step import GOAL_TOLERANCE, Overlap, Step, evaluate, new_scale, prepare_dense, turning_point
 from .tableau import STAGES
 
 
@@ -76,7 +76,7 @@ def record_orbit(method, trajectory, periods, record, counts, stop):
             copy(workspace.end, y)
             new_scale(y, workspace, bodies)
             copy(workspace.k[STAGES], workspace.k[0])
-            t = period if period - (t + h) < PERIOD_END * period else t + h
+            t = period if period - (t + h) < GOAL_TOLERANCE * period else t + h
         evaluate(slots, drive.beta, 0.0, y, workspace.k[0], workspace.forces)
         if first_not_finite(y, bodies) != 0:
             return NOT_FINITE, p, row

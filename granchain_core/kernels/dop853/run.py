@@ -34,7 +34,7 @@ from .bracket import may_turn, value_at
 from .force_kinks import KINK, WRONG_SIDE, enter_force_free, first_kink, leave_force_free
 from .force_search import update_forces_in_step
 from .step import (
-    PERIOD_END,
+    GOAL_TOLERANCE,
     RESOLUTION,
     Overlap,
     Step,
@@ -277,12 +277,12 @@ def run_dop853(method, trajectory, sample_range, samples, out):
         status, h, contact = located_step(method, trajectory, t, limit, out.counts)
         if status != DONE:
             return status, row if every > 0 else done
-        end = limit if limit - (t + h) < PERIOD_END * period else t + h
+        end = limit if limit - (t + h) < GOAL_TOLERANCE * period else t + h
         events += contact >= 0
         if events > EVENTS_PER_CONTACT * (bodies - 1):
             return CHATTER, row if every > 0 else done
         passed = 0
-        while done + passed < points and (point + passed + 1) * spacing <= end + PERIOD_END * period:
+        while done + passed < points and (point + passed + 1) * spacing <= end + GOAL_TOLERANCE * period:
             passed += 1
         if every > 0:
             row = record_step(Step(trajectory, t, h), point, passed, spacing, row, every, samples, out)

@@ -55,7 +55,7 @@ class Dop853Workspace(NamedTuple):
 RESOLUTION = 2.2e-16
 #: A step that ends closer to a goal (the period's end, a sample) than this, in periods, ends there: the difference is
 #: the rounding of a sum of steps.
-PERIOD_END = 1e-13
+GOAL_TOLERANCE = 1e-13
 
 
 class DriveCycle(NamedTuple):

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..compiling.jit import inline_llvm, inline_numba, kernel
-from ..dop853.step import PERIOD_END, evaluate
+from ..dop853.step import GOAL_TOLERANCE, evaluate
 from ..effects.driver import driver_displacement, driver_velocity
 from ..equations.chain_in_vector import chain_values, load_row
 from ..flow.event_time import smooth_power
@@ -186,7 +186,7 @@ def run_dop853_root(method, work, trajectory, sample_range, samples, out):
     points, grid, every, counts = sample_range.points, sample_range.grid, sample_range.every, out.counts
     bodies, period = slots.chain.inverse_mass.size, drive.period
     context = RunContext(slots, chain_values(work.chain, slots), slots.driver, drive.beta, method, work, out,
-                      smooth_power(slots.dissipation), bodies - 2, period / grid, PERIOD_END * period, every)
+                      smooth_power(slots.dissipation), bodies - 2, period / grid, GOAL_TOLERANCE * period, every)
     g, done, row, dt, renew = sample_range.first, 0, 1, workspace.next_step[0], True
     events, most_events, idle = 0, EVENTS_PER_CONTACT * (bodies - 1), 0
     begin = begin_of_run(context, g * context.spacing, y, bodies)
