@@ -48,8 +48,8 @@ class Regime:
         Whether there is a drive. Without one, as after an impact, the motion is a transient and `name` is "unsettled".
     return_distance : float or None
         Median distance from the strobes of a record's second half to the nearest of its first half, relative to the
-        largest displacement and velocity (w in a batch); known where the Lyapunov exponent is neutral, as small as a
-        closed curve may show (docs/regimes.md).
+        largest displacement and velocity (w in a batch); known where the Lyapunov exponent is neutral
+        (docs/regimes.md).
     return_limit : float or None
         Limit of `return_distance`: that of a quasi-periodic motion is below it.
     window_ratios : tuple of float or None

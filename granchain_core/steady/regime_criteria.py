@@ -25,8 +25,8 @@ LONGEST_LOCKED_PERIOD = 60
 #: [chaotic, quasi-periodic] Variance of the mean of ten overlapping blocks (`block_means` in lyapunov.py), over that of
 #: ten independent ones with the variance that they show. Neighbours correlate by 1/6: (1 + 0.3)/(1 − 1/30).
 OVERLAP_FACTOR = 1.35
-#: [chaotic, quasi-periodic] Logarithm of the factor by which a distance may grow or shrink once, and not again, on a
-#: closed curve; a mean exponent over P periods is judged to this over P. Up to 4 was seen.
+#: [chaotic, quasi-periodic] On a torus the distance of neighbours stays bounded: its logarithm varies by up to this.
+#: Over P periods this biases a mean exponent by up to this over P. Up to 4 was seen.
 _BOUNDED_GROWTH = 6.0
 #: [quasi-periodic] Largest mean exponent per period, and largest three standard errors of it. All but weak chaos, below
 #: this exponent, is excluded.
@@ -104,7 +104,7 @@ def grows(mean: float, error: float, periods: int) -> bool:
 
 
 def is_neutral(mean: float, error: float, periods: int) -> bool:
-    """Whether a mean exponent is as small as a closed curve may show, by its standard error and its periods.
+    """Whether a mean exponent is neutral: at most the bias that a torus may have, or three standard errors, and small.
 
     |mean| ≤ min(max(s, `_BOUNDED_GROWTH`/periods), `_LARGEST_NEUTRAL_EXPONENT`) with s = `STANDARD_ERRORS` σ, which
     must be below `_LARGEST_NEUTRAL_EXPONENT` too: a large error must not make this easier. Up to 600 periods that is

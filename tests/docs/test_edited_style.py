@@ -12,6 +12,8 @@ from documents import ROOT, lines_outside_fences
 from edited_tree import edit_files, files_of
 
 PAGES = sorted((ROOT / "docs").glob("add-*.md"))
+#: The page whose edits come before those of a page.
+BEFORE = {"add-a-quadratic-drag": ROOT / "docs" / "add-an-effect.md"}
 
 
 @pytest.fixture(scope="module")
@@ -20,10 +22,13 @@ def trees(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("pages")
     for page in PAGES:
         tree = made / page.stem
-        for name in {"pyproject.toml", *files_of(page)[0]} - files_of(page)[1]:
+        followed = [BEFORE[page.stem], page] if page.stem in BEFORE else [page]
+        edits, new = (set().union(*names) for names in zip(*map(files_of, followed), strict=True))
+        for name in {"pyproject.toml", *edits} - new:
             (tree / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, tree / name)
-        edit_files(page, tree)
+        for one in followed:
+            edit_files(one, tree)
     return made
 
 

@@ -16,22 +16,33 @@ import numpy as np
 
 from ...results.run import Run
 
-#: [response] A push is strong if its largest force is above this part of the largest push.
+# How far each threshold may move was measured on the curves from rest of `sec2` (60 to 3000 Hz in steps of 10) and
+# `rig` (20 to 160 Hz in steps of 1): their peaks and valleys with names, and the words for the state at every point.
+#: [response] A push is strong if its largest force is above this part of the largest push. All peaks and valleys of
+#: `sec2` keep their names from 0.65 to 0.95, those of `rig` from 0.3 to 0.95; at 0.6 the 1:5 peak of `sec2` becomes
+#: 2:5. Of the words for states of `sec2`, 3 % change at 0.6 and 6 % at 0.8.
 STRONG_PART = 0.7
-#: [response] A push ends where the force falls below this part of the largest push.
+#: [response] A push ends where the force falls below this part of the largest push. No name or word of a curve changes
+#: from 0.001 to 0.15. Where a push begins decides whether the pulse of an orbit returns in step: of 102 orbits of `rig`
+#: one changes its name at 0.04, two at 0.06, 11 at 0.08; of 261 of `sec2` none up to 0.2.
 END_PART = 0.05
 #: [response] A peak or valley counts if it differs from both neighbouring extrema by this part of the larger. So a
-#: valley is at least 20 % below both neighbouring peaks.
+#: valley is at least 20 % below both neighbouring peaks. `sec2` has the same from 0.1 to 0.25; of `rig`, where motions
+#: differ from point to point, two more extrema count at 0.18, and two fewer at 0.25.
 PROMINENCE = 0.2
 #: [response] A state is on a peak if its force is below the peak by at most this part of the height above the next
-#: valley.
+#: valley. Only the border between peak and flank moves with it: for 3 % of the states at most from 0.15 to 0.25, for
+#: 7 % from 0.1 to 0.3.
 _PEAK_PART = 0.2
 #: [response] A state is in a valley if its force is above the valley by less than this part of that height. States in
-#: between are on a flank.
+#: between are on a flank. From 0.05 to 0.15 at most 1 % of the words for states change in `sec2`, 3 % in `rig`.
 _VALLEY_PART = 0.1
-#: [response] A state is not on the curve if its force differs from the curve's at its frequency by this part.
+#: [response] A state is not on the curve if its force differs from the curve's at its frequency by this part. States
+#: from rest are on it for any value from 0.001 on. Of 590 states of `sec2` in sweeps up and down 544 are within 0.001,
+#: 570 within 0.03; from 0.08 to 0.15 only three change sides.
 _CURVE_DIFFERENCE = 0.1
-#: [response] A stop band: less than this part of the input force arrives at the wall.
+#: [response] A stop band: less than this part of the input force arrives at the wall. That of `sec2` begins at 1960 Hz
+#: for 0.14 to 0.25, at 2020 Hz for 0.12 and at 2750 Hz for 0.1; `rig` has none in its range.
 STOP_BAND_PART = 0.15
 
 
