@@ -23,7 +23,7 @@ from .serve.compiling.compiler import COMPILER
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
 from .serve.computing.worker_pools import COMPUTING, POOLS
-from .serve.http.guard import Readiness, Rules, guard_setting, is_guarded
+from .serve.http.guard import Readiness, Rules, install_guards, is_guarded
 from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
 from .serve.http.sessions import TOKEN_LIFETIME, Sessions
 from .serve.monitoring import logs
@@ -123,7 +123,7 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
         websocket_ping_interval=PING_INTERVAL, websocket_ping_timeout=PING_INTERVAL,
         unused_session_lifetime_milliseconds=UNCONNECTED_MS, check_unused_sessions_milliseconds=SESSION_CHECK_MS,
         session_token_expiration=TOKEN_LIFETIME,
-        sign_sessions=True, secret_key=secret, **guard_setting(rules), **dict(access.sign_in))
+        sign_sessions=True, secret_key=secret, **install_guards(rules), **dict(access.sign_in))
     add_shared_metrics()
     return server
 

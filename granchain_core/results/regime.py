@@ -11,8 +11,9 @@ NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6
-#: [all] Without |μ| it is taken to shrink by the observed decay, at most this.
-SLOWEST_TRUSTED_DECAY = 0.999
+#: [all] Without |μ| it is taken to shrink by the observed decay, at most this: the slowest decay that a batch reports.
+#: A slower one would make stated errors larger still.
+SLOWEST_TRUSTED_DECAY = 0.9999
 #: [all] Where no decay was observed, it is taken to shrink by this.
 DECAY_NOT_SEEN = 0.5
 

@@ -37,9 +37,10 @@ def block_means(growth: np.ndarray, blocks: int) -> np.ndarray:
     """Mean growth per period (blocks,) in blocks of equal length that overlap by half, weighted by Hann windows.
 
     On a closed curve a distance swings, so that a plain mean is wrong by as much as the swing at its two ends, over the
-    number of periods. The windows go to zero there. They add up to 1 between the first and the last block, so no period
-    counts more than another; a remainder is left out at the beginning. Two neighbouring blocks correlate by 1/6 where
-    the periods are independent (`OVERLAP_FACTOR` in regime_criteria.py).
+    number of periods. The windows go to zero there, over half a block: swings that are short against that are averaged
+    out, and longer ones are not (`_BOUNDED_GROWTH` in regime_criteria.py). The windows add up to 1 between the first
+    and the last block, so no period counts more than another; a remainder is left out at the beginning. Two
+    neighbouring blocks correlate by 1/6 where the periods are independent (`OVERLAP_FACTOR` in regime_criteria.py).
     """
     half = len(growth) // (blocks + 1)
     halves = growth[len(growth) - half * (blocks + 1) :].reshape(blocks + 1, half)

@@ -38,7 +38,8 @@ def chain(law: str, tension: str, kappa: float, preload: float):
 def test_the_account_closes(law, tension, kappa, preload):
     """Work − lost − stored is a few errors of the motion, over six periods from rest."""
     result = run(chain(law, tension, kappa, preload).evolve(accuracy=1e-9), periods=0, record=6, samples=16)
-    assert result.status == "done" or (law == "none" and preload == 0.0)  # undamped, errors grow at every impact
+    # undamped and without preload, errors grow at every impact
+    assert result.status == "done" or (law == "none" and preload == 0.0 and result.status == "accuracy-not-reached")
     # the account's integrals are quadratic in what is computed to 1e-9, over some hundred steps
     assert result.energy_residual < 1e-8
 

@@ -256,12 +256,12 @@ def test_a_motion_that_settles_alternating_has_the_period_of_its_orbit() -> None
 
 
 def test_the_contraction_of_a_bound_is_capped() -> None:
-    """The multiplier, at most 1 − 1e-6; without one the decay, at most 0.999; 0.5 where none was seen."""
+    """The multiplier, at most 1 − 1e-6; without one the decay, at most 0.9999; 0.5 where none was seen."""
     def contraction(decay: float | None, multiplier: float | None) -> float:
         return Regime("periodic", 1, decay, None, 1, multiplier=multiplier).assumed_contraction
 
     assert contraction(0.2, 0.9) == 0.9 and contraction(None, 1.0) == 1.0 - 1e-6
-    assert contraction(0.2, None) == 0.2 and contraction(1.0, None) == 0.999
+    assert contraction(0.2, None) == 0.2 and contraction(1.0, None) == 0.9999
     assert contraction(None, None) == 0.5
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as st
 
-from granchain_core.steady.curve.order import LongestFirst, coarse_first
+from granchain_core.steady.curve.order import LongestFirst, coarse_first, used_and_missing
 
 
 def points(frequencies: list[float]) -> list[dict[str, float]]:
@@ -45,3 +45,11 @@ def test_a_point_under_way_counts_as_the_longest() -> None:
         if knobs["f"] != 300.0:
             order.finished(knobs["f"], 3000)
     assert set(drawn[18:20]) == {290.0, 310.0}
+
+
+def test_the_ends_and_the_middle_come_first() -> None:
+    """For any number of points, in whatever order the frequencies are given."""
+    for count in (2, 3, 33, 298):
+        assert coarse_first(count)[:2] == [0, count - 1] and sorted(coarse_first(count)) == list(range(count))
+    frequencies = [500.0, 100.0, 400.0, 200.0, 300.0]
+    assert [frequencies[i] for i in used_and_missing([], frequencies, "rest")[1]] == [100.0, 500.0, 300.0, 200.0, 400.0]

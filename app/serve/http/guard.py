@@ -319,11 +319,12 @@ def is_guarded() -> bool:
     return _IS_GUARDED.get()
 
 
-def guard_setting(rules: Rules) -> dict[str, Rules]:
-    """The setting of a Tornado application with which a guard is put before every handler of a Bokeh server.
+def install_guards(rules: Rules) -> dict[str, Rules]:
+    """Put a guard before every handler of Bokeh's servers in this process; returns the setting that turns it on.
 
-    Raises `MissingPart` where Tornado has no such method. Should a release have it and no longer use it, requests would
-    have no guard, and `is_guarded` says so: a page of ours must not open then.
+    It replaces a method of `BokehTornado`, which does nothing for applications without the setting. Raises
+    `MissingPart` where Tornado has no such method. Should a release have it and no longer use it, requests would have
+    no guard, and `is_guarded` says so: a page of ours must not open then.
     """
     if not hasattr(Application, "get_handler_delegate"):
         raise MissingPart("tornado.web.Application.get_handler_delegate", "requests would be answered without checks")

@@ -55,8 +55,8 @@ _ORBITS_BETWEEN_QUARTERS = _TEST_ORBITS // 2
 _PART_LEFT = 0.97
 #: [period n] A batch: drive periods without extrapolation after a disturbance that did not decay.
 _PAUSE_AFTER_FAILED_TEST = 400
-#: [period n] A batch: slowest decay per orbit that is reported for a disturbance that shrank. Multipliers are then
-#: computed.
+#: [period n] A batch: slowest decay per orbit that is reported for a disturbance that shrank. Up to 100 beads,
+#: multipliers are then computed.
 _SLOWEST_REPORTED_DECAY = 0.9999
 #: [period n] A batch: slowest decay per drive period that is assumed after an extrapolation. Slower ones are not
 #: measured well enough.

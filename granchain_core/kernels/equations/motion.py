@@ -112,7 +112,7 @@ def motion(slots, u0, v0, y, dy, forces):
 
 @internal
 def contact_force(slots, y, dy, e, c):
-    """Total force of contact c from the last evaluation of `motion`."""
+    """Total force of contact c from the last evaluation of `motion`, positive in compression."""
     damped = dashpot_force(slots.dissipation, overlap(slots.preload, y, c), dy[c] - dy[c + 1])
     return unless_force_free(slots.tension, c, e[c] + damped)
 

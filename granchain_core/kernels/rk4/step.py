@@ -207,7 +207,8 @@ def _(method, trajectory, j, out):
 def split(trajectory, j, u_end, v_end, out):
     """Repeat step j of the period, in which contacts open or close, from event to event; its end is workspace.end.
 
-    The driver is at u_end, moving at v_end, at the end. Returns the time from the last event to the step's end.
+    `split_short_step` (short_chain_steps.py) is the same in vectors, and is tested against this one. The driver is at
+    u_end, moving at v_end, at the end. Returns the time from the last event to the step's end.
     """
     slots, drive, y, workspace = trajectory
     ends, end, k, h, dtheta = workspace.ends, workspace.end, workspace.k, drive.h, drive.dtheta

@@ -221,6 +221,7 @@ def failed(job: BatchJob) -> SteadyState:
 
     Which bead failed and when is found where it is settled alone (starts.py).
     """
-    sentence = f"At {job.scene.f:g} Hz the motion stopped being finite; lower the damping."
+    sentence = (f"At {job.scene.f:g} Hz the motion stopped being finite; too strong damping is the "
+                "usual cause.")
     return SteadyState(job.scene, np.full(3, np.nan), Regime.unsettled(job.periods_run), None, job.scaled.to_si(job.y),
                        sentence, "not-finite", job.number)

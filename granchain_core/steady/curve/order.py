@@ -21,8 +21,8 @@ _LOWEST = 16
 def coarse_first(count: int) -> list[int]:
     """Indices 0..count−1 so that the curve's shape is there early: ends, middle, quarters, …"""
     step = 1 << max(0, (count - 1).bit_length())
-    order: list[int] = []
-    seen = set()
+    order = [0, count - 1] if count > 1 else list(range(count))
+    seen = set(order)
     while step >= 1:
         for i in range(0, count, step):
             if i not in seen:
@@ -40,9 +40,8 @@ def used_and_missing(known: Sequence[float], frequencies: Sequence[float], start
     """
     if start not in CURVE_STARTS:
         raise unknown_name("start", start, CURVE_STARTS)
-    count = range(len(frequencies))
-    order = (coarse_first(len(frequencies)) if start == "rest"
-             else sorted(count, key=lambda i: frequencies[i], reverse=start == "down"))
+    ascending = sorted(range(len(frequencies)), key=lambda i: frequencies[i], reverse=start == "down")
+    order = [ascending[i] for i in coarse_first(len(frequencies))] if start == "rest" else ascending
     there: dict[float, list[int]] = {}
     for place, frequency in enumerate(known):
         there.setdefault(frequency, []).append(place)
