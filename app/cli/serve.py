@@ -99,7 +99,7 @@ def _secret(arguments: argparse.Namespace) -> bytes | None:
     if arguments.secret_file is not None:
         return _long_enough(_content(arguments.secret_file).strip(), f"the file {arguments.secret_file}")
     if given := os.environ.get("BOKEH_SECRET_KEY"):
-        return _long_enough(given.encode(), "BOKEH_SECRET_KEY")
+        return _long_enough(given.strip().encode(), "BOKEH_SECRET_KEY")
     return secrets.token_bytes(32) if arguments.generate_secret else None
 
 
@@ -126,6 +126,8 @@ def _sign_in(arguments: argparse.Namespace, secret: bytes | None) -> dict[str, s
     """
     if arguments.basic_auth is None and arguments.oauth_provider is None:
         return {}
+    if arguments.basic_auth is not None and arguments.oauth_provider is not None:
+        raise BadInput("--basic-auth and --oauth-provider are two ways to sign in; give one of them.")
     derived = hmac.new(secret or secrets.token_bytes(32), b"cookies of granchain", "sha256").hexdigest()
     found = {"cookie_secret": os.environ.get("PANEL_COOKIE_SECRET") or derived}
     if arguments.basic_auth is not None:

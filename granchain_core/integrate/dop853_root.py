@@ -56,7 +56,10 @@ class Dop853RootStepper(ErrorControlledStepper):
 
     def locate_failure(self, y: np.ndarray, start: CallStart | None, done: float,
                        stop: Stop) -> tuple[int, int | None]:
-        """The bead is found by dop853, whose stages can be told apart, on the call repeated from its start."""
+        """The bead is found by dop853, whose stages can be told apart, on the call repeated from its start.
+
+        Where dop853 does not fail, no bead is named.
+        """
         if start is None:
             return super().locate_failure(y, start, done, stop)
         before, _, first = start

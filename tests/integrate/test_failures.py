@@ -142,7 +142,7 @@ def failure(status: int) -> Failure:
     return Failure(status, 1.0, 0, None, {}, scene("sec2"), "dop853")
 
 
-def test_a_status_nobody_knows_is_no_chatter() -> None:
+def test_an_unknown_status_raises_value_error() -> None:
     with pytest.raises(ValueError, match="99 is not the status"):
         _ = failure(99).error
     assert failure(CHATTER).error.status == "chatter"

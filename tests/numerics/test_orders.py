@@ -29,8 +29,9 @@ SMOOTHNESS = {
 }
 #: Orders that theory gives, method by method; each is a lower bound, since over the coarser steps a smoother part of
 #: the error may still be the larger one. Where all is smooth a method has the order of its tableau: 4 for RK4, 8 for
-#: dop853; Verlet in (u, v) has 2 only where no force depends on velocities. A fixed step across a contact event is left
-#: with the smoothness of what begins there, [δ]_+^b, integrated over one step: order 1 + b of its integral. With G =
+#: dop853; Verlet in (u, v) has 2 only where no force depends on velocities. A fixed step across a contact event
+#: integrates a term [t − t_e]_+^b: the local error is O(h^{1+b}), and there are finitely many events, so the order is
+#: 1 + b. With G =
 #: λδ^{1+a}/(1+a) of a damping law this is 2 + a, hence 2 for the linear dashpot, 2.25 for Tsuji's law, 2.5 for Kuwabara
 #: and Kono's; the elastic force alone has 2.5, and (u, v) has 1, where the dashpot jumps. rk4-split subtracts the
 #: errors of order 2 and 2.5, which leaves those of the closing speed's own change, 3.5. dop853 ends its steps at

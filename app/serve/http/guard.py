@@ -128,7 +128,7 @@ class Guard(RequestHandler):
             raise HTTPError(421, "host %r is not served", self.request.host_name[:80])
         if any(name in self.request.arguments for name in ("bokeh-session-id", "bokeh-token")) \
                 or "Bokeh-Session-Id" in self.request.headers:
-            raise HTTPError(403, "a session id of the client's own")
+            raise HTTPError(403, "a client-supplied session id")
         if _UNUSED_ADDRESSES.fullmatch(self.request.path):
             raise HTTPError(404)
         if _opens_page(self) and not self.rules.sessions.make_room():
@@ -175,7 +175,11 @@ class GuardedSocket(Guard):
     _fragments: tuple[str, ...] = ()
     _refused = False
     _left = False
+    #: The session whose token came with the request.
+    _offered = ""
+    #: The same once it has its connection.
     _session_id = ""
+    _has_connection = False
 
     def check_request(self) -> None:
         """Also refuse a connection without a token of this server, or with one that was used before.
@@ -193,9 +197,17 @@ class GuardedSocket(Guard):
             raise HTTPError(403, "no token of ours")
         if not self.rules.sessions.has_place(session):
             self.refuse_visitor()
-        if not self.rules.sessions.claim_connection(session):
+        self._offered = session
+
+    def select_subprotocol(self, subprotocols: list[str]) -> str | None:
+        """Give the session its one connection: origin and headers of the handshake have been checked by now.
+
+        Given before, a request that becomes no connection would take it from the page. Raises `HTTPError`.
+        """
+        if not self.rules.sessions.claim_connection(self._offered):
             raise HTTPError(403, "a second connection to one session, or a page that has lost its place")
-        self._session_id = session
+        self._session_id, self._has_connection = self._offered, True
+        return super().select_subprotocol(subprotocols)  # type: ignore[misc,no-any-return]
 
     def check_origin(self, origin: str) -> bool:
         """Whether pages of this origin may connect."""
@@ -230,6 +242,8 @@ class GuardedSocket(Guard):
         try:
             if not self._counted:
                 raise RefusedMessage("frames that were not counted")
+            if not self._has_connection:
+                raise RefusedMessage("a connection that no session was given")
             if not isinstance(fragment, str):
                 raise RefusedMessage("binary data")
             self._fragments = (*self._fragments, fragment)

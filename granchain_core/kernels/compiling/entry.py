@@ -14,18 +14,18 @@ from typing import Any
 import numpy as np
 
 #: Whether every call compares the types of its arguments with those of the specialization it uses.
-CHECKED = os.environ.get("GRANCHAIN_CHECK_TYPES", "0") not in ("", "0")
+CHECK_TYPES = os.environ.get("GRANCHAIN_CHECK_TYPES", "0") not in ("", "0")
 
 
 def entry(kernel: Any, *arguments: Any) -> Callable[..., Any]:
     """The specialization of a kernel for arguments of these types, compiled first where it is not there yet.
 
-    It does not check what it is given unless `CHECKED`: later arguments must have the same types, layouts of arrays
+    It does not check what it is given unless `CHECK_TYPES`: later arguments must have the same types, layouts of arrays
     included.
     """
     types, specialization = version_for(kernel, arguments)
     compiled: Callable[..., Any] = specialization.entry_point
-    if not CHECKED:
+    if not CHECK_TYPES:
         return compiled
 
     def checked(*later: Any) -> Any:
@@ -36,11 +36,11 @@ def entry(kernel: Any, *arguments: Any) -> Callable[..., Any]:
 
 
 def type_guard(kernel: Any, *arguments: Any) -> Callable[..., None]:
-    """What raises `TypeError` for arguments of other types than these; it does nothing unless `CHECKED`.
+    """What raises `TypeError` for arguments of other types than these; it does nothing unless `CHECK_TYPES`.
 
     For a kernel that compiled code calls by its address.
     """
-    if not CHECKED:
+    if not CHECK_TYPES:
         return lambda *later: None
     types = _types(kernel, arguments)
     return lambda *later: _check_types(kernel, types, later)
@@ -60,9 +60,9 @@ class Entries:
 
     def __call__(self, key: Hashable, *arguments: Any) -> Any:
         """Call the kernel's specialization for `key`."""
-        found = self._known.get((key, CHECKED))
+        found = self._known.get((key, CHECK_TYPES))
         if found is None:
-            found = self._known[key, CHECKED] = entry(self._kernel, *arguments)
+            found = self._known[key, CHECK_TYPES] = entry(self._kernel, *arguments)
         return found(*arguments)
 
 

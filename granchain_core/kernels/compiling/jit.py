@@ -12,8 +12,7 @@
 * `nogil`, so that threads really run kernels side by side; not for brief kernels (`brief_kernel`).
 * No `nnan`/`ninf`: a NaN must stay visible. With the flags of `FAST_MATH` sums are vectorised and `x + 0.0`
   folds away. `x * 0.0` does not, so the code for an absent effect must not multiply by zero.
-* Numba does not notice edits in *imported* kernels, so the folder of compiled code is named by a hash of all
-  kernels' code (sources.py): an edit of any kernel starts a new folder, one of a comment or docstring does not.
+* Numba does not notice edits in *imported* kernels; the folder of compiled code is named so that it does (sources.py).
 """
 
 from __future__ import annotations

@@ -1,9 +1,13 @@
 """The largest forces inside an accepted step of the adaptive method, on its dense output.
 
-A force is evaluated at the beginning, in the middle and at the end of a step. The step begins just past an event and
-ends just past the next, so these values are right limits and the jump of a closing contact is one of them. If the force
-rises at the beginning and falls at the end, its maximum is searched by golden section, provided that it may exceed the
-largest value so far. It is then as exact as the dense output, whatever the size of the step.
+A force is evaluated at both ends of a step and, under the first two conditions below, in its middle. The step begins
+just past an event and ends just past the next, so these values are right limits and the jump of a closing contact is
+one of them. A maximum inside is searched by golden section, on which it is as exact as the dense output, where
+
+- a force at an end of the step is above `SEARCHED` of the largest so far,
+- the cubic through values and slopes of some force is not monotone (`is_monotone`),
+- that force rises to the middle and falls from it (`may_hold_maximum`), and
+- the larger of the middle and the cubic's top is above `WORTH` of the largest so far.
 """
 
 from __future__ import annotations

@@ -16,7 +16,8 @@ from .chain import Point, powers, rates_at
 class Units(NamedTuple):
     """1/(tolerance · scale) of displacements and of w, by which errors are multiplied, and how many components count.
 
-    The error of t is measured as one of w.
+    The error of t is measured as one of w. That of q is not measured: q^p is the overlap of one contact, whose
+    displacements are.
     """
 
     u: float
@@ -25,7 +26,7 @@ class Units(NamedTuple):
 
 
 class StepSize(NamedTuple):
-    """The size of a step in ξ, and h/p of one next to an event, else 0."""
+    """`xi` is the step size h in ξ. `root` is h/p, the factor of δ̇ in the increment of q; 0 where ξ is the time."""
 
     xi: float
     root: float

@@ -27,7 +27,7 @@ CHAINS = [{}, {"N": 2}, {"N": 40}, {"dissipation": "none"}, {"dissipation": "tsu
 @pytest.fixture(autouse=True)
 def checked(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Compare the types at every call."""
-    monkeypatch.setattr(entry, "CHECKED", True)
+    monkeypatch.setattr(entry, "CHECK_TYPES", True)
     yield
 
 
@@ -89,7 +89,7 @@ def test_a_variable_of_the_environment_switches_it_on(value: str | None, checked
     environment = {name: word for name, word in os.environ.items() if name != "GRANCHAIN_CHECK_TYPES"}
     if value is not None:
         environment["GRANCHAIN_CHECK_TYPES"] = value
-    done = subprocess.run([sys.executable, "-c", "from granchain_core.kernels.compiling import entry; print(entry.CHECKED)"],
+    done = subprocess.run([sys.executable, "-c", "from granchain_core.kernels.compiling import entry; print(entry.CHECK_TYPES)"],
                           capture_output=True, text=True, env=environment, timeout=300, check=True)
     assert done.stdout.strip() == str(checked)
 

@@ -53,6 +53,21 @@ def test_a_file_that_cannot_be_parsed_counts_with_its_bytes(tmp_path: Path) -> N
     assert hashed(tmp_path, "def (") != hashed(tmp_path, "def (  # a comment")
 
 
+@pytest.mark.parametrize("name", ["BATCH_SIZE", "processor"])
+def test_another_batch_or_processor_has_other_code(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    before = hashed(tmp_path, SOURCE)
+    monkeypatch.setattr(sources, name, 2 * sources.BATCH_SIZE if name == "BATCH_SIZE" else lambda: "another")
+    assert hashed(tmp_path, SOURCE) != before
+
+
+@pytest.mark.parametrize("name", sources._NOT_IN_CODE)
+def test_what_only_stores_and_calls_does_not_name_the_code(name: str, tmp_path: Path) -> None:
+    before = hashed(tmp_path, SOURCE)
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("changed = True", encoding="utf-8")
+    assert sources.sources_hash(tmp_path) == before
+
+
 def test_another_compiler_has_other_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = hashed(tmp_path, SOURCE)
     for module in (sources.numba, sources.llvmlite):

@@ -214,6 +214,22 @@ def test_there_are_at_most_so_many_visitors() -> None:
         one.stop()
 
 
+def test_a_request_that_becomes_no_connection_takes_none_from_its_page() -> None:
+    """Without `Upgrade`, from a stranger's page or without a key: the page itself still connects, and is loading until then."""
+    one = Listening(Access(secret=SECRET, most_visitors=4))
+    try:
+        token = one.token()
+        offered = {"Sec-WebSocket-Protocol": f"bokeh, {token}"}
+        assert one.ask("/ws", **offered)[0] == 400
+        assert one.connect(token, Origin="http://elsewhere.example") == 403
+        assert one.connect(token, **{"Sec-WebSocket-Key": ""}) == 400
+        status, there = one.open(token)
+        assert status == 101 and one.connect(token) == 403
+        there.close()
+    finally:
+        one.stop()
+
+
 def test_pages_that_are_fetched_and_never_connect_leave_half_of_the_places(monkeypatch: pytest.MonkeyPatch) -> None:
     """One client that fetches the page again and again: the oldest page that is still loading makes room."""
     monkeypatch.setattr(server, "SESSION_CHECK_MS", 20)
