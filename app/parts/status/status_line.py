@@ -30,7 +30,7 @@ _REGIME_MEANINGS = {
 }
 _UNDRIVEN = "Nothing drives the chain: what is shown begins at the start of the motion."
 _NOT_ITS_PLACE = "The ratio counts pushes, not peaks: every anti-resonance is 1:1, whatever peaks it lies between."
-_CONTRACTION = "Contracts by: factor by which the distance to the orbit was seen to shrink."
+_CONTRACTION = "Transient shrinks to: factor by which the distance to the orbit was seen to shrink per orbit."
 _LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the logarithm of its factor per drive period; "
              "clearly above zero the motion is chaotic.")
 _FOLLOWED = ("Followed to its orbit: the motion approached it so slowly that the orbit was computed from the last "
