@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from granchain_core.steady.curve.resonance import STRONG_PART
+from granchain_core.steady.curve.resonance import STRONG_FRACTION
 
 from ..parts.toolkit.component import Component, text
 from ..plots.curve import LABELS
@@ -30,6 +30,6 @@ class CurveBar(Component):
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"choices": [list(choice) for choice in CHOICES], "names": [], "stated": [],
-                                          "kinds": KINDS, "strong": STRONG_PART, "driven": True, "too_long": False,
+                                          "kinds": KINDS, "strong": STRONG_FRACTION, "driven": True, "too_long": False,
                                           "rig": False},
                          **params)

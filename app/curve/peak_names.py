@@ -19,7 +19,7 @@ from granchain_core import CurvePoint, Scene, settle
 from granchain_core.execution.stop import Stop
 from granchain_core.experiment import Feature
 from granchain_core.steady.curve.resonance import (
-    STOP_BAND_PART,
+    STOP_BAND_FRACTION,
     Place,
     peaks_and_valleys,
     place_words,
@@ -52,7 +52,8 @@ def stop_band(points: Sequence[CurvePoint]) -> tuple[CurvePoint, CurvePoint] | N
     if not peaks:
         return None
     beyond = [point for point in points if point.frequency > peaks[-1]]
-    passing = [i for i, point in enumerate(beyond) if point.max_output_force >= STOP_BAND_PART * point.max_input_force]
+    passing = [i for i, point in enumerate(beyond)
+               if point.max_output_force >= STOP_BAND_FRACTION * point.max_input_force]
     band = beyond[passing[-1] + 1 if passing else 0:]
     return (band[0], band[-1]) if len(band) >= _FEWEST_BAND_POINTS else None
 

@@ -37,7 +37,7 @@ from ..tables.words import state_columns
 #: Strobes closer than this fraction of the largest are one.
 _APART = 1e-3
 #: An orbit is refined to this fraction of the accuracy asked for: the error of its strobes is stated with a factor.
-_REFINED_PART = 0.1
+_REFINED_FRACTION = 0.1
 #: What the error of a value's strobes is.
 _ERROR = "largest error of a strobe over the largest displacement or velocity, NaN where none is stated"
 #: Most values of the knob.
@@ -248,7 +248,7 @@ def _refined(settling: SettlingRun) -> tuple[Engine, np.ndarray, float | None] |
     regime = settling.regime
     if regime.period is None:
         return None
-    coarse, distance = refined_orbit(settling, _REFINED_PART * settling.scene.accuracy)
+    coarse, distance = refined_orbit(settling, _REFINED_FRACTION * settling.scene.accuracy)
     finer = Engine(settling.scene, coarse.setting.finer(), 1, stop=settling.stop)
     finer.start(coarse.state)
     before, strobes = (engine.periods(regime.period, watch=False)[0][1:] for engine in (coarse, finer))

@@ -52,7 +52,7 @@ _MOST_SECANTS = 14
 #: Halvings of a step at most, where the branch is lost.
 _MOST_HALVINGS = 3
 #: Smallest fraction of the way to the next y that is tried as one step.
-_LEAST_PART = 1.0 / 32.0
+_LEAST_FRACTION = 1.0 / 32.0
 #: Angle from +1 or −1 below which a critical pair is not distinguished from a real multiplier [rad].
 _REAL_ANGLE = 1e-7
 
@@ -254,7 +254,7 @@ def _follow(scene: Scene, kind: str, points: list[BifurcationPoint], value: floa
             way = [way[-1], following]
             continue
         part *= 0.5
-        if part < _LEAST_PART:
+        if part < _LEAST_FRACTION:
             return None
     return way[-1]
 

@@ -23,9 +23,9 @@ from .stroboscopic_map import TOLERANCE, StroboscopicMap
 _COARSER_FACTOR = 10.0
 #: Factor of caution on the change that is seen.
 _CAUTION_FACTOR = 2.0
-#: Part of the bound that is stated at least: the bound was 15 to 80 times the change in the scenes that were examined
-#: (tests/orbits/test_multiplier_errors.py).
-_LEAST_PART = 0.25
+#: Fraction of the bound that is stated at least: the bound was 15 to 80 times the change in the scenes that were
+#: examined (tests/orbits/test_multiplier_errors.py).
+_LEAST_FRACTION = 0.25
 
 
 def derivative_change(scene: Scene, period: int, state: State, derivative: np.ndarray,
@@ -54,7 +54,7 @@ def errors_of(multipliers: np.ndarray, derivative: np.ndarray, change: np.ndarra
         bound = _between(left, change, right)
         rounding = np.finfo(float).eps * _between(left, derivative, right)
         overlap = np.abs((left.conj() * right).sum(axis=0))
-        errors = (np.maximum(_CAUTION_FACTOR * seen, _LEAST_PART * bound) + rounding) / overlap
+        errors = (np.maximum(_CAUTION_FACTOR * seen, _LEAST_FRACTION * bound) + rounding) / overlap
     errors[np.isnan(errors)] = np.inf
     return np.asarray(errors[np.abs(multipliers[:, None] - values[None, :]).argmin(axis=1)])
 

@@ -17,7 +17,7 @@ from ..integrate import Engine, adaptive_setting
 from ..integrate.methods import ADAPTIVE
 from ..results.regime import Regime
 from ..results.run import GIVEN_STATE, Cost, Run, run_from
-from ..steady.curve.resonance import END_PART, STOP_BAND_PART, pushes
+from ..steady.curve.resonance import END_FRACTION, STOP_BAND_FRACTION, pushes
 from .orbit import Orbit
 
 #: [response] The reflected pulse is in step if bead 1, just before the strongest push, approaches the driver with this
@@ -54,7 +54,7 @@ class Response:
         ratio = f"{self.strong}:{self.periods}"
         if self.kind:
             return f"{ratio} {self.kind}"
-        return f"{ratio} motion, stop band" if self.transmission < STOP_BAND_PART else f"{ratio} motion"
+        return f"{ratio} motion, stop band" if self.transmission < STOP_BAND_FRACTION else f"{ratio} motion"
 
 
 def response(orbit: Orbit) -> Response:
@@ -68,7 +68,7 @@ def response(orbit: Orbit) -> Response:
     returning = 0.0 if begin is None else max(0.0, -float(speed[begin - 1]))
     transmission = run.max_output_force / run.max_input_force if run.max_input_force > 0.0 else 0.0
     kind = ""
-    if strong == 1 and transmission >= STOP_BAND_PART:
+    if strong == 1 and transmission >= STOP_BAND_FRACTION:
         kind = "resonance" if periods > 1 or returning >= RETURNS_IN_STEP else "anti-resonance"
     return Response(strong, periods, kind, None if begin is None else _phase(begin), _phase(peak), returning,
                     transmission)
@@ -80,7 +80,7 @@ def _phase(sample: int) -> float:
 
 def _begin(force: np.ndarray, peak: int) -> int | None:
     """The sample at which the push around `peak` begins; the orbit is closed, so it may lie after the peak's index."""
-    quiet = np.flatnonzero(np.roll(force, -peak) < END_PART * force[peak])
+    quiet = np.flatnonzero(np.roll(force, -peak) < END_FRACTION * force[peak])
     return None if len(quiet) == 0 else int((peak + quiet[-1] + 1) % len(force))
 
 

@@ -28,8 +28,8 @@ class Given:
         return found + [f"at {f:g} Hz {one.understood}" for f, one in sorted(self.series.items())]
 
 
-#: A component smaller than this part of the signal's range has no phase to align by.
-_CLEAR = 1e-3
+#: A component smaller than this fraction of the signal's range has no phase to align by.
+_LEAST_AMPLITUDE = 1e-3
 #: The field of `Given` that a file's content belongs to.
 _KINDS = {Measured: "curve", Shaker: "shaker", Series: "series"}
 #: The same in words, with the columns of such a file.
@@ -99,7 +99,7 @@ def delay_of(series: Series, f: float, time: np.ndarray, velocity: np.ndarray, f
     for model, measured in ((force, series.input_force), (velocity, series.velocity)):
         if measured is not None:
             (phase, _), (own, size) = _component(time, model, f), _component(series.time, measured, f)
-            if size > _CLEAR * float(np.ptp(measured)):
+            if size > _LEAST_AMPLITUDE * float(np.ptp(measured)):
                 late = float(np.mod((own - phase) / (2.0 * np.pi * f), 1.0 / f))
                 break
     else:

@@ -119,7 +119,8 @@ class Regime:
             return f"|μ| {modulus_words(self.multiplier)}" + ("" if shown == 1 else f" per {shown} periods")
         if self.decay is None or self.followed:
             return ""
-        return f"contracts by {modulus_words(self.decay)} per {'period' if shown == 1 else f'{shown} periods'}"
+        every = "period" if shown == 1 else f"{shown} periods"
+        return f"transient shrinks to {modulus_words(self.decay)} every {every}"
 
     @property
     def sentence(self) -> str:

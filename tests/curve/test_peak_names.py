@@ -9,7 +9,7 @@ from host import FakeHost
 from app.curve import peak_names
 from app.curve.peak_names import PeakNames, extreme_points, extremum_name, stop_band
 from granchain_core import CurvePoint, resonance_curve, scene, settle
-from granchain_core.steady.curve.resonance import STOP_BAND_PART, pushes
+from granchain_core.steady.curve.resonance import STOP_BAND_FRACTION, pushes
 
 SEC2 = scene("sec2")
 
@@ -46,7 +46,7 @@ def test_the_stop_band_begins_after_the_last_peak_and_lets_nothing_pass(curve: l
     assert 1900.0 < first.frequency < 2050.0
     assert last.frequency == 3000.0
     inside = [p for p in curve if p.frequency >= first.frequency]
-    assert all(p.max_output_force < STOP_BAND_PART * p.max_input_force for p in inside)
+    assert all(p.max_output_force < STOP_BAND_FRACTION * p.max_input_force for p in inside)
     assert first.frequency > max(p.frequency for kind, p in extreme_points(curve) if kind == "peak")
 
 

@@ -8,7 +8,7 @@ from granchain_core import Run, Settled
 from granchain_core.integrate import METHODS
 from granchain_core.kernels.strobes.periodicity import SETTLED_DISTANCE
 from granchain_core.results.regime import NEVER_REPEATING, Regime, modulus_words
-from granchain_core.steady.curve.resonance import STOP_BAND_PART, Place, place_words, push_words, pushes
+from granchain_core.steady.curve.resonance import STOP_BAND_FRACTION, Place, place_words, push_words, pushes
 
 from ...format import duration, short_error
 from ...scripts import module
@@ -19,8 +19,8 @@ _PLACES = {
     "peak": "Resonance: a peak of the curve, where more arrives at the wall than at frequencies beside it.",
     "valley": "Anti-resonance: a valley of the curve, where less arrives at the wall than at frequencies beside it.",
     "flank": "Flank: between a peak of the curve and the valley beside it.",
-    "stop band": f"Stop band: above the last peak, less than {100 * STOP_BAND_PART:.0f} % of the input force reaches "
-                 "the wall.",
+    "stop band": f"Stop band: above the last peak, less than {100 * STOP_BAND_FRACTION:.0f} % of the input force "
+                 "reaches the wall.",
 }
 #: What the name of a regime means that is not periodic.
 _REGIME_MEANINGS = {
@@ -30,7 +30,7 @@ _REGIME_MEANINGS = {
 }
 _UNDRIVEN = "Nothing drives the chain: what is shown begins at the start of the motion."
 _NOT_ITS_PLACE = "The ratio counts pushes, not peaks: every anti-resonance is 1:1, whatever peaks it lies between."
-_CONTRACTION = "Contracts by: factor by which the distance to the orbit was seen to shrink."
+_CONTRACTION = "Transient shrinks to: factor by which the distance to the orbit was seen to shrink per orbit."
 _LYAPUNOV = ("Lyapunov exponent: mean growth of a small disturbance, as the logarithm of its factor per drive period; "
              "clearly above zero the motion is chaotic.")
 _FOLLOWED = ("Followed to its orbit: the motion approached it so slowly that the orbit was computed from the last "

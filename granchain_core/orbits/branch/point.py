@@ -29,7 +29,7 @@ ON_CIRCLE = 1e-6
 #: Count of the closings of a contact that is always closed; it is 0 of one that is always open.
 _CLOSED = -1
 #: Columns of a turning point (`OrbitRecord`): contact, +1 for a largest and −1 for a smallest overlap, time, overlap.
-CONTACT, SENSE, TIME, OVERLAP = range(4)
+CONTACT, TURN_SIGN, TIME, OVERLAP = range(4)
 
 
 @dataclass(frozen=True, eq=False)

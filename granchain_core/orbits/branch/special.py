@@ -20,7 +20,7 @@ from ...errors import ComputationError
 from .axis import KnobAxis
 from .between import Between
 from .normal_forms import NOT_DECIDED, NormalForm
-from .point import CONTACT, OVERLAP, SENSE, TIME, BranchPoint
+from .point import CONTACT, OVERLAP, TIME, TURN_SIGN, BranchPoint
 
 #: Where stability changes, and all kinds of special points; results, files and JSON spell them so.
 BIFURCATIONS = ("fold", "period_doubling", "neimark_sacker")
@@ -36,10 +36,10 @@ _TANGENT_REACH = 1.25
 _OFFSET_FROM_ROOT = 0.02
 #: [branch] First part of the offset from the root of the parabola, where a third value is known, as a fraction of the
 #: width that is narrow enough.
-_WIDTH_PART = 0.4
+_WIDTH_FRACTION = 0.4
 #: [branch] Second part of that offset, as a fraction of the distance between both roots. The parabola's error is a
 #: small fraction of the line's.
-_ERROR_PART = 0.1
+_ERROR_FRACTION = 0.1
 #: [branch] Levels of bisection from one that takes the middle, whatever the test function says, to the next.
 _LEVELS_TO_MIDDLE = 5
 #: [branch] Most levels of bisection between two neighbours. The interval is then taken as it is.
@@ -165,7 +165,7 @@ def _fraction(axis: KnobAxis, a: BranchPoint, b: BranchPoint, depth: int,
     root, beside, is_end = values[0] / (values[0] - values[1]), _OFFSET_FROM_ROOT, False
     better = None if beyond is None else _inverse_quadratic_root(a, b, values, beyond)
     if better is not None:
-        near, unsure = _WIDTH_PART * _wanted(axis, a, b) / _width(axis, a, b), _ERROR_PART * abs(better - root)
+        near, unsure = _WIDTH_FRACTION * _wanted(axis, a, b) / _width(axis, a, b), _ERROR_FRACTION * abs(better - root)
         root, beside, is_end = better, min(near + unsure, _OFFSET_FROM_ROOT), unsure <= 0.5 * near
     fraction = root + beside if root < 0.5 else root - beside
     return min(max(fraction, 0.5 * beside), 1.0 - 0.5 * beside), is_end
@@ -204,7 +204,7 @@ def _turning_values(a: BranchPoint, b: BranchPoint, contact: int) -> tuple[float
     if nearest is None:
         return None
     turns = _turns(fewer, contact)
-    uncrossed = turns[(turns[:, SENSE] == nearest[SENSE]) & (turns[:, OVERLAP] * nearest[OVERLAP] < 0.0)]
+    uncrossed = turns[(turns[:, TURN_SIGN] == nearest[TURN_SIGN]) & (turns[:, OVERLAP] * nearest[OVERLAP] < 0.0)]
     if not len(uncrossed):
         return None
     partner = uncrossed[np.argmin(np.abs(uncrossed[:, TIME] - nearest[TIME]))]
@@ -218,7 +218,7 @@ def _slightest_crossing(point: BranchPoint, contact: int) -> np.ndarray | None:
     Before and after such a turning point the contact closes and opens. None if there is none.
     """
     turns = _turns(point, contact)
-    crossed = turns[turns[:, SENSE] * turns[:, OVERLAP] > 0.0]
+    crossed = turns[turns[:, TURN_SIGN] * turns[:, OVERLAP] > 0.0]
     return crossed[np.argmin(np.abs(crossed[:, OVERLAP]))] if len(crossed) else None
 
 
@@ -266,7 +266,7 @@ def _event(a: BranchPoint, b: BranchPoint, contact: int) -> str:
         return "separation" if fewer.closings[contact] < 0 else "touch"
     nearest = _slightest_crossing(more, contact)
     assert nearest is not None
-    return "touch" if nearest[SENSE] > 0.0 else "separation"
+    return "touch" if nearest[TURN_SIGN] > 0.0 else "separation"
 
 
 def _merged(found: list[SpecialPoint]) -> list[SpecialPoint]:

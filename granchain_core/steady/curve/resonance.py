@@ -18,32 +18,32 @@ from ...results.run import Run
 
 # How far each threshold may move was measured on the curves from rest of `sec2` (60 to 3000 Hz in steps of 10) and
 # `rig` (20 to 160 Hz in steps of 1): their peaks and valleys with names, and the words for the state at every point.
-#: [response] A push is strong if its largest force is above this part of the largest push. All peaks and valleys of
+#: [response] A push is strong if its largest force is above this fraction of the largest push. All peaks and valleys of
 #: `sec2` keep their names from 0.65 to 0.95, those of `rig` from 0.3 to 0.95; at 0.6 the 1:5 peak of `sec2` becomes
 #: 2:5. Of the words for states of `sec2`, 3 % change at 0.6 and 6 % at 0.8.
-STRONG_PART = 0.7
-#: [response] A push ends where the force falls below this part of the largest push. No name or word of a curve changes
-#: from 0.001 to 0.15. Where a push begins decides whether the pulse of an orbit returns in step: of 102 orbits of `rig`
-#: one changes its name at 0.04, two at 0.06, 11 at 0.08; of 261 of `sec2` none up to 0.2.
-END_PART = 0.05
+STRONG_FRACTION = 0.7
+#: [response] A push ends where the force falls below this fraction of the largest push. No name or word of a curve
+#: changes from 0.001 to 0.15. Where a push begins decides whether the pulse of an orbit returns in step: of 102 orbits
+#: of `rig` one changes its name at 0.04, two at 0.06, 11 at 0.08; of 261 of `sec2` none up to 0.2.
+END_FRACTION = 0.05
 #: [response] A peak or valley counts if it differs from both neighbouring extrema by this part of the larger. So a
 #: valley is at least 20 % below both neighbouring peaks. `sec2` has the same from 0.1 to 0.25; of `rig`, where motions
 #: differ from point to point, two more extrema count at 0.18, and two fewer at 0.25.
 PROMINENCE = 0.2
-#: [response] A state is on a peak if its force is below the peak by at most this part of the height above the next
+#: [response] A state is on a peak if its force is below the peak by at most this fraction of the height above the next
 #: valley. Only the border between peak and flank moves with it: for 3 % of the states at most from 0.15 to 0.25, for
 #: 7 % from 0.1 to 0.3.
-_PEAK_PART = 0.2
+_PEAK_FRACTION = 0.2
 #: [response] A state is in a valley if its force is above the valley by less than this part of that height. States in
 #: between are on a flank. From 0.05 to 0.15 at most 1 % of the words for states change in `sec2`, 3 % in `rig`.
-_VALLEY_PART = 0.1
+_VALLEY_FRACTION = 0.1
 #: [response] A state is not on the curve if its force differs from the curve's at its frequency by this part. States
 #: from rest are on it for any value from 0.001 on. Of 590 states of `sec2` in sweeps up and down 544 are within 0.001,
 #: 570 within 0.03; from 0.08 to 0.15 only three change sides.
 _CURVE_DIFFERENCE = 0.1
-#: [response] A stop band: less than this part of the input force arrives at the wall. That of `sec2` begins at 1960 Hz
-#: for 0.14 to 0.25, at 2020 Hz for 0.12 and at 2750 Hz for 0.1; `rig` has none in its range.
-STOP_BAND_PART = 0.15
+#: [response] A stop band: less than this fraction of the input force arrives at the wall. That of `sec2` begins at
+#: 1960 Hz for 0.14 to 0.25, at 2020 Hz for 0.12 and at 2750 Hz for 0.1; `rig` has none in its range.
+STOP_BAND_FRACTION = 0.15
 
 
 @dataclass(frozen=True)
@@ -67,13 +67,13 @@ def pushes(run: Run) -> tuple[int, int] | None:
     largest = float(force.max())
     if largest <= 0.0:
         return None
-    quiet = np.flatnonzero(force < END_PART * largest)
+    quiet = np.flatnonzero(force < END_FRACTION * largest)
     if len(quiet) == 0:
         return None
     force = np.roll(force, -quiet[0])  # the orbit is closed, so start at a sample without a push
-    pushed = np.concatenate([[False], force >= END_PART * largest, [False]])
+    pushed = np.concatenate([[False], force >= END_FRACTION * largest, [False]])
     begins, ends = np.flatnonzero(pushed[1:] & ~pushed[:-1]), np.flatnonzero(~pushed[1:] & pushed[:-1])
-    strong = sum(float(force[a:b].max()) >= STRONG_PART * largest for a, b in zip(begins, ends, strict=True))
+    strong = sum(float(force[a:b].max()) >= STRONG_FRACTION * largest for a, b in zip(begins, ends, strict=True))
     periods = round((len(run.time) - 1) / run.samples)
     common = gcd(strong, periods)
     return strong // common, periods // common
@@ -93,16 +93,16 @@ def place_of(frequency: Sequence[float] | np.ndarray, force: Sequence[float] | n
     if abs(here - output) > _CURVE_DIFFERENCE * max(here, output):
         return Place("")
     turns, peaks, valleys = _shape(tuple(F.tolist()))
-    if transmission < STOP_BAND_PART:
+    if transmission < STOP_BAND_FRACTION:
         return Place("stop band" if not any(f[i] >= at for i in peaks) and peaks else "")
     before, after = [i for i in turns if f[i] <= at], [i for i in turns if f[i] > at]
     if not before or not after or F[before[-1]] == F[after[0]]:
         return Place("")
     low, high = sorted((before[-1], after[0]), key=lambda i: F[i])
     way = (output - F[low]) / (F[high] - F[low])
-    if high in peaks and way > 1.0 - _PEAK_PART:
+    if high in peaks and way > 1.0 - _PEAK_FRACTION:
         return Place("peak", float(f[high]), periods[high])
-    if low in valleys and way < _VALLEY_PART:
+    if low in valleys and way < _VALLEY_FRACTION:
         return Place("valley")
     return Place("flank", float(f[high]), periods[high]) if high in peaks else Place("")
 

@@ -31,8 +31,8 @@ _ONE_SIDED_DIFFERENCE = 1e-6
 _FIXED_POINT_RESIDUAL = 1e-9
 #: [period n, followed] Most iterations of Newton's method.
 _MOST_ITERATIONS = 10
-#: [no threshold] The derivative is renewed if an iteration leaves more than this part of the residual.
-_RENEWAL_PART = 0.1
+#: [no threshold] The derivative is renewed if an iteration leaves more than this fraction of the residual.
+_RENEWAL_FRACTION = 0.1
 #: [period n, followed] Most sizes of a Newton step that are tried, each half of the one before.
 _HALVINGS = 5
 
@@ -127,7 +127,7 @@ def _newton(stroboscopic_map: FiniteDifferenceMap, x: np.ndarray) -> FixedPoint 
             continue
         gained = relative_change(after, start) / residual
         x, change, residual, here = trial, after, gained * residual, False
-        if gained > _RENEWAL_PART and residual > _FIXED_POINT_RESIDUAL:
+        if gained > _RENEWAL_FRACTION and residual > _FIXED_POINT_RESIDUAL:
             matrix, here = stroboscopic_map.derivative(x), True
     if residual > 100.0 * _FIXED_POINT_RESIDUAL:
         return None

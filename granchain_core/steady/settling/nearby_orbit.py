@@ -25,7 +25,7 @@ from .finite_difference_map import FiniteDifferenceMap, FixedPoint, fixed_point
 #: the map is computed.
 MOST_BEADS_WITH_MULTIPLIERS = 100
 #: [period n] An orbit counts as stable if |μ| is below 1 by more than this. No |μ| is known better.
-UNSURE = 1e-5
+MODULUS_ERROR = 1e-5
 #: [followed] Largest relative change over n periods with which an orbit of period n is looked for, and largest distance
 #: from the orbit that is then found.
 NEAR_AN_ORBIT = 0.1
@@ -45,12 +45,12 @@ _CHANGE_FACTOR = 3.0
 _DISTANCE_FACTOR = 0.4
 #: [followed] Smallest distance from that orbit that is tested, relative to the orbit.
 _SMALLEST_DISTANCE = 1e-5
-#: [followed] Part of a distance that must decay by |μ| in the orbits of the test. It sets their number.
-_PREDICTED_PART = 0.2
+#: [followed] Fraction of a distance that must decay by |μ| in the orbits of the test. It sets their number.
+_PREDICTED_FRACTION = 0.2
 #: [followed] Most orbits of the test.
 _MOST_ORBITS = 3000
-#: [followed] Part of the predicted decay that must be observed.
-_OBSERVED_PART = 0.3
+#: [followed] Fraction of the predicted decay that must be observed.
+_OBSERVED_FRACTION = 0.3
 #: [followed] Orbits at the beginning and at the end of the test, of which the largest distance counts. A distance may
 #: turn as it shrinks.
 _COMPARED_ORBITS = 16
@@ -81,12 +81,12 @@ class NearbyOrbit:
     @property
     def stable(self) -> bool:
         """Whether all multipliers are inside the unit circle by more than their error."""
-        return self.modulus < 1.0 - UNSURE
+        return self.modulus < 1.0 - MODULUS_ERROR
 
     @property
     def unstable(self) -> bool:
         """Whether one is outside by more than its error."""
-        return self.modulus > 1.0 + UNSURE
+        return self.modulus > 1.0 + MODULUS_ERROR
 
     @property
     def distance_of_motion(self) -> float:
@@ -96,15 +96,15 @@ class NearbyOrbit:
     @property
     def orbit_error(self) -> float:
         """How far the orbit found may be from the map's own: its residual over 1 − |μ|."""
-        return self.point.residual / max(UNSURE, 1.0 - self.modulus)
+        return self.point.residual / max(MODULUS_ERROR, 1.0 - self.modulus)
 
     def approached(self) -> bool:
         """Whether the motion goes to this orbit: from where it is and from all shorter distances it comes nearer."""
         if not self.stable or self.distance_of_motion > NEAR_AN_ORBIT:
             return False
         rows = _slow_coordinates(self.point.derivative, max(_SLOW_DIRECTION, _SLOW_DIRECTION * self.modulus))
-        orbits = min(_MOST_ORBITS, int(_PREDICTED_PART / (1.0 - self.modulus)))
-        left = 1.0 - _OBSERVED_PART * (1.0 - self.modulus ** (orbits + _COMPARED_ORBITS))
+        orbits = min(_MOST_ORBITS, int(_PREDICTED_FRACTION / (1.0 - self.modulus)))
+        left = 1.0 - _OBSERVED_FRACTION * (1.0 - self.modulus ** (orbits + _COMPARED_ORBITS))
         offset = self.x - self.point.x
         while True:
             before, after = self._largest_lengths(rows, offset, orbits)

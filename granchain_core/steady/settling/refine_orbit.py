@@ -12,16 +12,16 @@ from ..regime_criteria import changes
 from .advance import SettlingRun
 from .reduced_rank import reduced_rank, within_reach
 
-#: Part of the error asked for that the integration over an orbit may have, at the first try.
-INTEGRATION_PART = 0.1
-#: Part of the error asked for that the distance left to the orbit may have.
-_DISTANCE_PART = 0.3
+#: Fraction of the error asked for that the integration over an orbit may have, at the first try.
+INTEGRATION_FRACTION = 0.1
+#: Fraction of the error asked for that the distance left to the orbit may have.
+_DISTANCE_FRACTION = 0.3
 #: An orbit is computed to this relative accuracy at worst, even if the scene asks for less.
 LEAST_ACCURATE = 1e-4
 #: Smallest error of one period that is asked of a method: below it is rounding.
 _LEAST_ERROR = 1e-13
-#: The method is too coarse if a round leaves more than this part of the distance.
-_STALLED_PART = 0.3
+#: The method is too coarse if a round leaves more than this fraction of the distance.
+_STALLED_FRACTION = 0.3
 #: Most rounds; each has as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 
@@ -32,7 +32,7 @@ def orbit_setting(scene: Scene, accuracy: float, contraction: float) -> Setting:
     It is rk4-split with finer steps; dop853 if tension is cut, or if one period's error must be below
     `FIXED_STEP_IS_CHEAPER` (integrate/methods.py).
     """
-    one_period = INTEGRATION_PART * min(accuracy, LEAST_ACCURATE) * (1.0 - contraction)
+    one_period = INTEGRATION_FRACTION * min(accuracy, LEAST_ACCURATE) * (1.0 - contraction)
     return method_for(max(_LEAST_ERROR, one_period), scene.cuts_tension)
 
 
@@ -61,12 +61,12 @@ def refined_orbit(settling: SettlingRun, accuracy: float, samples: int = 1) -> t
             if unproved is not None and change >= unproved[1]:
                 break
             unproved, bound = None, change * contraction / (1.0 - contraction)
-            if bound <= _DISTANCE_PART * accuracy:
+            if bound <= _DISTANCE_FRACTION * accuracy:
                 return engine, bound
         if unproved is not None:  # the extrapolation did not lead nearer: back to where it began
             engine.start(unproved[0])
             unproved, bound = None, np.inf
-        elif bound > _STALLED_PART * before and not setting.finest:
+        elif bound > _STALLED_FRACTION * before and not setting.finest:
             # the changes are the method's own: it has to be finer before it can come nearer
             setting, state = setting.finer(), engine.state
             engine = Engine(scene, setting, samples, stop=settling.stop)

@@ -26,7 +26,7 @@ _TIGHT, _LOOSE = 1e-12, 1e-10
 _ALLOWANCE = 3.0
 #: A force is judged where the truth is known better than this part of what is stated: the allowance is below the stated
 #: error then, 3 × 0.3 < 1.
-_KNOWN_PART = 0.3
+_KNOWN_FRACTION = 0.3
 #: The least stated error in that comparison: the two reference computations agree to this where neither amplifies
 #: errors (measured, tests/numerics/test_force_errors.py).
 _REFERENCE_AGREES = 1e-9
@@ -70,7 +70,8 @@ class Verdict:
     @property
     def judged(self) -> np.ndarray:
         """Columns whose truth is known better than what is stated of them, or than what matters where nothing is."""
-        return self.known < _KNOWN_PART * np.where(np.isnan(self.stated), SILENT, np.maximum(self.stated, _REFERENCE_AGREES))
+        expected = np.where(np.isnan(self.stated), SILENT, np.maximum(self.stated, _REFERENCE_AGREES))
+        return self.known < _KNOWN_FRACTION * expected
 
     @property
     def bounded(self) -> np.ndarray:

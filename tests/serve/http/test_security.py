@@ -215,7 +215,7 @@ def test_there_are_at_most_so_many_visitors() -> None:
 
 
 def test_a_request_that_becomes_no_connection_takes_none_from_its_page() -> None:
-    """Without `Upgrade`, from a stranger's page or without a key: the page itself still connects, and is loading until then."""
+    """Without `Upgrade`, from a stranger's page or without a key: the page itself still connects."""
     one = Listening(Access(secret=SECRET, most_visitors=4))
     try:
         token = one.token()
