@@ -147,8 +147,7 @@ class Guard(RequestHandler):
                      500: "Something went wrong inside granchain."}
         sentence = f"{sentences.get(status_code, 'The request cannot be answered.')} (request {self.request_id})\n"
         if status_code == 503:
-            # Pages that wait do not all come back at once.
-            seconds = random.randint(*_TRY_AGAIN)
+            seconds = random.randint(*_TRY_AGAIN)  # pages that wait do not all come back at once
             self.set_header("Retry-After", seconds)
             if self.request.path == "/":
                 self.set_header("Content-Type", "text/html; charset=UTF-8")
@@ -175,10 +174,8 @@ class GuardedSocket(Guard):
     _fragments: tuple[str, ...] = ()
     _refused = False
     _left = False
-    #: The session whose token came with the request.
-    _offered = ""
-    #: The same once it has its connection.
-    _session_id = ""
+    #: The session whose token came with the request, and the same once it has its connection.
+    _offered = _session_id = ""
     _has_connection = False
 
     def check_request(self) -> None:
@@ -207,7 +204,7 @@ class GuardedSocket(Guard):
         if not self.rules.sessions.claim_connection(self._offered):
             raise HTTPError(403, "a second connection to one session, or a page that has lost its place")
         self._session_id, self._has_connection = self._offered, True
-        return super().select_subprotocol(subprotocols)  # type: ignore[misc,no-any-return]
+        return super().select_subprotocol(subprotocols)  # type: ignore[misc]
 
     def check_origin(self, origin: str) -> bool:
         """Whether pages of this origin may connect."""
