@@ -13,7 +13,7 @@ from contextlib import ExitStack
 
 import pytest
 from knobs import Visit, settled, type_into
-from playwright.sync_api import expect
+from playwright.sync_api import Page, expect
 from server import ROOT, free_port
 
 NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
@@ -107,22 +107,23 @@ def alive(port: int) -> bool:
         return False
 
 
-def test_a_page_behind_nginx_has_its_pictures_and_answers_a_knob(visit: Visit, port: int) -> None:
-    page = visit("?v=1&scene=sec2&f=1130", url=f"http://127.0.0.1:{port}/")
+def answers_a_knob(page: Page) -> None:
+    """Its picture comes, and another one after a knob; the connection stays."""
     settled(page)
     type_into(page, "f", "380")
     settled(page)
     expect(page.locator("#foot b")).to_contain_text("period 1")
     expect(page.locator("#lost")).to_be_hidden()
+
+
+def test_a_page_behind_nginx_has_its_pictures_and_answers_a_knob(visit: Visit, port: int) -> None:
+    page = visit("?v=1&scene=sec2&f=1130", url=f"http://127.0.0.1:{port}/")
+    answers_a_knob(page)
 
 
 def test_a_page_below_a_path_has_its_pictures_and_answers_a_knob(visit: Visit, path: str) -> None:
     page = visit("?v=1&scene=sec2&f=1130", url=f"{path}/")
-    settled(page)
-    type_into(page, "f", "380")
-    settled(page)
-    expect(page.locator("#foot b")).to_contain_text("period 1")
-    expect(page.locator("#lost")).to_be_hidden()
+    answers_a_knob(page)
     assert "/tools/granchain/?" in page.evaluate("granchain.address.url().href"), "its links stay below the path"
 
 

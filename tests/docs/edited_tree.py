@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from documents import ROOT, blocks, edited
 
 from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
@@ -78,3 +79,17 @@ def follow(tree: Path, *arguments: str, own_kernels: bool = True) -> str:
                           env={**os.environ, "PYTHONPATH": str(tree), **kernels})
     assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return done.stdout
+
+
+def import_with(tree: Path, path: str, right: str, wrong: str) -> str:
+    """What the first import of the core says where one piece of a file of it is replaced; the import must fail."""
+    file = tree / "granchain_core" / path
+    text = file.read_text(encoding="utf-8")
+    assert text.count(right) == 1
+    file.write_text(text.replace(right, wrong), encoding="utf-8")
+    try:
+        with pytest.raises(AssertionError) as failed:
+            follow(tree, "-c", "from granchain_core import run")
+    finally:
+        file.write_text(text, encoding="utf-8")
+    return str(failed.value)

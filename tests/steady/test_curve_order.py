@@ -12,6 +12,17 @@ def points(frequencies: list[float]) -> list[dict[str, float]]:
     return [{"f": f} for f in frequencies]
 
 
+def drawn_of_33(periods: dict[float, int | None], others: int) -> list[float]:
+    """Frequencies in the order drawn, of 100 to 420 Hz; each is finished at once after so many periods, None: never."""
+    frequencies = [100.0 + 10.0 * i for i in range(33)]
+    order, drawn = LongestFirst(points([frequencies[i] for i in coarse_first(33)])), []
+    for knobs in order:
+        drawn.append(knobs["f"])
+        if (count := periods.get(knobs["f"], others)) is not None:
+            order.finished(knobs["f"], count)
+    return drawn
+
+
 @given(st.lists(st.sampled_from([10.0, 20.0, 30.0, 40.0]) | st.floats(1.0, 1e4), max_size=70), st.data())
 def test_every_point_is_drawn_once(frequencies: list[float], data: st.DataObject) -> None:
     """Also a frequency that is there twice, whatever has been finished before the last points begin."""
@@ -25,25 +36,14 @@ def test_every_point_is_drawn_once(frequencies: list[float], data: st.DataObject
 
 
 def test_the_lowest_come_first_and_the_last_where_neighbours_took_long() -> None:
-    """Of 32 points the two lowest; last those between others, and first of these the ones beside the slow point."""
-    frequencies = [100.0 + 10.0 * i for i in range(33)]
-    order = LongestFirst(points([frequencies[i] for i in coarse_first(33)]))
-    drawn = []
-    for knobs in order:
-        drawn.append(knobs["f"])
-        order.finished(knobs["f"], 2000 if knobs["f"] == 260.0 else 20)
+    """Of 33 points the two lowest; last those between others, and first of these the ones beside the slow point."""
+    drawn = drawn_of_33({260.0: 2000}, others=20)
     assert drawn[:3] == [100.0, 110.0, 420.0]
     assert set(drawn[18:20]) == {250.0, 270.0}
 
 
 def test_a_point_under_way_counts_as_the_longest() -> None:
-    frequencies = [100.0 + 10.0 * i for i in range(33)]
-    order = LongestFirst(points([frequencies[i] for i in coarse_first(33)]))
-    drawn = []
-    for knobs in order:
-        drawn.append(knobs["f"])
-        if knobs["f"] != 300.0:
-            order.finished(knobs["f"], 3000)
+    drawn = drawn_of_33({300.0: None}, others=3000)
     assert set(drawn[18:20]) == {290.0, 310.0}
 
 
