@@ -10,7 +10,17 @@ import numpy as np
 
 from ..errors import Cancelled
 from ..execution.stop import Stop
-from ..kernels.batch.checks import CHECK_COLUMNS, COARSE_ERROR_LEFT, FINE_COLUMNS, FINE_FORCES, check_member
+from ..kernels.batch.begin import (
+    CHECK_COLUMNS,
+    FINE_COLUMNS,
+    FINE_FORCES,
+    FINE_PERIOD,
+    NEVER,
+    ORBIT_COLUMNS,
+    coarse_contraction,
+    orbits_until_checked,
+)
+from ..kernels.batch.checks import check_member
 from ..kernels.batch.record import STROBES_KEPT
 from ..kernels.batch.run import IS_SHADOW, NO_SHADOW, BatchState, Members, run_batch
 from ..kernels.batch.unequal import Unequal
@@ -26,15 +36,6 @@ from ..kernels.strobes.extrapolation import ORBITS
 from ..kernels.strobes.periodicity import LONGEST_PERIOD, window_of
 from ..scene import Scene
 from .scaling import ScaledChain, scale_chain
-
-#: [no threshold] A period that no member reaches.
-NEVER = int(np.iinfo(np.int64).max)
-#: [period n] A batch: drive periods without extrapolation after the first one that did not help; doubled at each
-#: further one. The record of strobes and the count of periods then go on from the state before the attempt
-#: (`undo_extrapolation` in kernels/batch/record.py).
-_FIRST_PAUSE = 16
-#: [period n] A batch: fewest orbits between two checks of the finer run.
-_FEWEST_ORBITS = 2
 
 
 def can_share_batch(scene: Scene) -> bool:
@@ -80,20 +81,21 @@ class Batch:
         n = example.N
         self.members = Members(
             wall=_rows(1), unequal=None if is_uniform(scaled) else Unequal(_rows(n + 2), _rows(n + 1)),
-            slots=_slots_of_members(scaled), turn=_rows(2), beta=_rows(1), h=_rows(1),
+            slots=_slots_of_members(scaled), beta=_rows(1),
         )
         rows = 2 * (n + 2)
         counts = {name: np.zeros(BATCH_SIZE, dtype=np.int64) for name in (
-            "steps", "steps_left", "periods", "return_at", "next_check", "extrapolate_from", "wait_after_undo", "due",
-            "shadow", "strobe_count", "tested_period")}
+            "begins", "steps", "steps_left", "finer_steps", "periods", "return_at", "next_check", "extrapolate_from",
+            "wait_after_undo", "due", "shadow", "strobe_count", "tested_period")}
         numbers = {name: np.zeros(BATCH_SIZE) for name in (
-            "slowest_decay", "slowest_decay_before", "change_before_extrapolation", "distance")}
+            "drive_period", "slowest_decay", "slowest_decay_before", "change_before_extrapolation", "distance")}
         self.state = BatchState(
-            **counts, **numbers, y=_rows(rows), overlaps=_rows(n + 1), end_contacts=_rows(4), phase=_rows(2),
+            **counts, **numbers, y=_rows(rows), h=_rows(1), turn=_rows(2), overlaps=_rows(n + 1), end_contacts=_rows(4),
+            phase=_rows(2),
             first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
             peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)),
             state_before=np.zeros((BATCH_SIZE, 2, n + 2)),
-            fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)),
+            fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)), coarse_orbit=np.zeros((BATCH_SIZE, ORBIT_COLUMNS)),
             strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
             last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2),
             change=change_workspace(LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
@@ -108,10 +110,11 @@ class Batch:
         self.put(member, self.example, np.zeros(len(self.state.y)), 1, NEVER, NEVER)
 
     def put(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, return_at: int,
-            earliest: int = 0) -> None:
+            earliest: int = 0, finer: int = 0) -> None:
         """Make a scene a member, from the scaled state y at phase 0, with `refine` times the fixed-step method's steps.
 
-        It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked. Raises
+        It is due after `return_at` periods at the latest; from period `earliest` on its regime is checked. Once its
+        orbit is found, it goes on with `finer` times the steps, or is due if that is 0 (kernels/batch/begin.py). Raises
         `ValueError` for a chain whose driver is at rest: in all lanes the driver's displacement is sin θ.
         """
         slots, members, state = scaled.slots, self.members, self.state
@@ -126,31 +129,20 @@ class Batch:
             if slot is not None:
                 for rows, value in zip(slot, its, strict=True):
                     rows[:, member] = value
-        half = math.pi / steps
-        members.turn[0, member], members.turn[1, member] = math.cos(half), math.sin(half)
-        members.beta[0, member], members.h[0, member] = scaled.beta, scaled.period / steps
-        state.phase[0, member], state.phase[1, member] = 0.0, 1.0
-        state.peaks[:, member] = 0.0
-        state.steps[member] = state.steps_left[member] = steps
-        state.y[:, member], state.overlaps[:, member] = y, 0.0
-        state.end_contacts[:, member] = 1.0  # counts as closed, so that no closing is recorded here
-        state.strobes[member, 0], state.strobe_count[member] = y.reshape(2, -1), 1
-        state.first_strobe[:, member] = 0
-        state.periods[member], state.return_at[member], state.next_check[member] = 0, return_at, earliest
-        state.extrapolate_from[member], state.wait_after_undo[member] = 0, _FIRST_PAUSE
-        state.slowest_decay[member] = state.slowest_decay_before[member] = 0.0
-        state.change_before_extrapolation[member] = 0.0
-        state.fine_record[member], state.last_check[member] = 0.0, 0.0
-        state.tested_period[member], state.due[member] = 0, 0
-        state.shadow[member] = NO_SHADOW
+        members.beta[0, member] = scaled.beta
+        state.begins[member], state.y[:, member], state.drive_period[member] = 1, y, scaled.period
+        state.steps[member], state.finer_steps[member] = steps, steps * finer
+        state.return_at[member], state.next_check[member] = return_at, earliest
+        state.fine_record[member], state.shadow[member] = 0.0, NO_SHADOW
 
-    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, contraction: float,
+    def put_fine(self, member: int, scaled: ScaledChain, y: np.ndarray, refine: float, period: int, decay: float,
                  maxima: np.ndarray) -> None:
-        """Make a scene a member, on the orbit y of a coarser run, with its `period` and its `contraction` per orbit.
+        """Make a scene a member, on the orbit y of a coarser run, with its period, decay per orbit and largest forces.
 
         It is checked once the difference from that orbit has decayed.
         """
-        orbits = min(ORBITS, max(_FEWEST_ORBITS, math.ceil(math.log(COARSE_ERROR_LEFT) / math.log(contraction))))
+        contraction = coarse_contraction(decay)
+        orbits = orbits_until_checked(contraction)
         self.put(member, scaled, y, refine, NEVER, orbits * period)
         self.state.fine_record[member] = period, contraction, *maxima, orbits, 0.0
 
@@ -197,11 +189,18 @@ class Batch:
         kept = int(self.state.strobe_count[member])
         return self.state.strobes[member, max(int(self.state.first_strobe[0, member]), kept - most) : kept, :, 1:-1]
 
+    def runs_finer(self, member: int) -> bool:
+        """Whether a member is in its finer run."""
+        return bool(self.state.fine_record[member, FINE_PERIOD] > 0.0)
+
+    def coarse_maxima(self, member: int) -> np.ndarray:
+        """Largest forces (3,) on the orbit of the coarse run, scaled, of a member in its finer run."""
+        return self.state.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy()
+
     def settled_maxima(self, member: int, period: int) -> np.ndarray:
         """Largest forces on the orbit a coarse member has settled on: from before it was disturbed, if it was."""
         disturbed = self.state.slowest_decay[member] > 0.0
-        return (self.state.fine_record[member, FINE_FORCES : FINE_FORCES + 3].copy() if disturbed
-                else self.maxima(member, period)[0])
+        return self.coarse_maxima(member) if disturbed else self.maxima(member, period)[0]
 
     def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray]:
         """Largest input, output and elastic output force (3,) of the last `periods` periods, and largest jumps (2,) of

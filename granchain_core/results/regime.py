@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..kernels.strobes.periodicity import assumed_decay
+
 #: What a motion can be called.
 NAMES = ("periodic", "quasi-periodic", "chaotic", "unsettled")
 #: Those of steady states that never repeat; their errors are not stated.
 NEVER_REPEATING = ("quasi-periodic", "chaotic")
 #: [all] A distance is taken to shrink by |μ| per orbit, at most 1 less this (`Regime.assumed_contraction`).
 LEAST_BELOW_1 = 1e-6
-#: [all] Without |μ| it is taken to shrink by the observed decay, at most this: the slowest decay that a batch reports.
-#: A slower one would make stated errors larger still.
-SLOWEST_TRUSTED_DECAY = 0.9999
-#: [all] Where no decay was observed, it is taken to shrink by this.
-DECAY_NOT_SEEN = 0.5
 
 
 @dataclass(frozen=True)
@@ -101,7 +98,7 @@ class Regime:
         """Factor by which a distance is taken to shrink per orbit: |μ|, else `decay`, else `DECAY_NOT_SEEN`."""
         if self.multiplier is not None:
             return min(1.0 - LEAST_BELOW_1, self.multiplier)
-        return min(SLOWEST_TRUSTED_DECAY, self.decay or DECAY_NOT_SEEN)
+        return assumed_decay(self.decay or 0.0)
 
     @property
     def contraction(self) -> float:

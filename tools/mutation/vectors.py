@@ -6,7 +6,7 @@ from . import killers as k
 from .mutant import Mutant
 
 _BATCH_STEP, _BATCH_RUN, _CORRECTION = "kernels/batch/step.py", "kernels/batch/run.py", "kernels/batch/contact_correction.py"
-_PERIOD_END, _CHECKS = "kernels/batch/period_end.py", "kernels/batch/checks.py"
+_PERIOD_END, _CHECKS, _BEGIN = "kernels/batch/period_end.py", "kernels/batch/checks.py", "kernels/batch/begin.py"
 _SHORT, _RUN, _LONG = "kernels/rk4/short_chain.py", "kernels/rk4/short_chain_steps.py", "kernels/rk4/long_chain.py"
 _CHAIN = "kernels/equations/chain_in_vector.py"
 _MATH = "kernels/simd/functions.py"
@@ -50,22 +50,24 @@ IN_BATCHES = (
            "the exponent of batches is that of a distance long since large", k.LYAPUNOV),
     Mutant("batch-growth-from-zero", _BATCH_RUN, "= log(now / start)", "= log(now)",
            "growth in batches is counted from 1, not from the distance it began with", k.LYAPUNOV),
-    Mutant("refill-into-old-overlaps", _BATCH, "state.y[:, member], state.overlaps[:, member] = y, 0.0", "state.y[:, member] = y",
+    Mutant("refill-into-old-overlaps", _BEGIN, "    forget_last_step(state, member)\n", "",
            "the first step of the next scene in a place is corrected for contacts of the one before", k.REFILL),
-    Mutant("refill-in-old-phase", _BATCH, "        state.phase[0, member], state.phase[1, member] = 0.0, 1.0\n", "",
+    Mutant("refill-in-old-phase", _BEGIN, "    state.phase[0, member], state.phase[1, member] = 0.0, 1.0\n", "",
            "a scene that is put into a place while others move begins at the phase that stood there", k.REFILL),
     Mutant("refill-with-old-effects", _BATCH, "rows[:, member] = value",
            "rows[:, member] += (rows[:, member] == 0.0) * value",
            "the next scene in a place has damping, foundation and preload of the batch's first", k.REFILL),
-    Mutant("refill-after-old-strobes", _BATCH, "y.reshape(2, -1), 1\n", "y.reshape(2, -1), max(1, state.strobe_count[member])\n",
+    Mutant("refill-after-old-strobes", _BEGIN, "state.first_strobe[1, member] = 0, 0, 0", "state.first_strobe[1, member] = state.strobe_count[member], 0, 0",
            "the record of the next scene in a place begins with the strobes of the one before", k.REFILL),
-    Mutant("refill-with-old-steps", _BATCH, "state.steps[member] = state.steps_left[member] = steps",
-           "state.steps[member], state.steps_left[member] = state.steps[member] or steps, steps",
-           "from its second period on the next scene in a place has the steps of the one before", k.REFILL),
-    Mutant("refill-with-old-verdict", _BATCH, "state.fine_record[member], state.last_check[member] = 0.0, 0.0",
-           "state.last_check[member] = 0.0", "the next scene in a place is checked as the finer run of the one before", k.REFILL),
-    Mutant("refill-with-old-shadow", _BATCH, "        state.shadow[member] = NO_SHADOW\n", "",
+    Mutant("refill-with-old-steps", _BATCH, "state.steps[member], state.finer_steps[member] = steps, steps * finer",
+           "state.steps[member], state.finer_steps[member] = state.steps[member] or steps, steps * finer",
+           "the next scene in a place has the steps of the one before", k.REFILL),
+    Mutant("refill-with-old-verdict", _BATCH, "state.fine_record[member], state.shadow[member] = 0.0, NO_SHADOW",
+           "state.shadow[member] = NO_SHADOW", "the next scene in a place is checked as the finer run of the one before", k.REFILL),
+    Mutant("refill-with-old-shadow", _BATCH, "state.fine_record[member], state.shadow[member] = 0.0, NO_SHADOW", "state.fine_record[member] = 0.0",
            "the next scene in a lane is a shadow, or has one, because the one before was", k.SHADOWS),
+    Mutant("finer-run-with-coarse-steps", _BEGIN, "state.steps[member], state.finer_steps[member] = state.finer_steps[member], 0",
+           "state.finer_steps[member] = 0", "the finer run repeats the coarse one, and no error is seen", k.REFILL),
     Mutant("batch-only-first-bead-is-finite", _BATCH_RUN, "return (DONE if is_finite_member(state.y, member) else NOT_FINITE), member",
            "return (DONE if np.isfinite(state.y[1, member]) else NOT_FINITE), member",
            "a NaN that has not come to the first bead is taken for a motion", k.REFILL),

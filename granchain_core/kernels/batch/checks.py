@@ -29,10 +29,23 @@ from ..strobes.periodicity import (
     window_of,
     write_scale,
 )
-from .record import STROBES_KEPT, move_member, undo_extrapolation
+from .begin import (
+    CHECK_DECAY,
+    CHECK_DISTANCE,
+    CHECK_PERIOD,
+    COARSE_ERROR_LEFT,
+    FINE_CONTRACTION,
+    FINE_EXTRAPOLATIONS,
+    FINE_FORCES,
+    FINE_ORBITS_BETWEEN,
+    FINE_PERIOD,
+    begin_finer_run,
+    begin_member,
+)
+from .record import largest_force, move_member, undo_extrapolation
 
 #: [period n] A batch: most strobes on which a period is looked for.
-CHECKED = 4 * LONGEST_PERIOD + 1
+MOST_STROBES_SEARCHED = 4 * LONGEST_PERIOD + 1
 #: [period n] A batch: an approach is extrapolated if more than this many orbits are left to run.
 _FEWEST_ORBITS_LEFT = 4.0
 #: [period n] A batch: fewest drive periods from an extrapolation that was out of reach to the next one.
@@ -40,8 +53,6 @@ _PERIODS_AFTER_FAILURE = 8
 #: [period n] A batch: an extrapolation reaches at most this many times as far as change/(1 − decay), the distance
 #: before the last change.
 FARTHEST_EXTRAPOLATION = 3.0
-#: [period n] A batch: largest part of the coarse orbit's error that may be left in the finer run.
-COARSE_ERROR_LEFT = 0.02
 #: [period n] A batch: most extrapolations of the finer run.
 _MOST_EXTRAPOLATIONS = 6
 #: [period n] A batch: an orbit found by extrapolation is disturbed by this part of the motion.
@@ -61,11 +72,6 @@ _SLOWEST_REPORTED_DECAY = 0.9999
 #: [period n] A batch: slowest decay per drive period that is assumed after an extrapolation. Slower ones are not
 #: measured well enough.
 _SLOWEST_ASSUMED_DECAY = 0.98
-#: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
-CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
-#: Columns of `fine_record`: the orbit's period and contraction, the coarse run's three largest forces (from FINE_FORCES
-#: on), orbits between two extrapolations, extrapolations so far; and their number.
-FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_COLUMNS = 0, 1, 2, 5, 6, 7
 
 
 @internal
@@ -97,7 +103,7 @@ def check_coarse(state, member):
     periods = state.periods[member]
     count = record.shape[0]
     period, decay, distance, n, approach_decay, change = detect_period(  # an int64, as from Python: one version serves
-        record[max(0, count - CHECKED) :], np.int64(LONGEST_PERIOD), ROUNDING, SETTLED_DISTANCE,
+        record[max(0, count - MOST_STROBES_SEARCHED) :], np.int64(LONGEST_PERIOD), ROUNDING, SETTLED_DISTANCE,
         state.slowest_decay[member], state.scale, state.change)
     last_check = state.last_check[member]
     last_check[CHECK_PERIOD], last_check[CHECK_DECAY], last_check[CHECK_DISTANCE] = period, decay, distance
@@ -185,15 +191,6 @@ def judge_disturbance(state, member):
     return False
 
 
-@internal
-def largest_force(state, member, n, q):
-    """The largest force of kind q in a member's last n periods."""
-    largest = 0.0
-    for p in range(n):
-        largest = max(largest, state.maxima[member, (state.periods[member] - p) % STROBES_KEPT, q])
-    return largest
-
-
 @inline_numba
 def check_fine(state, member):
     """Whether the coarse orbit's error has decayed in a fine member; if not, its transient is extrapolated.
@@ -238,13 +235,20 @@ def periods_to_next_check(state, member):
 
 @kernel
 def check_member(state, member):
-    """Check a member's regime, or what is left of its disturbance; returns whether that decides it.
+    """Begin a member that is new, or check its regime, or what is left of its disturbance.
 
-    If it does not, the next check is set.
+    Returns whether the member is due. A coarse member whose orbit is found begins its finer run instead, if one is
+    wanted. If nothing is decided, the next check is set.
     """
+    if state.begins[member] != 0:
+        state.begins[member] = 0
+        begin_member(state, member)
+        return False
     state.next_check[member] = state.periods[member] + periods_to_next_check(state, member)
-    if state.tested_period[member] > 0:
-        return judge_disturbance(state, member)
     if state.fine_record[member, FINE_PERIOD] > 0.0:
         return check_fine(state, member)
-    return check_coarse(state, member)
+    found = judge_disturbance(state, member) if state.tested_period[member] > 0 else check_coarse(state, member)
+    if found and state.finer_steps[member] > 0:
+        begin_finer_run(state, member)
+        return False
+    return found

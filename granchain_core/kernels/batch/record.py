@@ -44,10 +44,25 @@ def set_state(state, member, there):
     bodies = there.shape[1]
     for i in range(1, bodies - 1):
         state.y[i, member], state.y[bodies + i, member] = there[0, i], there[1, i]
-    for c in range(bodies - 1):
+    forget_last_step(state, member)
+
+
+@internal
+def forget_last_step(state, member):
+    """Forget the overlaps and ends of the step before, so that no contact event is seen in a member's next step."""
+    for c in range(state.overlaps.shape[0]):
         state.overlaps[c, member] = 0.0
     for row in range(4):
         state.end_contacts[row, member] = 1.0  # counts as closed, so that no closing is recorded here
+
+
+@internal
+def largest_force(state, member, n, q):
+    """The largest force of kind q in a member's last n periods."""
+    largest = 0.0
+    for p in range(n):
+        largest = max(largest, state.maxima[member, (state.periods[member] - p) % STROBES_KEPT, q])
+    return largest
 
 
 @internal

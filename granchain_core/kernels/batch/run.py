@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..batch_size import BATCH_SIZE
+from ..compiling.by_address import call_at
 from ..compiling.jit import inline_llvm, inline_numba, kernel
 from ..effects.preload import batch_overlap
 from ..equations.motion import batch_slots
@@ -31,16 +32,14 @@ NO_SHADOW, IS_SHADOW = -1, -2
 class Members(NamedTuple):
     """Values of the members' scenes, L of them.
 
-    `wall` (1, L) is the wall's stiffness; the effects' `slots` hold arrays (1, L) or (rows, L), or are None. `turn`
-    (2, L) is the cosine and sine of the phase of half a step, `beta` (1, L) the scaled drive rate, `h` (1, L) the step.
+    `wall` (1, L) is the wall's stiffness; the effects' `slots` hold arrays (1, L) or (rows, L), or are None. `beta`
+    (1, L) is the scaled drive rate.
     """
 
     wall: np.ndarray
     unequal: Any
     slots: Any
-    turn: np.ndarray
     beta: np.ndarray
-    h: np.ndarray
 
 
 class BatchState(NamedTuple):
@@ -49,12 +48,16 @@ class BatchState(NamedTuple):
     State of a chain: displacements of driver, beads and wall, then w of the same, N + 2 rows each; an axis of length 2
     holds the two.
 
+    begins (L,)              1 where the member is new: it begins at the kernel's next call (begin.py)
     y (2(N+2), L)            state
+    drive_period (L,)        period of the drive
+    h, turn (1 and 2, L)     step; cosine and sine of the drive phase of half a step
     overlaps (N+1, L)        overlaps of the contacts one step ago
     end_contacts (4, L)      one step ago: overlap and rate of the first contact, overlap and rate of the last
     phase (2, L)             sine and cosine of the drive phase
     peaks (PEAKS, L)         largest forces and jumps, and the last four values of each force (forces/peaks.py)
     steps, steps_left (L,)   steps in a period, and how many of them are left
+    finer_steps (L,)         steps in a period of the finer run that follows once an orbit is found; 0 if none does
     periods, return_at (L,)  periods run, and the period at which the kernel returns at the latest
     next_check (L,)          next period at which the strobes are checked
     extrapolate_from (L,)    period from which a transient may be extrapolated
@@ -72,24 +75,30 @@ class BatchState(NamedTuple):
     change_before_extrapolation (L,)  change per orbit before an extrapolation that is not confirmed yet, else 0
     tested_period (L,)       period of an orbit that is being disturbed, else 0
     state_before (L, 2, N+2)  state before the last extrapolation
-    fine_record (L, FINE_COLUMNS)  record of a fine member (checks.py)
+    fine_record (L, FINE_COLUMNS)  record of a finer run (begin.py); its period is 0 in a coarse one
+    coarse_orbit (L, ORBIT_COLUMNS)  what the coarse run found (begin.py)
     strobes (L, 2R, 2, N+2)  states at the ends of periods
     maxima (L, R, 5)         of the last R periods, a ring: three largest forces (input, output, elastic output) and two
                              largest jumps (input, output)
-    last_check (L, CHECK_COLUMNS)  result of the last check (checks.py)
+    last_check (L, CHECK_COLUMNS)  result of the last check (begin.py)
     stages                   three states, (2(N+2), L) each, of the stages of a step (step.py)
 
     Workspaces of checks.py, with ORBITS of strobes/extrapolation.py: scale (2,), change (3·LONGEST_PERIOD or more,),
     limit (2, N+2), basis (ORBITS, 2(N+2)), triangle (ORBITS, ORBITS).
     """
 
+    begins: np.ndarray
     y: np.ndarray
+    drive_period: np.ndarray
+    h: np.ndarray
+    turn: np.ndarray
     overlaps: np.ndarray
     end_contacts: np.ndarray
     phase: np.ndarray
     peaks: np.ndarray
     steps: np.ndarray
     steps_left: np.ndarray
+    finer_steps: np.ndarray
     periods: np.ndarray
     return_at: np.ndarray
     next_check: np.ndarray
@@ -107,6 +116,7 @@ class BatchState(NamedTuple):
     tested_period: np.ndarray
     state_before: np.ndarray
     fine_record: np.ndarray
+    coarse_orbit: np.ndarray
     strobes: np.ndarray
     maxima: np.ndarray
     last_check: np.ndarray
@@ -128,8 +138,8 @@ def take_steps(members, state, count):
     last = y.shape[0] // 2 - 2
     values = Values(load_batch(members.wall, 0), batch_slots(members.slots), members.unequal, last)
     preload = values.slots.preload
-    h, beta = load_batch(members.h, 0), load_batch(members.beta, 0)
-    c, s = load_batch(members.turn, 0), load_batch(members.turn, 1)
+    h, beta = load_batch(state.h, 0), load_batch(members.beta, 0)
+    c, s = load_batch(state.turn, 0), load_batch(state.turn, 1)
     sine, cosine = load_batch(state.phase, 0), load_batch(state.phase, 1)
     for _ in range(count):
         middle, middle_cosine = sine * c + cosine * s, cosine * c - sine * s
@@ -179,6 +189,8 @@ def run_batch(members, state, stop, check):
     steps_left, due, shadow = state.steps_left, state.due, state.shadow
     some_due, some_shadow = True, False
     for member in range(BATCH_SIZE):
+        if state.begins[member] != 0:
+            call_at(check, (state, member))
         some_shadow = some_shadow or shadow[member] >= 0
     while True:
         if some_due:

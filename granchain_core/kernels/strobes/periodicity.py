@@ -45,6 +45,18 @@ _SLOWEST_APPROACH = 0.97
 #: [period n] A period is looked for, and in a batch extrapolated to, once its change is below this.
 _LARGEST_EXTRAPOLATED_CHANGE = 1e-2
 
+#: [all] Without |μ| a distance is taken to shrink by the observed decay, at most this: the slowest decay that a batch
+#: reports. A slower one would make stated errors larger still.
+SLOWEST_TRUSTED_DECAY = 0.9999
+#: [all] Where no decay was observed, it is taken to shrink by this.
+DECAY_NOT_SEEN = 0.5
+
+
+@internal
+def assumed_decay(decay):
+    """Factor by which a distance is taken to shrink per orbit, from an observed decay; that is ≤ 0 if none was seen."""
+    return min(SLOWEST_TRUSTED_DECAY, decay) if decay > 0.0 else DECAY_NOT_SEEN
+
 
 class Detected(NamedTuple):
     """What a record of strobes shows: an orbit, or the approach to one.

@@ -14,7 +14,13 @@ from ...integrate.batch import Batch
 from ...integrate.methods import AT_A_JUMP, typical_error
 from ...integrate.scaling import ScaledChain
 from ...integrate.stated import relative_changes
-from ...kernels.batch.checks import CHECK_DISTANCE, CHECK_PERIOD
+from ...kernels.batch.begin import (
+    CHECK_COLUMNS,
+    CHECK_DISTANCE,
+    CHECK_PERIOD,
+    ORBIT_PERIODS,
+    ORBIT_SLOWEST_DECAY,
+)
 from ...results.regime import Regime
 from ...scene import Scene
 from ...scene.state import State
@@ -163,25 +169,19 @@ def draft_result(job: BatchJob, batch: Batch, member: int) -> SteadyState:
     period = batch.state.last_check[member, CHECK_PERIOD]
     if period <= 0:
         return unsettled(job, batch, member, periods_run)
-    regime = _periodic(batch, member, periods_run)
+    regime = _periodic(batch.state.last_check[member], batch.state.slowest_decay[member], periods_run)
     maxima = batch.settled_maxima(member, int(period)) * job.scaled.scales.force
     state = job.scaled.to_si(batch.state.y[:, member])
     return SteadyState(job.scene, maxima, regime, None, state, number=job.number)
 
 
 def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadyState | BatchJob | None:
-    """What follows a coarse run: a job for the finer run or the exponent, a result at the end of the budget, or None.
+    """What follows a coarse run without an orbit: a job for the exponent, a result at the end of the budget, or None.
 
     None means that the member goes on.
     """
     here = int(batch.state.periods[member])
     periods_run = job.periods_run + here
-    period = batch.state.last_check[member, CHECK_PERIOD]
-    if period > 0:
-        regime = _periodic(batch, member, periods_run)
-        settled = (regime, batch.settled_maxima(member, int(period)))
-        return BatchJob(job.scene, job.scaled, batch.state.y[:, member].copy(), periods_run, Stage.FINE, settled,
-                        number=job.number)
     if periods_run >= job.affordable_periods:
         return unsettled(job, batch, member, periods_run)
     record = batch.strobes(member)
@@ -192,12 +192,19 @@ def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadySta
     return None
 
 
-def _periodic(batch: Batch, member: int, periods_run: int) -> Regime:
-    """The periodic regime of a coarse member; `followed` where extrapolations led to it."""
-    period, decay, distance = batch.state.last_check[member]
+def found_orbit(job: BatchJob, batch: Batch, member: int) -> None:
+    """Go over to the finer stage with a member whose coarse run has found an orbit, from which it went on finer."""
+    found = batch.state.coarse_orbit[member]
+    job.periods_run += int(found[ORBIT_PERIODS])
+    regime = _periodic(found[:CHECK_COLUMNS], found[ORBIT_SLOWEST_DECAY], job.periods_run)
+    job.stage, job.coarse = Stage.FINE, (regime, batch.coarse_maxima(member))
+
+
+def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regime:
+    """The periodic regime of a coarse run, from its last check; `followed` where extrapolations led to it."""
+    period, decay, distance = check
     return Regime(name="periodic", period=int(period), decay=float(decay) if decay >= 0.0 else None,
-                  distance=float(distance), periods_run=periods_run,
-                  followed=bool(batch.state.slowest_decay[member] > 0.0))
+                  distance=float(distance), periods_run=periods_run, followed=bool(slowest_decay > 0.0))
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:

@@ -1,10 +1,10 @@
 """Many steady states in batches: settle with coarse steps, then with fine ones; the difference is the error.
 
-Every scene becomes a member of a batch, with coarse steps. Once the member's regime is decided, the next scene takes
-its place.
+Every scene becomes a member of a batch, with coarse steps. Once its orbit is found, the member goes on with finer
+steps, without a return from the kernel. Once its regime is decided, the next scene takes its place.
 
 Coarse run: `check_coarse` (kernels/batch/checks.py) bounds the distance to the orbit; an orbit that was reached by
-extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run, a third of the step:
+extrapolation (kernels/strobes/extrapolation.py) must survive a disturbance. Finer run (kernels/batch/begin.py):
 `check_fine`, until the bound is small or six extrapolations are spent; the distance that is left goes into the stated
 error, with the change of the forces. Motions that are not periodic are classified by their Lyapunov exponents
 (steady/exponent_measurements.py), measured beside a neighbouring trajectory in another lane. A scene that is then not
@@ -36,7 +36,7 @@ from ..regime_criteria import converging, find_period
 from ..settling.nearby_orbit import is_almost_periodic
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
-from .job import FINE_STEPS_PER_COARSE, BatchJob, Stage, Start, draft_result, failed, outcome_of_coarse_run
+from .job import FINE_STEPS_PER_COARSE, BatchJob, Stage, Start, draft_result, failed, found_orbit, outcome_of_coarse_run
 
 #: [unsettled] Most drive periods of a draft of a curve.
 _DRAFT_PERIODS = 300
@@ -127,20 +127,21 @@ class _JobsInBatch:
             return
         if job.stage is Stage.COARSE:
             return_at = min(_DRAFT_PERIODS if self.draft else EXAMINED_AFTER, job.affordable_periods - job.periods_run)
-            self.batch.put(member, job.scaled, job.y, 1, return_at)
+            self.batch.put(member, job.scaled, job.y, 1, return_at, finer=0 if self.draft else FINE_STEPS_PER_COARSE)
             return
         assert job.coarse is not None
         regime, maxima = job.coarse
         assert regime.period is not None
-        contraction = max(1e-3, regime.assumed_contraction)
-        self.batch.put_fine(member, job.scaled, job.y, FINE_STEPS_PER_COARSE, regime.period,
-                            contraction, maxima)
+        self.batch.put_fine(member, job.scaled, job.y, FINE_STEPS_PER_COARSE, regime.period, regime.decay or 0.0,
+                            maxima)
 
     def step(self) -> SteadyState | None:
         """Run until a member is due; returns its result, or None if the job goes on."""
         member, finite = self.batch.run()
         job = self.jobs[member]
         measured = job.stage is Stage.EXPONENT
+        if job.stage is Stage.COARSE and self.batch.runs_finer(member):
+            found_orbit(job, self.batch, member)
         if not finite or (measured and np.isnan(self.batch.growth(member)).any()):
             self._free(member)
             return failed(job)
