@@ -96,7 +96,14 @@ def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
         f"are not equal to {EQUAL:g} at the tightest setting tried.",
         "Times are medians of several runs, those marked 'n = 1' of one.",
     ]
-    return "\n".join([_table(found, frequencies.size, notes), product(frequencies, accurate, periodic, tell)])
+    grids = [(frequencies, accurate, periodic)]
+    if not quick:  # every 10 Hz as well: what a curve costs depends on which slow transients its points meet
+        tell("accurate peaks every 10 Hz, all cores")
+        machine.unpin()
+        every_10_hz = problem.curve_frequencies(298)
+        grids.insert(0, (every_10_hz, *granchain.reference_peaks(every_10_hz)))
+        machine.pin()
+    return "\n".join([_table(found, frequencies.size, notes), product(grids, tell)])
 
 
 def _table(found: list[Answer], points: int, notes: list[str]) -> str:
@@ -114,27 +121,37 @@ def _table(found: list[Answer], points: int, notes: list[str]) -> str:
                   "ns/contact", "× granchain"], rows, notes)
 
 
-def product(frequencies: np.ndarray, accurate: np.ndarray, periodic: np.ndarray, tell: Callable[[str], None]) -> str:
-    """`resonance_curve` as a user calls it: settled states with proof, on all cores and on one (product.py)."""
-    tell(f"resonance_curve, {_TURNS} turns")
+def product(grids: list[tuple[np.ndarray, np.ndarray, np.ndarray]], tell: Callable[[str], None]) -> str:
+    """`resonance_curve` as a user calls it: settled states with proof, on all cores and on one (product.py).
+
+    `grids` are frequencies with their accurate peaks and whether these are periodic.
+    """
     machine.unpin()
+    rows = []
+    for frequencies, accurate, periodic in grids:
+        tell(f"resonance_curve of {frequencies.size} points, {_TURNS} turns")
+        rows += _product_rows(frequencies, accurate, periodic)
+    machine.pin()
+    return table("The product: settled or shown irregular at every point, not 120 periods",
+                 ["call", "points", "cores", "median", "least", "periodic", "compared", "worst", "median error"], rows,
+                 [f"In a process of its own. Median and least of {_TURNS}, the two in turns."])
+
+
+def _product_rows(frequencies: np.ndarray, accurate: np.ndarray, periodic: np.ndarray) -> list[list[str]]:
     with tempfile.TemporaryDirectory() as folder:
         wanted = Path(folder, "frequencies.json")
         wanted.write_text(json.dumps(list(frequencies)), encoding="utf-8")
         answer = subprocess.run([sys.executable, "-m", "tests.benchmarks.product", str(_TURNS), str(wanted)], cwd=_ROOT,
                                 capture_output=True, text=True, check=True)
-    machine.pin()
     rows = []
     for workers, found in json.loads(answer.stdout.strip().splitlines()[-1]).items():
         settled = np.array(found["periodic"])
         both = settled & periodic
         off = np.abs(np.array(found["forces"]) / _force_unit() / accurate - 1.0)[both]
-        rows.append(["resonance_curve", f"{workers} threads", seconds(statistics.median(found["seconds"])),
+        rows.append(["resonance_curve", f"{frequencies.size}", f"{workers} threads", seconds(statistics.median(found["seconds"])),
                      seconds(min(found["seconds"])), f"{settled.sum()}", f"{both.sum()}", f"{off.max():.0e}",
                      f"{np.median(off):.0e}"])
-    return table("The product: settled or shown irregular at every point, not 120 periods",
-                 ["call", "cores", "median", "least", "periodic", "compared", "worst", "median error"], rows,
-                 [f"In a process of its own. Median and least of {_TURNS}, the two in turns."])
+    return rows
 
 
 def _force_unit() -> float:
