@@ -21,7 +21,7 @@ from ..kernels.batch.begin import (
     orbits_until_checked,
 )
 from ..kernels.batch.checks import check_member
-from ..kernels.batch.record import STROBES_KEPT
+from ..kernels.batch.record import MAXIMA, STROBES_KEPT
 from ..kernels.batch.run import IS_SHADOW, NO_SHADOW, BatchState, Members, run_batch
 from ..kernels.batch.unequal import Unequal
 from ..kernels.batch_size import BATCH_SIZE
@@ -29,7 +29,7 @@ from ..kernels.compiling.by_address import address_of
 from ..kernels.compiling.entry import entry, type_guard
 from ..kernels.compiling.jit import unknown_slots
 from ..kernels.equations.motion import Slots
-from ..kernels.forces.peaks import PEAKS
+from ..kernels.forces.peaks import BATCH_PEAKS
 from ..kernels.simd.vector import aligned
 from ..kernels.status import CANCELLED, DONE
 from ..kernels.strobes.extrapolation import ORBITS
@@ -93,10 +93,11 @@ class Batch:
             **counts, **numbers, y=_rows(rows), h=_rows(1), turn=_rows(2), overlaps=_rows(n + 1), end_contacts=_rows(4),
             phase=_rows(2),
             first_strobe=np.zeros((2, BATCH_SIZE), dtype=np.int64),
-            peaks=_rows(PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)),
+            peaks=_rows(BATCH_PEAKS), growth=np.zeros((BATCH_SIZE, STROBES_KEPT)),
             state_before=np.zeros((BATCH_SIZE, 2, n + 2)),
             fine_record=np.zeros((BATCH_SIZE, FINE_COLUMNS)), coarse_orbit=np.zeros((BATCH_SIZE, ORBIT_COLUMNS)),
-            strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)), maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, 5)),
+            strobes=np.zeros((BATCH_SIZE, 2 * STROBES_KEPT, 2, n + 2)),
+            maxima=np.zeros((BATCH_SIZE, STROBES_KEPT, MAXIMA)),
             last_check=np.zeros((BATCH_SIZE, CHECK_COLUMNS)), scale=np.zeros(2),
             change=change_workspace(LONGEST_PERIOD), limit=np.zeros((2, n + 2)), basis=np.zeros((ORBITS, rows)),
             triangle=np.zeros((ORBITS, ORBITS)),
@@ -202,10 +203,11 @@ class Batch:
         disturbed = self.state.slowest_decay[member] > 0.0
         return self.coarse_maxima(member) if disturbed else self.maxima(member, period)[0]
 
-    def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray]:
-        """Largest input, output and elastic output force (3,) of the last `periods` periods, and largest jumps (2,) of
-        input and output force, in scaled units."""
+    def maxima(self, member: int, periods: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Largest input, output and elastic output force (3,) of the last `periods` periods, and of input and output
+        force the largest jumps (2,) and the largest unresolved peaks (2,) (kernels/forces/peaks.py); in scaled units.
+        """
         run = int(self.state.periods[member])
         places = np.arange(max(1, run - min(periods, STROBES_KEPT) + 1), run + 1) % STROBES_KEPT
         largest = self.state.maxima[member, places].max(axis=0)
-        return largest[:3], largest[3:]
+        return largest[:3], largest[3:5], largest[5:]

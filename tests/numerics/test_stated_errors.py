@@ -83,15 +83,15 @@ def test_computations_with_the_same_steps_are_not_compared():
     assert 0.0 < np.abs(result.displacement - true).max() / np.abs(true).max() <= result.displacement_error <= chain.accuracy
 
 
-@pytest.mark.parametrize("base", ["sec2", "rig"])
+@pytest.mark.parametrize("base", curve_errors.BASES)
 def test_the_error_stated_by_a_curve_bounds_the_true_one(base):
     """Periodic points of batches at random drive, A₀, D and k against the converged orbit, every one of them."""
-    found = list(curve_errors.points(40, 9, base))
-    assert len(found) >= 20
+    found = list(curve_errors.points(60, 9, base))
+    assert len(found) >= 15
     ratio = np.array([p.error / p.stated for p in found])
     print(f"{base}: {len(found)} points, median {np.median(ratio):.2g}, worst {ratio.max():.2g}")
     assert (ratio <= 1.0).all()
-    assert max(p.stated for p in found) < 1e-2
+    assert np.median([p.stated for p in found]) < 1e-3, "a stated error that is always large says nothing"
 
 
 def test_what_the_samples_of_a_drive_leave_out_is_stated() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..compiling.by_address import call_at
 from ..compiling.jit import inline_llvm
-from ..forces.peaks import row_of, row_of_jump
+from ..forces.peaks import row_of, row_of_jump, row_of_unresolved
 from .record import STROBES_KEPT, append_strobe, is_finite_member
 
 
@@ -25,6 +25,8 @@ def end_period(state, member, check):
         maxima[3 + q] = state.peaks[row_of_jump(q), member]
         maxima[q] = max(maxima[q], maxima[3 + q])
         state.peaks[row_of_jump(q), member] = 0.0
+        maxima[5 + q] = state.peaks[row_of_unresolved(q), member]
+        state.peaks[row_of_unresolved(q), member] = 0.0
     state.phase[0, member], state.phase[1, member] = 0.0, 1.0
     state.steps_left[member] = state.steps[member]
     if not is_finite_member(state.y, member):

@@ -9,6 +9,8 @@ from ..equations.motion import copy
 
 #: At least this many of a member's last strobes are kept, once there are as many.
 STROBES_KEPT = 432
+#: Numbers kept of a period: three largest forces, and of input and output force the largest jump and unresolved peak.
+MAXIMA = 7
 
 
 @internal

@@ -55,7 +55,8 @@ class BatchState(NamedTuple):
     overlaps (N+1, L)        overlaps of the contacts one step ago
     end_contacts (4, L)      one step ago: overlap and rate of the first contact, overlap and rate of the last
     phase (2, L)             sine and cosine of the drive phase
-    peaks (PEAKS, L)         largest forces and jumps, and the last four values of each force (forces/peaks.py)
+    peaks (BATCH_PEAKS, L)   largest forces, jumps and unresolved peaks, and the last four values of each force
+                             (forces/peaks.py)
     steps, steps_left (L,)   steps in a period, and how many of them are left
     finer_steps (L,)         steps in a period of the finer run that follows once an orbit is found; 0 if none does
     periods, return_at (L,)  periods run, and the period at which the kernel returns at the latest
@@ -78,8 +79,8 @@ class BatchState(NamedTuple):
     fine_record (L, FINE_COLUMNS)  record of a finer run (begin.py); its period is 0 in a coarse one
     coarse_orbit (L, ORBIT_COLUMNS)  what the coarse run found (begin.py)
     strobes (L, 2R, 2, N+2)  states at the ends of periods
-    maxima (L, R, 5)         of the last R periods, a ring: three largest forces (input, output, elastic output) and two
-                             largest jumps (input, output)
+    maxima (L, R, MAXIMA)    of the last R periods, a ring: three largest forces (input, output, elastic output), then
+                             of the input and output force the largest jumps and the largest unresolved peaks
     last_check (L, CHECK_COLUMNS)  result of the last check (begin.py)
     stages                   three states, (2(N+2), L) each, of the stages of a step (step.py)
 

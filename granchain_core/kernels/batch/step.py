@@ -15,7 +15,16 @@ from ..effects.dissipation import JUMP_LAWS, LAWS, SMOOTH_LAWS, dashpot_force, u
 from ..effects.preload import batch_overlap
 from ..equations.body_forces import force_on_bead
 from ..forces.crossings import Approach, brief_touch, closing_rate
-from ..forces.peaks import INPUT, INPUT_JUMP, OUTPUT, OUTPUT_ELASTIC, OUTPUT_JUMP, update_batch_peak
+from ..forces.peaks import (
+    INPUT,
+    INPUT_JUMP,
+    INPUT_UNRESOLVED,
+    OUTPUT,
+    OUTPUT_ELASTIC,
+    OUTPUT_JUMP,
+    OUTPUT_UNRESOLVED,
+    update_batch_peak,
+)
 from ..simd.functions import above_zero, clip, gate, larger, root, root_by_series
 from ..simd.vector import blank, load_batch, positive_mask, store
 from .unequal import over_mass, times_stiffness
@@ -177,9 +186,11 @@ def update_batch_peaks(values, h, first_overlap, last_overlap, v0, chain_ends, b
     """Follow input force, output force and its elastic part in all members, where a step began."""
     law = values.slots.dissipation
     first, last = Approach(first_overlap, v0 - chain_ends.v_first), Approach(last_overlap, chain_ends.v_last)
-    update_batch_peak(peaks, INPUT, chain_ends.first_elastic + dashpot_force(law, first.overlap, first.rate))
-    update_batch_peak(peaks, OUTPUT, chain_ends.last_elastic + dashpot_force(law, last.overlap, last.rate))
-    update_batch_peak(peaks, OUTPUT_ELASTIC, chain_ends.last_elastic)
+    first_force = chain_ends.first_elastic + dashpot_force(law, first.overlap, first.rate)
+    last_force = chain_ends.last_elastic + dashpot_force(law, last.overlap, last.rate)
+    update_batch_peak(peaks, INPUT, first_force, INPUT_UNRESOLVED)
+    update_batch_peak(peaks, OUTPUT, last_force, OUTPUT_UNRESOLVED)
+    update_batch_peak(peaks, OUTPUT_ELASTIC, chain_ends.last_elastic, OUTPUT_UNRESOLVED)
     update_jumps(law, values, h, first, last, before, peaks)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiling.jit import brief_kernel, inline_llvm, internal
-from ..simd.functions import choose_peak, larger
-from ..simd.vector import load_batch, positive_mask, store
+from ..simd.functions import choose_peak, gate, larger
+from ..simd.vector import blank, load_batch, positive_mask, store
 
 #: Values stored for one force: the largest so far, then the last four, newest first.
 ROWS = 5
@@ -19,6 +19,9 @@ HIGHEST = 1.25
 INPUT, OUTPUT, OUTPUT_ELASTIC = 0, ROWS, 2 * ROWS
 #: ... then the largest jumps of the input and of the output force; and the size of the whole.
 INPUT_JUMP, OUTPUT_JUMP, PEAKS = 3 * ROWS, 3 * ROWS + 1, 3 * ROWS + 2
+#: In a batch two rows more: the largest peaks of the input and of the output force that are not smooth, and of which
+#: only a value on the grid is known; and the size of the whole.
+INPUT_UNRESOLVED, OUTPUT_UNRESOLVED, BATCH_PEAKS = PEAKS, PEAKS + 1, PEAKS + 2
 
 
 @inline_llvm
@@ -31,6 +34,12 @@ def row_of(force):
 def row_of_jump(force):
     """Row of the largest jump of a force: 0 input, 1 output."""
     return INPUT_JUMP + force
+
+
+@inline_llvm
+def row_of_unresolved(force):
+    """Row of the largest peak that is not smooth: 0 input, 1 output."""
+    return INPUT_UNRESOLVED + force
 
 
 @internal
@@ -93,13 +102,18 @@ def next_period(peaks):
 
 
 @inline_llvm
-def update_batch_peak(peaks, row, value):
-    """Follow one force in all members; its values begin at row `row` of a (rows, lanes) array."""
+def update_batch_peak(peaks, row, value, unresolved):
+    """Follow one force in all members; its values begin at row `row` of a (rows, lanes) array.
+
+    Where a peak is not smooth, as next to a closing or in a contact of a few steps, the row `unresolved` takes it.
+    """
     d, c = load_batch(peaks, row + 1), load_batch(peaks, row + 2)
     b, a = load_batch(peaks, row + 3), load_batch(peaks, row + 4)
     largest = larger(load_batch(peaks, row), value)
     if positive_mask(HIGHEST * c - largest) & positive_mask(c - b) & ~positive_mask(d - c) != 0:
         largest = larger(largest, choose_peak(a, b, c, d, value, quartic_top(a, b, c, d, value)))
+        rough = gate(c - b, choose_peak(a, b, c, d, value, blank(c)))
+        store(peaks, unresolved, larger(load_batch(peaks, unresolved), rough - gate(d - c, rough)))
     store(peaks, row, largest)
     store(peaks, row + 4, b)
     store(peaks, row + 3, c)

@@ -21,6 +21,7 @@ from ...kernels.batch.begin import (
     ORBIT_PERIODS,
     ORBIT_SLOWEST_DECAY,
 )
+from ...kernels.forces.peaks import HIGHEST
 from ...results.regime import Regime
 from ...scene import Scene
 from ...scene.state import State
@@ -120,16 +121,17 @@ class BatchJob:
         regime, before = self.coarse
         assert regime.period is not None and regime.distance is not None
         y, distance = batch.state.y[:, member], float(batch.state.last_check[member, CHECK_DISTANCE])
-        maxima, jumps = batch.maxima(member, regime.period)
+        maxima, jumps, unresolved = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
         multiplier = self._multiplier(regime, y, batch.stop)
         regime = replace(regime, distance=distance, multiplier=multiplier)
         left = force_distances(farther, self.scaled, maxima, y)
         errors = errors_of_two_orbits(relative_changes(maxima, before), _FINER_ERROR, regime.assumed_contraction) + left
-        if (jumps > AT_A_JUMP * maxima[:2]).any():
-            at_jump = np.append(jumps > AT_A_JUMP * maxima[:2], False)
+        rough = (jumps > AT_A_JUMP * maxima[:2]) | (HIGHEST * unresolved > maxima[:2])
+        if rough.any():
+            rough = np.append(rough, rough[1])
             located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
-            maxima, errors = np.where(at_jump, located, maxima), np.where(at_jump, located_errors, errors)
+            maxima, errors = np.where(rough, located, maxima), np.where(rough, located_errors, errors)
         maxima = maxima * self.scaled.scales.force
         undecided = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
         return SteadyState(self.scene, maxima, regime, errors, self.scaled.to_si(y), number=self.number,
