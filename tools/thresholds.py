@@ -109,7 +109,7 @@ def table_of_responses() -> str:
 
 
 def table_of_rotation_numbers() -> str:
-    """The second table of docs/regimes.md: rotation numbers."""
+    """The table of docs/rotation-number.md."""
     return _table("rotation")
 
 
