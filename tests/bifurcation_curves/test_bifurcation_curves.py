@@ -10,7 +10,7 @@ from granchain_core import BadInput, ComputationError, Scene, State, scene, sett
 from granchain_core.bifurcation_curves import bifurcation_curves
 from granchain_core.bifurcation_curves.continuation import BifurcationPoint, bifurcation_point, points_of_curve
 from granchain_core.orbits import continue_branch, periodic_orbit
-from granchain_core.parameter_map import diagram
+from granchain_core.parameter_map import parameter_map
 
 pytestmark = pytest.mark.quick
 
@@ -118,7 +118,7 @@ def test_wrong_requests_are_one_sentence() -> None:
 
 
 def test_a_diagram_shows_where_its_bifurcation_curves_are() -> None:
-    found = diagram(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
+    found = parameter_map(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
     curves = bifurcation_curves(found, rows=[1])
     told = {(curve.kind, curve.period): curve for curve in curves}
     # period 1 doubles at 512 Hz; the orbit of period 2 in its turn near 572 Hz, into one of period 4 or more
@@ -135,7 +135,7 @@ def test_a_bifurcation_curve_is_followed_to_where_its_second_knob_is_zero() -> N
     """Three beads at 1300 Hz: from k = 2e4 N/m to a chain without foundation, whose period doubling a branch over D
     finds as well."""
     chain = scene("sec2").evolve(N=3, f=1300.0)
-    found = bifurcation_curves(diagram(chain, ("D", np.linspace(70.0, 76.0, 5)), ("k", [0.0, 2e4])), rows=[1])
+    found = bifurcation_curves(parameter_map(chain, ("D", np.linspace(70.0, 76.0, 5)), ("k", [0.0, 2e4])), rows=[1])
     (curve,) = [one for one in found if one.kind == "period_doubling" and one.period == 1]
     (at_zero,) = [point.x for point in curve.points if point.y == 0.0]
     doublings = [one for one in continue_branch(chain, "D", 76.0, 70.0).special if one.kind == "period_doubling"]
