@@ -26,13 +26,9 @@ _COMMANDS = sorted({command for page in PAGES for command in commands(page)})
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_links_and_named_files_exist(page: Path):
-    """Every relative link and every path with a folder in backquotes is there.
-
-    docs/add-an-effect.md makes its own, from which docs/add-a-quadratic-drag.md goes on.
-    """
+    """Every relative link and every path with a folder in backquotes is there, or the page writes it."""
     text = page.read_text(encoding="utf-8")
-    before = [page.with_name("add-an-effect.md")] if page.name == "add-a-quadratic-drag.md" else []
-    files = [Path(block.path) for one in (page, *before) for block in blocks(one) if block.is_new_file]
+    files = [Path(block.path) for block in blocks(page) if block.is_new_file]
     made = {str(path) for file in files for path in (file, file.parent)}
     for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", text):
         assert (page.parent / target).exists(), target
