@@ -158,6 +158,15 @@ def test_python_examples_run(page: Path, tmp_path: Path):
         assert text.split(":")[0] in printed, (text, printed)
 
 
+def test_the_flow_has_a_time_substitution_and_only_dop853_root_a_transformed_time():
+    """Two different things, one name each (docs/glossary.md)."""
+    flow = [*(ROOT / "granchain_core" / "kernels" / "flow").glob("*.py"), *(ROOT / "granchain_core" / "orbits").rglob("*.py"),
+            ROOT / "docs" / "orbits.md", ROOT / "docs" / "branches.md"]
+    assert [path.name for path in flow if re.search(r"transformed time|regularis", path.read_text(encoding="utf-8"), re.IGNORECASE)] == []
+    rows = [line for page in ("design.md", "method.md") for line in (ROOT / "docs" / page).read_text("utf-8").splitlines() if "flow" in line]
+    assert rows and not [line for line in rows if re.search(r"transformed time|regularis", line) and "dop853_root" not in line]
+
+
 def test_ci_runs_the_second_command_of_the_readme():
     """.ci/run takes the second sh block; it must be one line that runs pytest and makes its own environment."""
     shells = [block.text for block in blocks(ROOT / "README.md") if block.language == "sh"]
