@@ -82,7 +82,7 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
     ("docs/design.md", {
         r"empties every ([\d.]+) ms": 1e3 * threads._INTERVAL, r"each task is a block of (\d+) points": resonance_curve.POINTS_IN_TASK,
         r"at most (\d+) periods before Python looks": regime_decisions.EXAMINED_AFTER,
-        r"continues \*fine\*, with (a \w+) of the step": PARTS[job.FINE_STEPS_PER_COARSE],
+        r"motion continues with (a \w+) of the step": PARTS[job.FINE_STEPS_PER_COARSE],
         r"coarse steps for (\d+) periods beside": exponent_measurements.MEASURED_PERIODS, r"at best to ([\de-]+) \(`CURVE_ACCURACY`": single_chain.CURVE_ACCURACY}),
     ("docs/regimes.md", {
         r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
