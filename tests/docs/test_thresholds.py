@@ -18,7 +18,6 @@ from granchain_core import orbit, scene
 from granchain_core.kernels.batch import checks, record
 from granchain_core.observe.drift import TRANSLATION
 from granchain_core.orbits.branch import ends, newton, normal_forms, special, steps
-from granchain_core.results import regime
 from granchain_core.results.regime import Regime
 from granchain_core.steady import exponent_measurements, regime_criteria
 from granchain_core.steady.batch import job, threads
@@ -88,7 +87,7 @@ NUMBERS = {2: "two", 3: "three", 4: "four"}
         r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
         r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS, r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
         r"which means that \|mean\| − 3σ is below ([\d.]+);": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
-        r"computed it is r, at most ([\d.]+), and": regime.SLOWEST_TRUSTED_DECAY, r"decay was seen it is ([\d.]+) \(": regime.DECAY_NOT_SEEN,
+        r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction, r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
         r"below ([\d.]+) \+ 3σ": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
         r"Up to (\d+) periods the limit": regime_criteria._BOUNDED_GROWTH / regime_criteria._LARGEST_NEUTRAL_EXPONENT}),
     ("granchain_core/steady/regime_criteria.py", {
