@@ -19,7 +19,7 @@ def figure(result: Any, theme: str = "light", width: int | None = None, height: 
 
     Parameters
     ----------
-    result : Run, Settled, Driven, Pulse, Curve, Orbit, Branch, Diagram, Observation, WorkPrecision, Fit, Spectrum, …
+    result : Run, Settled, Driven, Pulse, Curve, Orbit, Branch, ParameterMap, Observation, Fit, Spectrum, …
         What a function of granchain returned, a list of curves or of branches, or a result of
         `granchain_core.paper.compute`.
     theme : str

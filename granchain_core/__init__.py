@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from .orbits import continue_branch as continue_branch
     from .orbits import periodic_orbit as orbit
     from .orbits import periodic_orbit as periodic_orbit
-    from .parameter_map import Diagram, diagram
+    from .parameter_map import Diagram, ParameterMap, diagram, parameter_map
     from .prescribed_drive import Driven, Signal, drive
     from .results.regime import Regime
     from .results.run import Cost, Run
@@ -65,7 +65,8 @@ _MODULES = {
     "steady.curve.curve": ("Curve", "CurvePoint"),
     "steady.curve.resonance_curve": ("iter_curve", "resonance_curve"),
     "orbits": ("Branch", "Orbit", "continue_branch", "periodic_orbit"), "fit": ("Fit", "fit"),
-    "parameter_map": ("Diagram", "diagram"), "attractors": ("Attractor", "Attractors", "attractors"),
+    "parameter_map": ("Diagram", "ParameterMap", "diagram", "parameter_map"),
+    "attractors": ("Attractor", "Attractors", "attractors"),
     "bifurcation_curves": ("BifurcationCurve", "bifurcation_curves"),
     "prescribed_drive": ("Driven", "Signal", "drive"), "observe": ("Observation", "observe"),
     "accuracy": ("WorkPrecision", "work_precision"), "store": ("load", "save"),
@@ -81,16 +82,17 @@ _SHORT = {"orbit": "periodic_orbit", "branch": "continue_branch"}
 
 #: Older names, which still work (docs/python.md).
 OLDER_NAMES = {"settled": "settle", "periodic_orbit": "orbit", "continue_branch": "branch",
-               "NumbersFailed": "ComputationError"}
+               "diagram": "parameter_map", "Diagram": "ParameterMap", "NumbersFailed": "ComputationError"}
 
 __all__ = [
     "Amplitude", "Attractor", "Attractors", "BadInput", "Basins", "Bead", "BifurcationCurve", "Branch", "Cancelled",
     "ComputationError", "Cost", "Curve", "CurvePoint", "Diagram", "Driven", "Fit", "LiveChain", "LyapunovSpectrum",
-    "Observation", "Orbit", "OverBudget", "Pulse", "Regime", "RotationNumber", "Run", "Runs", "Scene", "Settled",
-    "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision", "__version__", "attractors",
-    "bands", "basins", "bifurcation_curves", "branch", "diagram", "drive", "fit", "iter_curve", "load",
-    "lyapunov_spectrum", "observe", "orbit", "pulse", "resonance_curve", "rotation_number", "run", "run_many", "save",
-    "scene", "scene_names", "settle", "settling", "spectrum", "strobe_diagram", "transfer", "work_precision",
+    "Observation", "Orbit", "OverBudget", "ParameterMap", "Pulse", "Regime", "RotationNumber", "Run", "Runs",
+    "Scene", "Settled", "Signal", "Spectrum", "State", "Stop", "StrobeDiagram", "Transfer", "WorkPrecision",
+    "__version__", "attractors", "bands", "basins", "bifurcation_curves", "branch", "diagram", "drive", "fit",
+    "iter_curve", "load", "lyapunov_spectrum", "observe", "orbit", "parameter_map", "pulse", "resonance_curve",
+    "rotation_number", "run", "run_many", "save", "scene", "scene_names", "settle", "settling", "spectrum",
+    "strobe_diagram", "transfer", "work_precision",
 ]
 
 

@@ -21,6 +21,8 @@ _MARKED = re.compile(r"^#: \[([a-z, -]+)\] ((?:.*\n)(?:#: .*\n)*)(\w+)\b.*=", re
 #: The first two lines of a table.
 _HEAD = ("| what | threshold | constant and file |", "|---|---|---|")
 _REGIMES = ("period n", "followed", "chaotic", "quasi-periodic", "unsettled", "all")
+#: Marks that a heading has in other words: `followed` is the name of the regime's key in JSON and files.
+_IN_WORDS = {"followed": "an orbit that the motion still approaches", "all": "every regime"}
 
 
 @dataclass(frozen=True)
@@ -75,7 +77,7 @@ def tables_of_regimes() -> str:
         parts[heading] = [_row(one, begin) for one in period_n if _way(one) == begin]
     for one in rows:
         if one.mark != "period n":
-            heading = "every regime" if one.mark == "all" else one.mark
+            heading = ", ".join(_IN_WORDS.get(mark, mark) for mark in one.mark.split(", "))
             parts.setdefault(heading, []).append(_row(one))
     return "\n\n".join("\n".join([f"### Thresholds: {heading}", "", *_HEAD, *cells]) for heading, cells in parts.items())
 
@@ -109,7 +111,7 @@ def table_of_responses() -> str:
 
 
 def table_of_rotation_numbers() -> str:
-    """The second table of docs/regimes.md: rotation numbers."""
+    """The table of docs/rotation-number.md."""
     return _table("rotation")
 
 

@@ -2,10 +2,10 @@
 
     python -m tools.update
 
-- tables in the docs: thresholds (docs/regimes.md, orbits.md, branches.md, accuracy.md), methods (docs/method.md), knobs
-  (docs/model.md), scenes and the list of commands with pictures (README.md), drives by a formula (docs/scenes.md), what
-  is used of libraries (docs/libraries.md), metrics (docs/deployment.md), the dashboard's pages in the map of the code
-  (docs/design.md) and its messages (docs/dashboard.md);
+- tables in the docs: thresholds (docs/regimes.md, rotation-number.md, orbits.md, branches.md, accuracy.md), methods
+  (docs/method.md), knobs (docs/model.md), scenes and the list of commands with pictures (README.md), drives by a
+  formula (docs/scenes.md), what is used of libraries (docs/libraries.md), metrics (docs/deployment.md), the dashboard's
+  pages in the map of the code (docs/design.md) and its messages (docs/dashboard.md);
 - a row for every new scene in the test of share links (tools/links.py);
 - for every new or changed scene the largest values that its pictures are drawn to (tools/scales.py) and its picture in
   the gallery (tools/gallery.py).
@@ -49,7 +49,7 @@ _COMMAND = "python -m tools.update"
 _TABLES = (
     ("docs/regimes.md", "deciding thresholds", table_of_deciding),
     ("docs/regimes.md", "thresholds", tables_of_regimes),
-    ("docs/regimes.md", "rotation thresholds", table_of_rotation_numbers),
+    ("docs/rotation-number.md", "rotation thresholds", table_of_rotation_numbers),
     ("docs/orbits.md", "thresholds", table_of_responses),
     ("docs/branches.md", "branch constants", table_of_branches),
     ("docs/accuracy.md", "safety factors", table_of_safety_factors),

@@ -15,7 +15,7 @@ from granchain_core import BadInput, Cancelled
 from granchain_core.bifurcation_curves import BifurcationCurve, bifurcation_curves
 from granchain_core.execution.stop import Stop
 from granchain_core.orbits.stroboscopic_map import refuse_cut
-from granchain_core.parameter_map import Axis, Diagram, Grid, iter_diagram
+from granchain_core.parameter_map import Axis, Grid, ParameterMap, iter_parameter_map
 from granchain_core.parameter_map.blocks import Blocks
 from granchain_core.parameter_map.cells import CELL_REGIMES, ERRORS, cell_of
 from granchain_core.parameter_map.grid import MOST_CELLS
@@ -87,11 +87,11 @@ def do(arguments: argparse.Namespace) -> None:
     _tell(found, curves, computed, arguments)
 
 
-def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
+def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[ParameterMap, int]:
     """The parameter map and its file, of which only missing cells are computed, and how many those were."""
-    from granchain_core.store.diagrams import load_diagram, save_diagram
+    from granchain_core.store.parameter_maps import load_parameter_map, save_parameter_map
 
-    there = finished(arguments, "map", load_diagram,
+    there = finished(arguments, "map", load_parameter_map,
                      lambda found: found.complete and found.grid.digest == grid.digest)
     if there is not None:
         Blocks(grid, arguments.out).kept.remove()
@@ -103,7 +103,7 @@ def _found(arguments: argparse.Namespace, grid: Grid) -> tuple[Diagram, int]:
               keeping(blocks.kept, lambda: f"{done[0]} of {grid.size} cells")):
             found, computed = in_background(lambda stop: _filled(blocks, client, stop, done), reports=True)
     with unbroken(arguments.out):
-        save_diagram(found, arguments.out)
+        save_parameter_map(found, arguments.out)
         blocks.kept.remove()
     return found, computed
 
@@ -116,7 +116,7 @@ def _refuse_too_many(grid: Grid) -> None:
                        "an axis, or leave --picture out.")
 
 
-def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[Diagram, int]:
+def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[ParameterMap, int]:
     """The whole parameter map, of which only missing cells are computed, and how many those were; counts in `done`."""
     began, grid = time.perf_counter(), blocks.grid
     cells = blocks.cells()
@@ -132,7 +132,7 @@ def _filled(blocks: Blocks, client: Any, stop: Stop, done: list[int]) -> tuple[D
             print(f"\r{100 * done[0] / grid.size:3.0f} %", end="", file=sys.stderr, flush=True)
     if done[0] < grid.size:
         raise Cancelled
-    return Diagram(grid, cells, time.perf_counter() - began), len(missing)
+    return ParameterMap(grid, cells, time.perf_counter() - began), len(missing)
 
 
 def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[np.ndarray]:
@@ -142,13 +142,13 @@ def _rows(grid: Grid, missing: list[int], client: Any, stop: Stop) -> Iterator[n
 
         yield from iter_blocks(client, grid, missing, stop)
         return
-    for result in iter_diagram(grid, missing, stop):
+    for result in iter_parameter_map(grid, missing, stop):
         if result.failure:
             say(f"{grid.y.knob} = {result.scene.knobs[grid.y.knob]:g}: {result.failure}")
         yield np.atleast_1d(cell_of(result))
 
 
-def _tell(found: Diagram, curves: list[BifurcationCurve], computed: int, arguments: argparse.Namespace) -> None:
+def _tell(found: ParameterMap, curves: list[BifurcationCurve], computed: int, arguments: argparse.Namespace) -> None:
     counts = {name: int((found.cells["regime"] == code).sum()) for code, name in enumerate(CELL_REGIMES)}
     inward, worst, elastic = (_largest(found.cells[name]) for name in ERRORS)
     if arguments.json:

@@ -17,12 +17,12 @@ from granchain_core import (
     BifurcationCurve,
     Branch,
     Curve,
-    Diagram,
     Driven,
     Fit,
     LyapunovSpectrum,
     Observation,
     Orbit,
+    ParameterMap,
     Pulse,
     RotationNumber,
     Run,
@@ -88,7 +88,7 @@ def _branch(found: Branch, theme: Theme, now: float | None = None) -> LayoutDOM:
     return branches([found], theme, now)
 
 
-def both_maps(found: Diagram, theme: Theme, shown: str = "both",
+def both_maps(found: ParameterMap, theme: Theme, shown: str = "both",
               curves: Sequence[BifurcationCurve] = ()) -> LayoutDOM:
     """The map of forces above the map of regimes; `shown` is "force" or "regime" for one of them."""
     if shown != "both":
@@ -118,7 +118,7 @@ def _bead(name: str, found: Run | Settled, theme: Theme, bead: int | None = None
 #: The function that draws each class of results.
 DRAWERS: dict[type, Callable[..., LayoutDOM]] = {
     Run: motion, Settled: _settled, Driven: motion, Pulse: _pulse, Curve: _curve, Orbit: multipliers, Branch: _branch,
-    Diagram: both_maps, Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum,
+    ParameterMap: both_maps, Observation: observation, WorkPrecision: measured_accuracy, Fit: fit, Spectrum: spectrum,
     Transfer: transfer, LyapunovSpectrum: lyapunov, RotationNumber: rotation, StrobeDiagram: _strobes,
     Basins: basins, Attractors: attractors,
 }
@@ -176,7 +176,7 @@ def _drawing(result: Any) -> tuple[Callable[..., LayoutDOM], tuple[int, int]]:
         return paper_figure, size_of(result)
     for kind, draw in DRAWERS.items():
         if isinstance(result, kind):
-            return draw, (WIDTH, 2 * HEIGHT if kind is Diagram else HEIGHT)
+            return draw, (WIDTH, 2 * HEIGHT if kind is ParameterMap else HEIGHT)
     if isinstance(result, Sequence) and not isinstance(result, str) and result:
         for kind, draw in _TOGETHER.items():
             if all(isinstance(one, kind) for one in result):

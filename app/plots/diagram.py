@@ -26,7 +26,7 @@ from bokeh.plotting import figure
 from bokeh.transform import factor_cmap, transform
 
 from granchain_core.bifurcation_curves import BifurcationCurve
-from granchain_core.parameter_map import Axis, Diagram, Grid
+from granchain_core.parameter_map import Axis, Grid, ParameterMap
 from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
 from granchain_core.results.regime import exponent_words
 
@@ -47,7 +47,7 @@ _CELL = ("left", "right", "bottom", "top", "x", "y", "force", "regime", "tooltip
          "number", "own_right", "own_top")
 
 
-def diagram(found: Diagram, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
+def diagram(found: ParameterMap, theme: Theme, shown: str = "force", now: tuple[float, float] | None = None,
             curves: Sequence[BifurcationCurve] = ()) -> figure:
     """All computed cells of a parameter map over its two knobs; `shown` is "force" or "regime".
 
@@ -191,9 +191,9 @@ def now_row(grid: Grid, x: float | None = None, y: float | None = None) -> dict[
     return {"x": [x / across.factor], "y": [y / up.factor]}
 
 
-def nothing(grid: Grid) -> Diagram:
+def nothing(grid: Grid) -> ParameterMap:
     """A parameter map of which nothing is computed."""
-    return Diagram(grid, empty_cells(grid))
+    return ParameterMap(grid, empty_cells(grid))
 
 
 def category(cell: np.ndarray) -> str:

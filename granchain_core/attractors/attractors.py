@@ -56,7 +56,8 @@ def attractors(scene: Scene, random_states: int = 64, seed: int = 0, stop: Stop 
                progress: Callable[[float], None] | None = None) -> Attractors:
     """All steady states of one setting that are found from rest, from sweeps of f both ways and from random states.
 
-    Random states are uniform in a box, and their shares refer to it (docs/diagram.md, "All attractors of one setting").
+    Random states are uniform in a box, and their shares refer to it (docs/parameter-map.md, "All attractors of one
+    setting").
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Comparing results: whether two of them are the same steady state.
 
-docs/diagram.md ("All attractors of one setting") has the rules and the reasons.
+docs/parameter-map.md ("All attractors of one setting") has the rules and the reasons.
 """
 
 from __future__ import annotations

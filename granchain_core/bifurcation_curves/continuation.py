@@ -12,7 +12,7 @@ arclength s, on which Newton's method solves map(state, x) = state bordered by t
 need no special treatment; the root of the condition along s is found by secants. From one y to the next the curve is
 extrapolated, with steps that are halved where that fails.
 
-docs/diagram.md says why Newton's method here (`_Branch.solve`) is not that of orbits/branch.
+docs/parameter-map.md says why Newton's method here (`_Branch.solve`) is not that of orbits/branch.
 
 Source: Kuznetsov 2004, chapter 10.
 """

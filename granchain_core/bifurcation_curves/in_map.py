@@ -17,7 +17,7 @@ from ..errors import BadInput, ComputationError
 from ..execution.stop import Stop
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.stroboscopic_map import refuse_cut
-from ..parameter_map.cells import CELL_REGIMES, Diagram
+from ..parameter_map.cells import CELL_REGIMES, ParameterMap
 from ..scene.quantities import QUANTITIES
 from .continuation import BifurcationPoint, bifurcation_point, points_of_curve
 
@@ -45,8 +45,8 @@ class BifurcationCurve:
 
     Examples
     --------
-    >>> from granchain_core import bifurcation_curves, diagram, scene
-    >>> found = diagram(scene("sec2").evolve(N=3), ("f", [1860.0, 1900.0]), ("A0", [4.5e-7, 5e-7]))
+    >>> from granchain_core import bifurcation_curves, parameter_map, scene
+    >>> found = parameter_map(scene("sec2").evolve(N=3), ("f", [1860.0, 1900.0]), ("A0", [4.5e-7, 5e-7]))
     >>> [(curve.kind, curve.period, len(curve.points)) for curve in bifurcation_curves(found)]
     [('period_doubling', 1, 2)]
     """
@@ -74,18 +74,18 @@ class _Pair:
     period: int
 
 
-def bifurcation_curves(found: Diagram, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
+def bifurcation_curves(found: ParameterMap, rows: Iterable[int] | None = None, values: Iterable[float] | None = None,
                        stop: Stop | None = None,
                        on_curve: Callable[[BifurcationCurve], None] | None = None) -> list[BifurcationCurve]:
     """The bifurcation curves in a parameter map: folds, period doublings and Neimark–Sacker points over its two knobs.
 
     Between neighbouring cells of a row that are not alike the bifurcation is found, and then continued in y. Curves
     that cannot be followed are left out: two neighbours from rest may be on two attractors with no bifurcation between
-    them (docs/diagram.md, "Bifurcation curves").
+    them (docs/parameter-map.md, "Bifurcation curves").
 
     Parameters
     ----------
-    found : Diagram
+    found : ParameterMap
         The parameter map.
     rows : iterable of int, optional
         The rows in which neighbours are compared, from 0; the middle one if not given.
@@ -110,8 +110,8 @@ def bifurcation_curves(found: Diagram, rows: Iterable[int] | None = None, values
 
     Examples
     --------
-    >>> from granchain_core import bifurcation_curves, diagram, scene
-    >>> found = diagram(scene("sec2").evolve(N=3), ("f", [1860.0, 1900.0]), ("A0", [4.5e-7, 5e-7]))
+    >>> from granchain_core import bifurcation_curves, parameter_map, scene
+    >>> found = parameter_map(scene("sec2").evolve(N=3), ("f", [1860.0, 1900.0]), ("A0", [4.5e-7, 5e-7]))
     >>> curve, = bifurcation_curves(found)
     >>> [f"{point.x:.1f} Hz, {point.multiplier.real:.3f}" for point in curve.points]
     ['1842.5 Hz, -1.000', '1882.4 Hz, -1.000']
@@ -140,7 +140,7 @@ def bifurcation_curves(found: Diagram, rows: Iterable[int] | None = None, values
     return curves
 
 
-def _pairs(found: Diagram, row: int) -> Iterator[_Pair]:
+def _pairs(found: ParameterMap, row: int) -> Iterator[_Pair]:
     """Neighbours in a row of which one is periodic and the other something else."""
     width = found.grid.shape[1]
     quasi = CELL_REGIMES.index("quasi-periodic")
@@ -158,7 +158,7 @@ def _pairs(found: Diagram, row: int) -> Iterator[_Pair]:
                 yield _Pair(inside, outside, "fold", period)
 
 
-def _between(found: Diagram, pair: _Pair, stop: Stop | None) -> BifurcationPoint | None:
+def _between(found: ParameterMap, pair: _Pair, stop: Stop | None) -> BifurcationPoint | None:
     """The point between two cells, from the orbit that comes nearest to it; None where there is none."""
     grid = found.grid
     columns = [number % grid.shape[1] for number in (pair.inside, pair.outside)]
@@ -192,7 +192,7 @@ def _away(orbit: Orbit, kind: str) -> float:
     return float(np.abs(orbit.multipliers - (1.0 if kind == "fold" else -1.0)).min())
 
 
-def _lies_on(found: Diagram, point: BifurcationPoint, pair: _Pair, curve: BifurcationCurve) -> bool:
+def _lies_on(found: ParameterMap, point: BifurcationPoint, pair: _Pair, curve: BifurcationCurve) -> bool:
     """Whether a point is on a curve found before."""
     if (curve.kind, curve.period) != (pair.kind, pair.period):
         return False

@@ -1,11 +1,13 @@
 """The parameter map: regime and largest forces over two knobs, every cell from rest.
 
-In code a parameter map is a `Diagram`, which `diagram` computes, and `granchain map` on the command line. The diagram
-over one knob, the bifurcation diagram, is in `analysis/strobe_diagram.py`.
+`diagram` and `Diagram` are older names of `parameter_map` and `ParameterMap`. The diagram over one knob, the
+bifurcation diagram, is in `analysis/strobe_diagram.py`.
 """
 
-from .cells import Diagram
-from .compute import diagram, iter_diagram
+from .cells import ParameterMap
+from .compute import iter_parameter_map, parameter_map
 from .grid import Axis, Grid
 
-__all__ = ["Axis", "Diagram", "Grid", "diagram", "iter_diagram"]
+Diagram, diagram, iter_diagram = ParameterMap, parameter_map, iter_parameter_map
+
+__all__ = ["Axis", "Grid", "ParameterMap", "iter_parameter_map", "parameter_map"]

@@ -70,7 +70,7 @@ def _or_nan(value: float | None) -> float:
 
 
 @dataclass(eq=False, repr=False)
-class Diagram(Labelled):
+class ParameterMap(Labelled):
     """A parameter map: regime and largest forces over two knobs.
 
     Attributes
@@ -84,8 +84,8 @@ class Diagram(Labelled):
 
     Examples
     --------
-    >>> from granchain_core import diagram, scene
-    >>> found = diagram(scene("sec2").evolve(N=2), ("f", [1900.0, 2000.0]), ("A0", [5e-7]))
+    >>> from granchain_core import parameter_map, scene
+    >>> found = parameter_map(scene("sec2").evolve(N=2), ("f", [1900.0, 2000.0]), ("A0", [5e-7]))
     >>> found.complete, found.column("max_output_force").shape, found.regime(0).name
     (True, (1, 2), 'periodic')
     """

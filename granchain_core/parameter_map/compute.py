@@ -13,7 +13,7 @@ from ..scene import Amplitude, Scene
 from ..steady.batch.job import Start
 from ..steady.batch.starts import settle_on_all_cores, settle_starts
 from ..steady.steady_state import SteadyState
-from .cells import Diagram, cell_of, empty_cells
+from .cells import ParameterMap, cell_of, empty_cells
 from .grid import Axis, Grid
 
 
@@ -39,9 +39,9 @@ def block_cells(grid: Grid, numbers: Sequence[int], stop: Stop | None = None) ->
     return np.array(found)
 
 
-def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
-                 stop: Stop | None = None, workers: int | None = None,
-                 pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
+def iter_parameter_map(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
+                       stop: Stop | None = None, workers: int | None = None,
+                       pause: Callable[[], None] | None = None) -> Iterator[SteadyState]:
     """Cells of the parameter map as they are decided, coarse first; `missing` are those wanted, else all.
 
     The result's `number` is the cell's. `stop` is read between cells and ends the computation; running cells
@@ -55,9 +55,9 @@ def iter_diagram(grid: Grid, missing: Sequence[int] | np.ndarray | None = None,
             return
 
 
-def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
-            stop: Stop | None = None, progress: Callable[[Diagram, float], None] | None = None,
-            workers: int | None = None, amplitude: Amplitude | None = None) -> Diagram:
+def parameter_map(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable[float]],
+                  stop: Stop | None = None, progress: Callable[[ParameterMap, float], None] | None = None,
+                  workers: int | None = None, amplitude: Amplitude | None = None) -> ParameterMap:
     """The parameter map: regime and largest forces over two knobs, every cell from rest, on all cores.
 
     Cells are computed in batches with fixed steps, whatever the scene's `accuracy`, and state the error they have.
@@ -79,7 +79,7 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
 
     Returns
     -------
-    Diagram
+    ParameterMap
         A table of cells, (len(y), len(x)).
 
     Raises
@@ -89,8 +89,8 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
 
     Examples
     --------
-    >>> from granchain_core import diagram, scene
-    >>> found = diagram(scene("sec2").evolve(N=2), ("f", [1900.0, 2000.0, 2100.0]), ("A0", [4e-7, 5e-7]))
+    >>> from granchain_core import parameter_map, scene
+    >>> found = parameter_map(scene("sec2").evolve(N=2), ("f", [1900.0, 2000.0, 2100.0]), ("A0", [4e-7, 5e-7]))
     >>> found.column("period")
     array([[1, 1, 1],
            [1, 1, 1]], dtype=int16)
@@ -99,8 +99,8 @@ def diagram(scene: Scene, x: tuple[str, Iterable[float]], y: tuple[str, Iterable
     """
     began = time.perf_counter()
     grid = Grid(scene, Axis.of(*axis_in("x", x)), Axis.of(*axis_in("y", y)), amplitude)
-    found = Diagram(grid, empty_cells(grid))
-    for done, result in enumerate(iter_diagram(grid, None, stop, workers), start=1):
+    found = ParameterMap(grid, empty_cells(grid))
+    for done, result in enumerate(iter_parameter_map(grid, None, stop, workers), start=1):
         found.cells[result.number] = cell_of(result)
         found.wall_s = time.perf_counter() - began
         if progress is not None:

@@ -1,6 +1,6 @@
 """What several measurements of one motion's Lyapunov exponent decide together: the rule of single chains and batches.
 
-A measurement whose error is too large for a decision is continued. One that is clearly chaotic decides by itself, and
+A measurement that does not suffice for a decision is continued. One that is clearly chaotic decides by itself, and
 so does a quasi-periodic one that was continued, since it is as long as two; any other must agree with the one before it
 (regime_criteria.py).
 """
@@ -30,7 +30,7 @@ class ExponentMeasurements:
     """Measurements of one motion so far.
 
     `latest` is the regime that the last complete measurement shows, `complete` the number of them; `unfinished` holds
-    the growth (P,) in the periods of one whose error is too large for a decision. `offset` (2(N+2),), scaled, leads to
+    the growth (P,) in the periods of one that does not suffice for a decision. `offset` (2(N+2),), scaled, leads to
     the neighbouring trajectory where the last one ended, if the next one begins there and goes on with it.
     """
 

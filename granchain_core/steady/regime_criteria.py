@@ -31,6 +31,9 @@ _BOUNDED_GROWTH = 6.0
 #: [quasi-periodic] Largest mean exponent per period, and largest three standard errors of it. All but weak chaos, below
 #: this exponent, is excluded.
 _LARGEST_NEUTRAL_EXPONENT = 0.01
+#: [quasi-periodic] A neutral mean that differs from zero by more than its error is measured further where so many
+#: periods, in all, can tell it from the bias that a torus may have. A chain alone measures no longer than that.
+_LONGEST_COMPARISON = 1760
 #: [quasi-periodic] Drive periods in one of the three windows in which a slow approach must show.
 _SLOW_WINDOW = 100
 #: [quasi-periodic] Changes shrink if a window has less than this fraction of those of the window before. A closed curve
@@ -107,9 +110,10 @@ def is_neutral(mean: float, error: float, periods: int) -> bool:
     """Whether a mean exponent is neutral: at most the bias that a torus may have, or three standard errors, and small.
 
     |mean| ≤ min(max(s, `_BOUNDED_GROWTH`/periods), `_LARGEST_NEUTRAL_EXPONENT`) with s = `STANDARD_ERRORS` σ, which
-    must be below `_LARGEST_NEUTRAL_EXPONENT` too: a large error must not make this easier. Up to 600 periods that is
-    |mean| ≤ `_LARGEST_NEUTRAL_EXPONENT`, so the mean may differ from zero by more than its error. Weak chaos below that
-    is neutral. A mean that is neither neutral nor clearly positive or negative is undecided.
+    must be below `_LARGEST_NEUTRAL_EXPONENT` too: a large error must not make this easier. A mean over a short time may
+    be neutral although it differs from zero by more than its error: `needs_more_periods` says how long it is measured
+    further. A mean that is neither neutral nor clearly positive or negative is undecided. docs/regimes.md
+    ("Quasi-periodic") has the reasons.
     """
     uncertain = STANDARD_ERRORS * error
     limit = min(max(uncertain, _BOUNDED_GROWTH / periods), _LARGEST_NEUTRAL_EXPONENT)
@@ -125,13 +129,22 @@ def mean_and_error(exponents: np.ndarray) -> tuple[float, float]:
 
 
 def needs_more_periods(exponents: np.ndarray, periods: int) -> bool:
-    """Whether the error of these blocks is too large for a decision: more periods are needed.
+    """Whether these blocks of `periods` in all do not suffice for a decision: the measurement is continued.
 
-    The mean is neither clearly positive nor clearly negative, and `is_neutral` does not hold.
+    So it is where the error is too large: the mean is neither clearly positive nor clearly negative, and not neutral.
+    So it is also where a neutral mean may be more than the bias of a torus, and at most `_LONGEST_COMPARISON` periods
+    will show it.
     """
     mean, error = mean_and_error(exponents)
-    return (mean >= -STANDARD_ERRORS * error and not grows(mean, error, periods)
-            and not is_neutral(mean, error, periods))
+    if is_neutral(mean, error, periods):
+        return periods < _periods_of_comparison(mean, error) <= _LONGEST_COMPARISON
+    return mean >= -STANDARD_ERRORS * error and not grows(mean, error, periods)
+
+
+def _periods_of_comparison(mean: float, error: float) -> float:
+    """Periods P over which the bias of a torus, `_BOUNDED_GROWTH`/P, falls to the part of |mean| above its error."""
+    certain = abs(mean) - STANDARD_ERRORS * error
+    return _BOUNDED_GROWTH / certain if certain > 0.0 else math.inf
 
 
 def regime_from_exponents(exponents: np.ndarray, periods: int, strobes: np.ndarray, periods_run: int) -> Regime:

@@ -20,7 +20,7 @@ def save(result: Labelled, path: str | Path, measured: Measured | Series | None 
 
     Parameters
     ----------
-    result : Run, Curve, Orbit, Branch, Diagram, Observation, Fit or any other result
+    result : Run, Curve, Orbit, Branch, ParameterMap, Observation, Fit or any other result
         What a function of granchain returned.
     path : str or pathlib.Path
         The file; one that is there is replaced when the new one is complete.

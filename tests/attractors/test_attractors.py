@@ -7,13 +7,12 @@ import sys
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, Scene, resonance_curve, scene, settle
+from granchain_core import BadInput, Scene, orbit, resonance_curve, scene, settle
 from granchain_core.attractors import Attractor, attractors, listing
 from granchain_core.attractors.attractor import Origin
 from granchain_core.attractors.attractors import _locks, share
 from granchain_core.attractors.attractors import _regime as irregular_regime
 from granchain_core.attractors.sameness import Found
-from granchain_core.orbits import periodic_orbit
 from granchain_core.results.regime import Regime
 from granchain_core.scene.state import State, rest
 from granchain_core.steady.steady_state import SteadyState
@@ -70,7 +69,7 @@ def test_periodic_ones_are_converged_orbits_and_stable(many: list[Attractor]) ->
     periodic = [one for one in many if one.regime.period]
     for one in periodic:
         assert one.orbit is not None and one.orbit.residual <= 1e-11 and one.stable
-        assert periodic_orbit(one.scene, one.regime.period, one.state).residual <= 1e-9
+        assert orbit(one.scene, one.regime.period, one.state).residual <= 1e-9
     irregular = [one for one in many if not one.regime.period]
     for one in irregular:
         assert one.stable is None and one.regime.lyapunov is not None and one.force_errors.output is None

@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import granchain_core
 from granchain_core import Scene, scene
 from granchain_core.attractors.sameness import Found, found, merged
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, adaptive_setting
-from granchain_core.orbits import periodic_orbit
 from granchain_core.results.regime import Regime
 from granchain_core.scene.state import rest
 from granchain_core.steady.settling.single_chain import settle_to_forces
@@ -67,7 +67,7 @@ def test_arcs_of_one_closed_curve_are_one_once_they_are_long_enough() -> None:
 def test_an_orbit_is_found_from_states_that_are_known_less_well_than_their_forces() -> None:
     """Both are 2e-4 from one stable orbit, on two sides, with forces known to 1e-9: Newton's method joins them."""
     chain = scene("sec2").evolve(N=2, f=2000.0)
-    orbit = periodic_orbit(chain)
+    orbit = granchain_core.orbit(chain)
     regime = Regime("periodic", 1, 0.5, 1e-7, 100)
     results = [SteadyState(chain, np.ones(3), regime, np.full(3, 1e-9), orbit.state, number=number) for number in (0, 1)]
     near = [replace(found(one), section=found(one).section * factor) for one, factor in zip(

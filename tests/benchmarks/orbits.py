@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from granchain_core import scene
-from granchain_core.orbits import periodic_orbit
+from granchain_core import orbit, scene
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.steady.settling.advance import run_until_settled
 
@@ -33,8 +32,8 @@ def report(quick: bool, tell: Callable[[str], None]) -> str:
         rows.append([str(beads), f"{1e3 * flow.median:.2f}", f"{1e3 * derivative.median:.2f}",
                      f"{derivative.median / flow.median:.1f}", f"{2 * beads + 1}"])
     start = run_until_settled(scene("sec2"), None, None).engine.state
-    periodic_orbit(scene("sec2"), 1, start)  # a compiler may be in the first one
-    newton = timed(lambda: periodic_orbit(scene("sec2"), 1, start), 0.05, repeats)
+    orbit(scene("sec2"), 1, start)  # a compiler may be in the first one
+    newton = timed(lambda: orbit(scene("sec2"), 1, start), 0.05, repeats)
     return table("One drive period of sec2 at 340 Hz with a foundation, tolerance 1e-13, from one state of all contacts",
                  ["N", "flow ms", "with derivative ms", "ratio", "ratio of one-sided differences"], rows,
                  [f"An orbit of sec2 at 340 Hz from a settled start, Newton's method and multipliers: "

@@ -6,11 +6,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import granchain_core
 from granchain_core import BadInput, ComputationError, Scene, State, scene, settle
 from granchain_core.bifurcation_curves import bifurcation_curves
 from granchain_core.bifurcation_curves.continuation import BifurcationPoint, bifurcation_point, points_of_curve
-from granchain_core.orbits import continue_branch, periodic_orbit
-from granchain_core.parameter_map import diagram
+from granchain_core.parameter_map import parameter_map
 
 pytestmark = pytest.mark.quick
 
@@ -22,7 +22,7 @@ def near(kind: str) -> tuple[Scene, np.ndarray, int]:
     """A scene near such a point, its orbit's state and period."""
     frequency, period = NEAR[kind]
     shown = scene("sec2").evolve(f=frequency)
-    return shown, periodic_orbit(shown, period).state, period  # type: ignore[return-value]
+    return shown, granchain_core.orbit(shown, period).state, period  # type: ignore[return-value]
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def test_the_orbit_there_has_the_critical_multiplier(points: dict[str, Bifurcati
     assert abs(condition(found.multiplier)) <= 1e-6
     shown, start, period = near(kind)
     if kind != "fold":  # at a fold Newton's method at fixed f has a singular matrix; elsewhere it is another way
-        orbit = periodic_orbit(shown.evolve(f=found.x), period, start)
+        orbit = granchain_core.orbit(shown.evolve(f=found.x), period, start)
         assert np.abs(condition(orbit.multipliers)).min() <= 1e-5
 
 
@@ -51,7 +51,7 @@ def test_beyond_a_period_doubling_the_period_is_two(points: dict[str, Bifurcatio
 def test_on_one_side_of_a_neimark_sacker_point_the_motion_is_quasi_periodic(
         points: dict[str, BifurcationPoint], away: float, name: str) -> None:
     shown = scene("sec2").evolve(f=points["neimark_sacker"].x + away)
-    orbit = periodic_orbit(shown, 1)
+    orbit = granchain_core.orbit(shown, 1)
     assert orbit.stable == (name == "periodic")
     beside = State(1.02 * orbit.state.displacement, orbit.state.velocity)
     assert settle(shown, beside).regime.name == name
@@ -59,9 +59,9 @@ def test_on_one_side_of_a_neimark_sacker_point_the_motion_is_quasi_periodic(
 
 def test_beyond_a_fold_there_is_no_such_orbit(points: dict[str, BifurcationPoint]) -> None:
     at, (shown, start, period) = points["fold"].x, near("fold")
-    assert periodic_orbit(shown.evolve(f=at - 0.5), period, start).stable
+    assert granchain_core.orbit(shown.evolve(f=at - 0.5), period, start).stable
     with pytest.raises(ComputationError, match="found no orbit of 5 drive periods"):
-        periodic_orbit(shown.evolve(f=at + 5.0), period, start)
+        granchain_core.orbit(shown.evolve(f=at + 5.0), period, start)
 
 
 def test_a_curve_goes_through_its_rows_and_scales(points: dict[str, BifurcationPoint]) -> None:
@@ -74,7 +74,7 @@ def test_a_curve_goes_through_its_rows_and_scales(points: dict[str, BifurcationP
     # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D): the curve at another D, point by point
     s = 2.0
     other = shown.evolve(A0=s * shown.A0, f=s**0.25 * shown.f, D=s**0.25 * shown.D)
-    scaled = points_of_curve(other, "neimark_sacker", periodic_orbit(other, 1).state, [s * row for row in rows], period)
+    scaled = points_of_curve(other, "neimark_sacker", granchain_core.orbit(other, 1).state, [s * row for row in rows], period)
     for a, b in zip(curve, scaled, strict=True):
         assert b.x == pytest.approx(s**0.25 * a.x, rel=1e-6)  # |μ| is met to 1e-6
         assert abs(b.multiplier.real) == pytest.approx(abs(a.multiplier.real), abs=1e-5)
@@ -91,7 +91,7 @@ def test_a_fold_is_followed(points: dict[str, BifurcationPoint]) -> None:
     ("neimark_sacker", 1245.0, 1226.0, 1), ("period_doubling", 508.0, 515.0, 1), ("fold", 1951.0, 1956.0, 5)])
 def test_the_point_is_where_the_branch_encloses_one(kind: str, start: float, end: float, period: int) -> None:
     """A branch encloses the change of stability by two orbits; a bifurcation curve finds it by secants of its own."""
-    branch = continue_branch(scene("sec2"), "f", start, end, period)
+    branch = granchain_core.branch(scene("sec2"), "f", start, end, period)
     [special] = [one for one in branch.special if one.kind == kind]
     begun = branch.points[0]  # 1.4 to 9 Hz from the special point
     found = bifurcation_point(branch.axis.scene_at(begun.knob), kind, branch.state(begun), period)
@@ -114,11 +114,11 @@ def test_wrong_requests_are_one_sentence() -> None:
     with pytest.raises(BadInput, match="begins at a value above 0"):
         bifurcation_point(shown, "fold", start, x="f", y="k")
     with pytest.raises(ComputationError, match=r"lost the branch|No fold was found"):
-        bifurcation_point(scene("sec2"), "fold", periodic_orbit(scene("sec2")).state)
+        bifurcation_point(scene("sec2"), "fold", granchain_core.orbit(scene("sec2")).state)
 
 
 def test_a_diagram_shows_where_its_bifurcation_curves_are() -> None:
-    found = diagram(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
+    found = parameter_map(scene("sec2"), ("f", np.linspace(480.0, 640.0, 9)), ("A0", [4.5e-7, 5e-7]))
     curves = bifurcation_curves(found, rows=[1])
     told = {(curve.kind, curve.period): curve for curve in curves}
     # period 1 doubles at 512 Hz; the orbit of period 2 in its turn near 572 Hz, into one of period 4 or more
@@ -135,8 +135,8 @@ def test_a_bifurcation_curve_is_followed_to_where_its_second_knob_is_zero() -> N
     """Three beads at 1300 Hz: from k = 2e4 N/m to a chain without foundation, whose period doubling a branch over D
     finds as well."""
     chain = scene("sec2").evolve(N=3, f=1300.0)
-    found = bifurcation_curves(diagram(chain, ("D", np.linspace(70.0, 76.0, 5)), ("k", [0.0, 2e4])), rows=[1])
+    found = bifurcation_curves(parameter_map(chain, ("D", np.linspace(70.0, 76.0, 5)), ("k", [0.0, 2e4])), rows=[1])
     (curve,) = [one for one in found if one.kind == "period_doubling" and one.period == 1]
     (at_zero,) = [point.x for point in curve.points if point.y == 0.0]
-    doublings = [one for one in continue_branch(chain, "D", 76.0, 70.0).special if one.kind == "period_doubling"]
+    doublings = [one for one in granchain_core.branch(chain, "D", 76.0, 70.0).special if one.kind == "period_doubling"]
     assert any(min(one.interval) - 1e-5 <= at_zero <= max(one.interval) + 1e-5 for one in doublings)

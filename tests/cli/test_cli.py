@@ -19,7 +19,7 @@ import pytest
 from app.cli import main
 from granchain_core import Curve, State, bifurcation_curves, orbit, run, save, scene
 from granchain_core.steady.curve.request import CurveRequest
-from granchain_core.store.diagrams import load_diagram
+from granchain_core.store.parameter_maps import load_parameter_map
 
 SHORT = ["--periods", "2", "--record", "1", "--samples", "8"]
 
@@ -55,7 +55,7 @@ def test_a_map_has_its_bifurcation_curves(tmp_path: Path, capsys: pytest.Capture
     told = json.loads(capsys.readouterr().out)
     assert set(told) - set(plain) == {"bifurcations"} and told["computed"] == 0
     curve, = told["bifurcations"]
-    found = bifurcation_curves(load_diagram(tmp_path / "map.h5"))[0]
+    found = bifurcation_curves(load_parameter_map(tmp_path / "map.h5"))[0]
     assert (curve["kind"], curve["period"], curve["x"]) == ("period_doubling", 1, [point.x for point in found.points])
     assert [complex(*mu) for mu in curve["multiplier"]] == [point.multiplier for point in found.points]
     assert "bifurcation curve" in picture.read_text(encoding="utf-8")

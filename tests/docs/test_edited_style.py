@@ -12,8 +12,6 @@ from documents import ROOT, lines_outside_fences
 from edited_tree import edit_files, files_of
 
 PAGES = sorted((ROOT / "docs").glob("add-*.md"))
-#: The page whose edits come before those of a page.
-BEFORE = {"add-a-quadratic-drag": ROOT / "docs" / "add-an-effect.md"}
 
 
 @pytest.fixture(scope="module")
@@ -22,13 +20,11 @@ def trees(tmp_path_factory: pytest.TempPathFactory) -> Path:
     made = tmp_path_factory.mktemp("pages")
     for page in PAGES:
         tree = made / page.stem
-        followed = [BEFORE[page.stem], page] if page.stem in BEFORE else [page]
-        edits, new = (set().union(*names) for names in zip(*map(files_of, followed), strict=True))
+        edits, new = files_of(page)
         for name in {"pyproject.toml", *edits} - new:
             (tree / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / name, tree / name)
-        for one in followed:
-            edit_files(one, tree)
+        edit_files(page, tree)
     return made
 
 

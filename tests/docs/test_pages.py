@@ -26,13 +26,9 @@ _COMMANDS = sorted({command for page in PAGES for command in commands(page)})
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_links_and_named_files_exist(page: Path):
-    """Every relative link and every path with a folder in backquotes is there.
-
-    docs/add-an-effect.md makes its own, from which docs/add-a-quadratic-drag.md goes on.
-    """
+    """Every relative link and every path with a folder in backquotes is there, or the page writes it."""
     text = page.read_text(encoding="utf-8")
-    before = [page.with_name("add-an-effect.md")] if page.name == "add-a-quadratic-drag.md" else []
-    files = [Path(block.path) for one in (page, *before) for block in blocks(one) if block.is_new_file]
+    files = [Path(block.path) for block in blocks(page) if block.is_new_file]
     made = {str(path) for file in files for path in (file, file.parent)}
     for target in re.findall(r"\]\((?!https?:)([^)#]+)\)", text):
         assert (page.parent / target).exists(), target
@@ -148,7 +144,7 @@ def test_the_lecture_page_has_rows():
 
 
 @pytest.mark.parametrize("page", [ROOT / "README.md", LECTURE, ROOT / "docs" / "python.md", ROOT / "docs" / "fit.md",
-                                  ROOT / "docs" / "diagram.md"], ids=lambda page: page.name)
+                                  ROOT / "docs" / "parameter-map.md"], ids=lambda page: page.name)
 def test_python_examples_run(page: Path, tmp_path: Path):
     """All Python blocks of a page, one after the other, in an empty folder."""
     code = "\n".join(block.text for block in blocks(page) if block.language == "python")
@@ -160,6 +156,15 @@ def test_python_examples_run(page: Path, tmp_path: Path):
     assert promised
     for text in promised:
         assert text.split(":")[0] in printed, (text, printed)
+
+
+def test_the_flow_has_a_time_substitution_and_only_dop853_root_a_transformed_time():
+    """Two different things, one name each (docs/glossary.md)."""
+    flow = [*(ROOT / "granchain_core" / "kernels" / "flow").glob("*.py"), *(ROOT / "granchain_core" / "orbits").rglob("*.py"),
+            ROOT / "docs" / "orbits.md", ROOT / "docs" / "branches.md"]
+    assert [path.name for path in flow if re.search(r"transformed time|regularis", path.read_text(encoding="utf-8"), re.IGNORECASE)] == []
+    rows = [line for page in ("design.md", "method.md") for line in (ROOT / "docs" / page).read_text("utf-8").splitlines() if "flow" in line]
+    assert rows and not [line for line in rows if re.search(r"transformed time|regularis", line) and "dop853_root" not in line]
 
 
 def test_ci_runs_the_second_command_of_the_readme():

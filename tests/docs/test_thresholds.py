@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import ast
 import importlib
+import math
 import re
 from pathlib import Path
 
@@ -14,12 +15,14 @@ import pytest
 from documents import ROOT
 
 from granchain_core import orbit, scene
-from granchain_core.kernels.batch import record
+from granchain_core.kernels.batch import checks, record
 from granchain_core.observe.drift import TRANSLATION
 from granchain_core.orbits.branch import ends, newton, normal_forms, special, steps
 from granchain_core.results.regime import Regime
-from granchain_core.steady import regime_criteria
-from granchain_core.steady.settling import regime_decisions
+from granchain_core.steady import exponent_measurements, regime_criteria
+from granchain_core.steady.batch import job, threads
+from granchain_core.steady.curve import resonance_curve
+from granchain_core.steady.settling import regime_decisions, single_chain
 from tools.thresholds import _REGIMES, marked_constants, printed
 
 OBSERVERS, GLOSSARY = (" ".join((ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8").split())
@@ -70,6 +73,37 @@ def test_the_text_on_branches_has_the_values_of_the_constants() -> None:
         assert len(found) == 1 and float(found[0]) == pytest.approx(value, rel=1e-12), pattern
 
 
+PARTS = {2: "half", 3: "a third", 4: "a quarter"}
+NUMBERS = {2: "two", 3: "three", 4: "four"}
+
+
+@pytest.mark.parametrize(("file", "said"), [
+    ("docs/design.md", {
+        r"empties every ([\d.]+) ms": 1e3 * threads._INTERVAL, r"each task is a block of (\d+) points": resonance_curve.POINTS_IN_TASK,
+        r"at most (\d+) periods before Python looks": regime_decisions.EXAMINED_AFTER,
+        r"motion continues with (a \w+) of the step": PARTS[job.FINE_STEPS_PER_COARSE],
+        r"coarse steps for (\d+) periods beside": exponent_measurements.MEASURED_PERIODS, r"at best to ([\de-]+) \(`CURVE_ACCURACY`": single_chain.CURVE_ACCURACY}),
+    ("docs/regimes.md", {
+        r"The measurement begins after (\d+) periods": regime_decisions.EXAMINED_AFTER, r"with at least (\d+) strobes": regime_criteria.SLOW_RECORD,
+        r"Its first (\d+) periods do not count": exponent_measurements.TURNING_PERIODS, r"not decided after (\d+) periods is settled alone": regime_decisions.MOST_PERIODS,
+        r"which means that \|mean\| − 3σ is below ([\d.]+);": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
+        r"computed it is r, at most ([\d.]+), and": Regime("periodic", 1, 1.0, None, 1).assumed_contraction, r"decay was seen it is ([\d.]+) \(": Regime("periodic", 1, None, None, 1).assumed_contraction,
+        r"below ([\d.]+) \+ 3σ": round(regime_criteria._BOUNDED_GROWTH / regime_criteria._LONGEST_COMPARISON, 4),
+        r"Up to (\d+) periods the limit": regime_criteria._BOUNDED_GROWTH / regime_criteria._LARGEST_NEUTRAL_EXPONENT}),
+    ("granchain_core/steady/regime_criteria.py", {
+        r"After (\d+) periods a growth": regime_decisions.EXAMINED_AFTER, r"a growth of ([\d.]+) a period": regime_criteria.CLEAR_GROWTH,
+        r"multiplied a distance by ([\de]+)\.": float(f"{math.exp(regime_criteria.CLEAR_GROWTH * regime_decisions.EXAMINED_AFTER):.0e}")}),
+    ("granchain_core/kernels/batch/checks.py", {r"at most (\w+) times the distance that its decay": NUMBERS[int(checks.FARTHEST_EXTRAPOLATION)]}),
+], ids=lambda given: given if isinstance(given, str) else "")
+def test_prose_has_the_values_of_the_constants(file: str, said: dict[str, float | str]) -> None:
+    """Numbers in sentences of design.md, regimes.md and docstrings, where a name in their place would not be read."""
+    text = " ".join((ROOT / file).read_text(encoding="utf-8").split())
+    for pattern, value in said.items():
+        found = re.findall(pattern, text)
+        assert len(found) == 1, pattern
+        assert found[0] == value if isinstance(value, str) else float(found[0]) == pytest.approx(value, rel=1e-12), pattern
+
+
 def test_the_definitions_have_the_values_of_the_constants_they_name() -> None:
     text = " ".join((ROOT / "docs" / "regimes.md").read_text(encoding="utf-8").split())
     named = re.findall(r"([\d.]+) is `(_?[A-Z_]+)`", text)
@@ -108,7 +142,7 @@ def test_a_constant_that_a_page_names_is_in_the_file_beside_it(page: Path) -> No
         assert name in constants(path), f"{file} has no {name}"
 
 
-@pytest.mark.parametrize("page", ["orbits", "branches", "observers", "diagram"])
+@pytest.mark.parametrize("page", ["orbits", "branches", "observers", "parameter-map"])
 def test_a_constant_that_a_page_names_without_a_file_exists(page: str) -> None:
     named = set(re.findall(r"`(_?[A-Z][A-Z_]{2,})`", (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")))
     if named:

@@ -13,12 +13,11 @@ import pytest
 import app
 import granchain_core
 from app.cli import main
-from granchain_core import BadInput, Cancelled, ComputationError, State, run, scene
+from granchain_core import BadInput, Cancelled, ComputationError, State, orbit, run, scene
 from granchain_core.errors import FAILURES, OverBudget
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, Setting, method_for
 from granchain_core.integrate.checkpoint import Checkpoint, checkpoint, resumed
-from granchain_core.orbits import periodic_orbit
 from granchain_core.run import to_accuracy
 from granchain_core.run.budget import estimate
 from granchain_core.run.to_accuracy import warnings
@@ -141,7 +140,7 @@ def test_endless_touches_fail_with_a_sentence() -> None:
 
 def test_no_convergence_with_its_history() -> None:
     with pytest.raises(ComputationError, match=r"residuals were \d") as caught:
-        periodic_orbit(scene("rig").evolve(f=140.0, k=0.0), period=1)
+        orbit(scene("rig").evolve(f=140.0, k=0.0), period=1)
     assert caught.value.status == "no-convergence"
 
 

@@ -6,10 +6,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import resonance_curve, run, scene, settle
+from granchain_core import orbit, resonance_curve, run, scene, settle
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate.scaling import scale_chain
-from granchain_core.orbits import periodic_orbit
 from granchain_core.steady.returns import sizes
 from granchain_core.steady.settling.advance import run_until_settled
 from granchain_core.steady.settling.finite_difference_map import FiniteDifferenceMap, fixed_point
@@ -31,7 +30,7 @@ def test_labels_beside_a_period_doubling_are_what_becomes_of_the_motion(place: f
 def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
     """The orbit found from a state so far away from the exact one, relative."""
     chain = scene("sec2").evolve(f=f, **knobs)
-    exact = periodic_orbit(chain, period)
+    exact = orbit(chain, period)
     x = FiniteDifferenceMap(chain, period).inner(scale_chain(chain).from_si(exact.state))
     shape = np.random.default_rng(1).standard_normal(len(x))
     found = orbit_of(chain, period, x + offset * sizes(x) * shape, Stop())
@@ -43,7 +42,7 @@ def beside(f: float, period: int, offset: float, **knobs: float) -> NearbyOrbit:
 def test_differences_give_the_multipliers_of_the_tangent_flow(f: float, period: int) -> None:
     """Two routes to |μ|. At four times the default steps the map is right to some 1e-7, its differences to some 1e-5.
     """
-    exact = float(np.abs(periodic_orbit(scene("sec2").evolve(f=f), period).multipliers[0]))
+    exact = float(np.abs(orbit(scene("sec2").evolve(f=f), period).multipliers[0]))
     assert beside(f, period, 1e-4).modulus == pytest.approx(exact, abs=2e-5)
 
 
@@ -51,7 +50,7 @@ def test_newtons_method_ends_where_the_tangent_flows_does() -> None:
     """The fixed point of the map by steps of a quarter is the orbit to the map's error over 1 − |μ|."""
     chain = scene("sec2").evolve(f=340.0)
     stroboscopic_map = FiniteDifferenceMap(chain, 1)
-    exact = stroboscopic_map.inner(scale_chain(chain).from_si(periodic_orbit(chain, 1).state))
+    exact = stroboscopic_map.inner(scale_chain(chain).from_si(orbit(chain, 1).state))
     found = fixed_point(stroboscopic_map, exact + 1e-3 * sizes(exact))
     assert found is not None and found.residual <= 1e-9
     assert np.abs((found.x - exact) / sizes(exact)).max() < 1e-6  # 7e-6 at the default step, /4⁴, over 1 − 0.36: 4e-8
@@ -95,7 +94,7 @@ def test_one_motion_has_one_name_from_curve_and_page(f: float) -> None:
     pictured, drawn = settle(chain), resonance_curve(chain, [f]).points[0]
     assert (pictured.regime.name, pictured.regime.period) == (drawn.regime.name, drawn.regime.period) == ("periodic", 1)
     assert pictured.regime.multiplier == pytest.approx(
-        float(np.abs(periodic_orbit(chain, 1, pictured.state).multipliers[0])), abs=2e-5)
+        float(np.abs(orbit(chain, 1, pictured.state).multipliers[0])), abs=2e-5)
     assert drawn.force_errors.output is not None and pictured.run.displacement_error is not None
     bound = drawn.force_errors.output + 1.5 * pictured.run.displacement_error  # F ∝ δ^{3/2}
     assert drawn.max_output_force == pytest.approx(pictured.run.max_output_force, rel=bound + 1e-6)

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from granchain_core import Scene, State
+from granchain_core import Scene, State, orbit
 from granchain_core.integrate import Engine, Setting
-from granchain_core.orbits import periodic_orbit
 
 
 @dataclass(frozen=True)
@@ -28,7 +27,7 @@ class Recorded:
 
 def recorded(scene: Scene, samples: int, periods: int = 3) -> Recorded:
     """`periods` drive periods of the settled chain of `scene`, `samples` samples each."""
-    start = periodic_orbit(scene).state
+    start = orbit(scene).state
     engine = Engine(scene, Setting("dop853", tolerance=1e-12), samples)
     engine.start(start)
     rows, scales = engine.record(periods * samples), engine.scaled.scales

@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import granchain_core
 from granchain_core import BadInput, Scene, scene
 from granchain_core.observe import Twin, observer_stability, twin
 from granchain_core.observe.drift import TRANSLATION, is_drift
 from granchain_core.observe.pair import Pair
 from granchain_core.observe.twin import multipliers_of, rate_of
-from granchain_core.orbits import periodic_orbit
 from granchain_core.scene.state import rest
 
 FREE, FOUNDED = scene("fig11-free"), scene("fig11-founded")
@@ -97,7 +97,7 @@ def test_the_chain_of_a_pair_moves_as_it_does_alone() -> None:
     from granchain_core.integrate import Engine, Setting
 
     pair = Pair(FOUNDED, 16)
-    pair.start(rest(FOUNDED), periodic_orbit(FOUNDED).state)
+    pair.start(rest(FOUNDED), granchain_core.orbit(FOUNDED).state)
     alone = Engine(FOUNDED, Setting("dop853", tolerance=1e-13), 16)
     together, single = pair.engine.record(80), alone.record(80)
     # two runs of the adaptive method with other steps
@@ -106,7 +106,7 @@ def test_the_chain_of_a_pair_moves_as_it_does_alone() -> None:
 
 def test_the_observers_multipliers_are_finite_differences_of_the_pair() -> None:
     shown = FREE.evolve(N=3, f=400.0)
-    orbit = periodic_orbit(shown, observer=True)
+    orbit = granchain_core.orbit(shown, observer=True)
     n, h = shown.N, 1e-5
     pair = Pair(shown, 1)
     scales = pair.engine.scaled.scales
@@ -132,11 +132,11 @@ def test_how_much_foundation_makes_an_observer_stable() -> None:
     (threshold,) = found.thresholds
     assert threshold.gains and threshold.high - threshold.low < 1e-6
     for kappa, stable in ((threshold.low, False), (threshold.high, True)):
-        assert periodic_orbit(FREE.evolve(f=200.0, kappa=kappa), 1, observer=True).observer_stable is stable
+        assert granchain_core.orbit(FREE.evolve(f=200.0, kappa=kappa), 1, observer=True).observer_stable is stable
 
 
 def test_a_value_without_an_orbit_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sys.modules[periodic_orbit.__module__], "MOST_ITERATIONS", 0)  # Newton's method ends before its first step
+    monkeypatch.setattr(sys.modules[granchain_core.orbit.__module__], "MOST_ITERATIONS", 0)  # Newton's method ends before its first step
     (point,) = observer_stability(FREE, "f", [340.0], period=2).points
     assert np.isnan(point.observer_largest) and "Newton" in point.failure and point.period is None
 

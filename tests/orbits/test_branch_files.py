@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 import xarray
 
+import granchain_core
 from app.cli import main
 from granchain_core import BadInput, Cancelled, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.orbits import Branch, Continuation, begin_branch, continue_branch, switch_to_doubled
+from granchain_core.orbits import Branch, Continuation, begin_branch, switch_to_doubled
 from granchain_core.orbits.branch.steps import SHORTEST_STEP
 from granchain_core.store import load_branch, save_branch
 
@@ -165,7 +166,7 @@ def test_the_command_goes_on_from_its_file(tmp_path: Path, capsys: pytest.Captur
 
 
 def test_only_a_doubling_is_switched_at() -> None:
-    found = continue_branch(scene("sec2"), "f", 340.0, 348.0, 1)
+    found = granchain_core.branch(scene("sec2"), "f", 340.0, 348.0, 1)
     grazing = next(s for s in found.special if s.kind == "grazing")
     assert grazing.contact == 1 and grazing.event == "separation"
     with pytest.raises(BadInput, match="not at a grazing"):

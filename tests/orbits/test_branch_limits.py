@@ -9,15 +9,13 @@ import h5py
 import numpy as np
 import pytest
 
-from granchain_core import Scene, scene
+from granchain_core import Scene, branch, orbit, scene
 from granchain_core.orbits import (
     Branch,
     Continuation,
     KnobAxis,
     begin_branch,
     check_branch,
-    continue_branch,
-    periodic_orbit,
 )
 from granchain_core.store import load_branch, save_branch
 
@@ -27,7 +25,7 @@ def stands(shown: Scene, found: Branch) -> None:
     last = found.points[-1]
     assert found.arms[0].ended == "reached" and last.knob == found.axis.end and check_branch(found) == []
     assert found.summary()[1] == found.arms[0].reason  # which says "reached" itself
-    direct = periodic_orbit(shown.evolve(**{found.axis.knob: last.knob}), 1, found.state(last))
+    direct = orbit(shown.evolve(**{found.axis.knob: last.knob}), 1, found.state(last))
     np.testing.assert_allclose(direct.state.displacement, found.state(last).displacement, rtol=1e-8, atol=1e-18)
 
 
@@ -38,7 +36,7 @@ def stands(shown: Scene, found: Branch) -> None:
 def test_a_branch_over_the_preload_reaches_zero_and_begins_there(preload: float, changes: dict[str, object]) -> None:
     """The static overlap goes as F0^{2/3}, and so do the orbits near F0 = 0."""
     shown = scene("sec2").evolve(**changes)
-    down, up = (continue_branch(shown.evolve(F0=ends[0]), "F0", *ends, 1) for ends in ((preload, 0.0), (0.0, preload)))
+    down, up = (branch(shown.evolve(F0=ends[0]), "F0", *ends, 1) for ends in ((preload, 0.0), (0.0, preload)))
     stands(shown, down)
     stands(shown, up)
     # one branch: the same force at both ends, from both sides
@@ -85,7 +83,7 @@ def test_a_file_from_before_goes_on_in_its_own_coordinate(tmp_path: Path) -> Non
 def test_the_end_without_damping_is_no_special_point(changes: dict[str, object], tmp_path: Path) -> None:
     """At D = 0 the map is conservative: whether |μ| of a stable pair is above 1 was decided by rounding."""
     shown = scene("sec2").evolve(**changes)
-    found = continue_branch(shown, "D", 50.0, 0.0, 1)
+    found = branch(shown, "D", 50.0, 0.0, 1)
     stands(shown, found)
     last = found.points[-1]
     on_circle = np.abs(np.abs(last.multipliers) - 1.0) < 1e-9
@@ -99,8 +97,8 @@ def test_the_end_without_damping_is_no_special_point(changes: dict[str, object],
 
 def test_without_damping_stability_changes_only_where_multipliers_leave_the_circle() -> None:
     shown = scene("sec2").evolve(N=2, f=3000.0, F0=5.0)
-    damped = continue_branch(shown, "D", 100.0, 0.0, 1)
-    found = continue_branch(shown.evolve(D=0.0), "f", 3000.0, 2930.0, 1, damped.state(damped.points[-1]))
+    damped = branch(shown, "D", 100.0, 0.0, 1)
+    found = branch(shown.evolve(D=0.0), "f", 3000.0, 2930.0, 1, damped.state(damped.points[-1]))
     assert check_branch(found) == []
     kinds = [one.kind for one in found.special if one.kind != "grazing"]
     assert kinds == ["period_doubling"]

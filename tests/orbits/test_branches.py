@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from granchain_core import BadInput, ComputationError, Scene, State, run, scene, settle
+import granchain_core
+from granchain_core import BadInput, ComputationError, Scene, State, orbit, run, scene, settle
 from granchain_core.orbits import (
     Branch,
     BranchPoint,
@@ -16,8 +17,6 @@ from granchain_core.orbits import (
     SpecialPoint,
     begin_branch,
     check_branch,
-    continue_branch,
-    periodic_orbit,
     switch_to_doubled,
 )
 from granchain_core.orbits.branch.walk import Arm, Walk
@@ -39,7 +38,7 @@ def folded() -> Branch:
 @pytest.fixture(scope="module")
 def doubling() -> Branch:
     """sec2 downwards across two period doublings: between them, at 255.8 and 233.5 Hz, the chain alternates."""
-    return continue_branch(scene("sec2"), "f", 262.0, 225.0, 1)
+    return granchain_core.branch(scene("sec2"), "f", 262.0, 225.0, 1)
 
 
 def the(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
@@ -89,7 +88,7 @@ def test_stability_is_what_the_disturbed_chain_does(folded: Branch) -> None:
 def test_the_folds_are_where_up_and_down_sweeps_jump(folded: Branch) -> None:
     """Settling from the last stable orbit: it stays 0.2 Hz inside the fold and leaves 0.2 Hz beyond it."""
     upper = the(folded, "fold")
-    sweep = continue_branch(scene("sec2"), "f", 340.0, upper.interval[0] - 0.2, 1)
+    sweep = granchain_core.branch(scene("sec2"), "f", 340.0, upper.interval[0] - 0.2, 1)
     edge, state = sweep.points[-1], sweep.state(sweep.points[-1])
     inside = settle(sweep.axis.scene_at(edge.knob), state).run.max_output_force_elastic
     beyond = settle(sweep.axis.scene_at(upper.interval[1] + 0.2), state).run.max_output_force_elastic
@@ -145,7 +144,7 @@ def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
     first = doubling.points[0]
     state = doubling.state(first)
     start = State(s * state.displacement, s**1.25 * state.velocity)
-    other = continue_branch(scaled, "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
+    other = granchain_core.branch(scaled, "f", s**0.25 * first.knob, s**0.25 * 250.0, 1, start)
     mine, its = the(doubling, "period_doubling"), the(other, "period_doubling")
     assert its.knob / s**0.25 == pytest.approx(mine.knob, rel=1.1e-5)  # the half widths of both intervals
 
@@ -156,10 +155,10 @@ def test_special_points_scale_with_the_chain(doubling: Branch) -> None:
 ])
 def test_every_continuous_knob_can_be_followed(knob: str, start: float, end: float, changes: dict[str, float]) -> None:
     shown = scene("sec2").evolve(N=3, **changes)
-    found = continue_branch(shown, knob, start, end, 1)
+    found = granchain_core.branch(shown, knob, start, end, 1)
     assert found.arms[0].ended == "reached" and check_branch(found) == []
     last = found.points[-1]
-    direct = periodic_orbit(shown.evolve(**{knob: end}), 1, found.state(last))
+    direct = orbit(shown.evolve(**{knob: end}), 1, found.state(last))
     # both are fixed points to 1e-11 of the same map; near grazing Newton's basins are small, so it starts there
     np.testing.assert_allclose(direct.state.displacement, found.state(last).displacement, rtol=1e-8)
     assert last.knob == end and found.points[0].knob == start
@@ -168,13 +167,13 @@ def test_every_continuous_knob_can_be_followed(knob: str, start: float, end: flo
 def test_a_preloaded_chain_has_no_special_points_at_small_drive() -> None:
     """All contacts stay closed and the chain is nearly linear: nothing happens, whatever its resonances."""
     shown = scene("sec2").evolve(F0=50.0, A0=1e-7, N=4)
-    found = continue_branch(shown, "f", 800.0, 1500.0, 1)
+    found = granchain_core.branch(shown, "f", 800.0, 1500.0, 1)
     assert found.special == [] and check_branch(found) == []
     assert all((p.closings == -1).all() and p.stable for p in found.points)
 
 
 def test_beyond_a_torus_point_the_chain_leaves_its_orbit() -> None:
-    found = continue_branch(scene("sec2"), "f", 2010.0, 1940.0, 1)
+    found = granchain_core.branch(scene("sec2"), "f", 2010.0, 1940.0, 1)
     assert check_branch(found) == []
     torus = the(found, "neimark_sacker")
     assert torus.multiplier is not None and torus.multiplier.imag > 0.1
@@ -191,7 +190,7 @@ def closed_loop() -> tuple[Scene, float, int]:
 
 def test_an_isola_closes_on_itself() -> None:
     shown, frequency, period = closed_loop()
-    found = continue_branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
+    found = granchain_core.branch(shown.evolve(f=frequency), "f", 100.0, 3000.0, period, both=True)
     assert [arm.ended for arm in found.arms] == ["closed"] and check_branch(found) == []
     assert "the orbit there is the seed's" in found.arms[0].reason
     assert sum(s.kind == "fold" for s in found.special) % 2 == 0
@@ -223,4 +222,4 @@ def test_the_threads_do_not_decide_which_arm_of_an_isola_is_kept(slow: int, monk
 
 def test_the_error_for_a_seed_that_is_no_orbit_has_its_residuals() -> None:
     with pytest.raises(ComputationError, match="residuals were"):
-        continue_branch(scene("rig"), "f", 140.0, 150.0, 1)
+        granchain_core.branch(scene("rig"), "f", 140.0, 150.0, 1)

@@ -10,11 +10,12 @@ import h5py
 import numpy as np
 import pytest
 
+import granchain_core
 from app.cli.branch import branch_json, normal_form_words
 from app.plots.branches import criticality_words
 from granchain_core import BadInput, scene, settle
 from granchain_core.hdf5 import seal
-from granchain_core.orbits import Branch, Continuation, SpecialPoint, continue_branch, switch_to_doubled
+from granchain_core.orbits import Branch, Continuation, SpecialPoint, switch_to_doubled
 from granchain_core.orbits.branch.between import Between
 from granchain_core.orbits.branch.criticality import same_sequence, with_normal_forms
 from granchain_core.orbits.branch.equations import BranchEquations
@@ -36,13 +37,13 @@ from granchain_core.store import load_branch, save_branch
 @pytest.fixture(scope="module")
 def doubling() -> Branch:
     """sec2 across two period doublings, at 255.8 and 233.5 Hz."""
-    return continue_branch(scene("sec2"), "f", 262.0, 225.0, 1)
+    return granchain_core.branch(scene("sec2"), "f", 262.0, 225.0, 1)
 
 
 @pytest.fixture(scope="module")
 def torus() -> Branch:
     """sec2 across a Neimark–Sacker point at 1973.2 Hz."""
-    return continue_branch(scene("sec2"), "f", 1990.0, 1945.0, 1)
+    return granchain_core.branch(scene("sec2"), "f", 1990.0, 1945.0, 1)
 
 
 def the(branch: Branch, kind: str, number: int = 0) -> SpecialPoint:
@@ -86,7 +87,7 @@ def test_a_subcritical_doubling_has_hysteresis(doubling: Branch) -> None:
     # between the doubling and the fold the chain stays on whichever orbit it is near: both attract
     between = next(p for p in doubled.points if p.stable and p.knob > subcritical.interval[1])
     chain = doubled.axis.scene_at(between.knob)
-    once = continue_branch(scene("sec2"), "f", between.knob, 262.0, 1).points[0]
+    once = granchain_core.branch(scene("sec2"), "f", between.knob, 262.0, 1).points[0]
     assert once.stable
     assert settle(chain, doubled.state(between)).regime.period == 2 and settle(chain, doubling.state(once)).regime.period == 1
 
@@ -105,7 +106,7 @@ def test_the_closed_curve_grows_as_the_root_of_the_distance(torus: Branch) -> No
     equations = BranchEquations(torus.axis, 1)
     radii, expected = [], []
     for frequency in (1965.0, 1948.0):
-        point = continue_branch(scene("sec2"), "f", frequency, frequency - 0.1, 1).points[0]
+        point = granchain_core.branch(scene("sec2"), "f", frequency, frequency - 0.1, 1).points[0]
         values, vectors = np.linalg.eig(equations.stroboscopic_map(frequency)(point.x).derivative)
         mine = int(np.argmax(np.where(values.imag > 0.0, np.abs(values), 0.0)))
         q = vectors[:, mine] * np.sqrt(len(values)) / np.linalg.norm(vectors[:, mine])

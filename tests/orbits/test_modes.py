@@ -8,9 +8,10 @@ from functools import cache
 import numpy as np
 import pytest
 
+import granchain_core
 from granchain_core import BadInput, Cancelled, ComputationError, LiveChain, Scene, State, scene, settle
 from granchain_core.execution.stop import Stop
-from granchain_core.orbits import Orbit, periodic_orbit
+from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import mode, orbit_section
 from granchain_core.orbits.search import least_period_of, search_orbit
 from granchain_core.steady.poincare import Section, iter_section, most_periods
@@ -19,7 +20,7 @@ from granchain_core.steady.poincare import Section, iter_section, most_periods
 @cache
 def orbit_of(name: str, **knobs: float) -> Orbit:
     """The settled orbit of a scene."""
-    return periodic_orbit(scene(name).evolve(**knobs))
+    return granchain_core.orbit(scene(name).evolve(**knobs))
 
 
 def section(name: str, periods: int, **knobs: float) -> Section:
@@ -53,7 +54,7 @@ def linear_matrix(shown: Scene) -> np.ndarray:
 def test_the_mode_of_a_preloaded_chain_is_that_of_its_linear_equations() -> None:
     # strong preload, tiny drive: the chain is linear up to A0/δ0, and δ(t) = exp(A t) v
     shown = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
-    found = mode(periodic_orbit(shown, period=1), samples=8)
+    found = mode(granchain_core.orbit(shown, period=1), samples=8)
     matrix = linear_matrix(shown)
     values, vectors = np.linalg.eig(matrix)
     # its eigenvalue is the one whose exponential over a period is the multiplier
@@ -130,7 +131,7 @@ def test_the_orbit_a_doubling_left_unstable_is_found_from_the_middle() -> None:
 
 def test_an_orbit_has_its_least_period() -> None:
     once = orbit_of("sec2")
-    assert least_period_of(periodic_orbit(once.scene, period=4, start=once.state)) == 1
+    assert least_period_of(granchain_core.orbit(once.scene, period=4, start=once.state)) == 1
     assert least_period_of(orbit_of("sec2", f=1130.0)) == 3
     assert search_orbit(once.scene, 2, once.state, np.zeros((0, 2, 11))).period == 1
 

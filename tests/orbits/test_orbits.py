@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from linear_chain import linear_multipliers
 
+import granchain_core
 from granchain_core import BadInput, ComputationError, scene
-from granchain_core.orbits import periodic_orbit
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 
 pytestmark = pytest.mark.quick
@@ -15,7 +15,7 @@ pytestmark = pytest.mark.quick
 
 @pytest.mark.parametrize(("frequency", "period"), [(340.0, 1), (615.0, 2), (1130.0, 3), (1576.0, 4)])
 def test_newton_ends_at_the_maps_own_rounding_in_a_few_iterations(frequency: float, period: int) -> None:
-    orbit = periodic_orbit(scene("sec2").evolve(f=frequency))
+    orbit = granchain_core.orbit(scene("sec2").evolve(f=frequency))
     assert orbit.period == period  # docs/lecture.md: what sec2 reaches from rest
     assert orbit.residual <= 1e-11  # the map is computed to about 1e-12
     assert len(orbit.newton_residuals) - 1 <= 4  # quadratic convergence from a settled start
@@ -53,13 +53,13 @@ def test_a_preloaded_chain_has_the_multipliers_of_its_linear_modes() -> None:
     # Small drive on a strong preload: every contact is a spring 1.5 K √δ0 and a dashpot D, and the monodromy
     # matrix is the matrix exponential of the linear equations; the drive's amplitude moves it by about A0/δ0.
     shown = scene("sec2").evolve(F0=50.0, A0=1e-10, N=5, D=20.0, f=2000.0)
-    orbit = periodic_orbit(shown, period=1)
+    orbit = granchain_core.orbit(shown, period=1)
     assert np.abs(orbit.multipliers) == pytest.approx(np.abs(linear_multipliers(shown)), rel=1e-4)
 
 
 def test_an_orbit_is_found_again_with_twice_its_period_and_squared_multipliers() -> None:
-    once = periodic_orbit(scene("sec2"))
-    twice = periodic_orbit(scene("sec2"), period=2, start=once.state)
+    once = granchain_core.orbit(scene("sec2"))
+    twice = granchain_core.orbit(scene("sec2"), period=2, start=once.state)
     assert twice.state.displacement == pytest.approx(once.state.displacement, rel=1e-9)
     # the steps that carry the motion to 1e-13 carry its tangents to about 1e-9
     assert np.abs(twice.multipliers) == pytest.approx(np.abs(once.multipliers) ** 2, abs=1e-8)
@@ -69,14 +69,14 @@ def test_scaled_chains_have_the_same_multipliers() -> None:
     # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D) leaves the dimensionless orbit unchanged (docs/model.md, Equations)
     first, s = scene("sec2"), 7.0
     second = first.evolve(A0=s * first.A0, f=s**0.25 * first.f, D=s**0.25 * first.D)
-    a, b = periodic_orbit(first), periodic_orbit(second)
+    a, b = granchain_core.orbit(first), granchain_core.orbit(second)
     assert np.abs(b.multipliers) == pytest.approx(np.abs(a.multipliers), abs=1e-8)
 
 
 @pytest.mark.parametrize("frequency", [100.0, 200.0])
 def test_figure_11_the_observer_needs_the_foundation(frequency: float) -> None:
-    free = periodic_orbit(scene("fig11-free").evolve(f=frequency), observer=True)
-    founded = periodic_orbit(scene("fig11-founded").evolve(f=frequency), observer=True)
+    free = granchain_core.orbit(scene("fig11-free").evolve(f=frequency), observer=True)
+    founded = granchain_core.orbit(scene("fig11-founded").evolve(f=frequency), observer=True)
     assert free.stable and founded.stable
     assert free.observer_multipliers is not None and founded.observer_multipliers is not None
     outside = free.observer_multipliers[np.abs(free.observer_multipliers) > 1.0]
@@ -86,16 +86,16 @@ def test_figure_11_the_observer_needs_the_foundation(frequency: float) -> None:
 
 def test_a_start_that_leads_to_no_orbit_is_a_failure_with_its_residuals() -> None:
     with pytest.raises(ComputationError, match="residuals were"):
-        periodic_orbit(scene("rig").evolve(f=140.0, k=0.0), period=1)
+        granchain_core.orbit(scene("rig").evolve(f=140.0, k=0.0), period=1)
 
 
 def test_a_period_out_of_range_is_refused() -> None:
     with pytest.raises(BadInput, match="nearest valid value is 60"):
-        periodic_orbit(scene("sec2"), period=99)
+        granchain_core.orbit(scene("sec2"), period=99)
 
 
 def test_the_state_of_an_orbit_comes_back_after_its_period() -> None:
-    orbit = periodic_orbit(scene("sec2").evolve(f=1130.0))
+    orbit = granchain_core.orbit(scene("sec2").evolve(f=1130.0))
     stroboscopic_map = StroboscopicMap(orbit.scene, 3)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state))
     assert np.abs(stroboscopic_map(x).end - x).max() < 1e-10 * np.abs(x).max()  # the residual, after conversion to SI and back

@@ -7,9 +7,9 @@ import contextlib
 import numpy as np
 import pytest
 
-from granchain_core import ComputationError, scene
+from granchain_core import ComputationError, branch, scene
 from granchain_core.integrate.scaling import scale_chain
-from granchain_core.orbits import Branch, KnobAxis, continue_branch
+from granchain_core.orbits import Branch, KnobAxis
 from granchain_core.orbits.branch import point as points
 from granchain_core.orbits.branch import quick
 from granchain_core.orbits.branch.equations import BranchEquations
@@ -20,7 +20,7 @@ from granchain_core.steady.returns import relative_change
 
 def followed() -> Branch:
     """A branch with grazings in few orbits: sec2 upwards to its first fold."""
-    return continue_branch(scene("sec2"), "f", 340.0, 358.55, 1)
+    return branch(scene("sec2"), "f", 340.0, 358.55, 1)
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +71,7 @@ def test_a_wrong_quick_map_makes_no_wrong_orbit(whole: Branch, wrong: float, mon
     end = BranchEquations.quick_end
     monkeypatch.setattr(BranchEquations, "quick_end",
                         lambda self, x, value, steps: end(self, x, value, steps) + wrong * np.cos(np.arange(len(x))))
-    found = continue_branch(scene("sec2"), "f", 340.0, 341.0, 1)
+    found = branch(scene("sec2"), "f", 340.0, 341.0, 1)
     equations = BranchEquations(found.axis, 1)
     assert len(found.points) > 1
     for one in found.points:
@@ -92,7 +92,7 @@ def test_contacts_that_never_open_or_never_close_have_their_own_counts() -> None
 
 def test_a_branch_that_comes_back_to_the_least_value_of_its_knob_ends_there() -> None:
     """At that value the knob cannot decrease further, though its coordinate can."""
-    found = continue_branch(scene("sec2"), "k", 0.0, 1e5, 1, most_points=100)
+    found = branch(scene("sec2"), "k", 0.0, 1e5, 1, most_points=100)
     assert found.arms[0].ended == "returned" and found.points[-1].knob == 0.0
     assert (found.column("knob")[1:-1] > 0.0).all()
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from granchain_core import Scene, scene
-from granchain_core.orbits import periodic_orbit, response
+from granchain_core import Scene, orbit, scene
+from granchain_core.orbits import response
 
 
 def at(frequency: float) -> Scene:
@@ -19,16 +19,16 @@ def at(frequency: float) -> Scene:
 ])
 def test_peaks_are_resonances_and_valleys_anti_resonances(frequency: float, ratio: tuple[int, int], kind: str) -> None:
     # docs/lecture.md, `sec2`: peaks 1:1 … 1:5 and the valleys between them; the stop band begins at 1970 Hz
-    found = response(periodic_orbit(at(frequency)))
+    found = response(orbit(at(frequency)))
     assert (found.strong, found.periods) == ratio and found.kind == kind
 
 
 def test_at_the_first_peak_the_push_meets_the_reflected_pulse() -> None:
-    peak, valley = response(periodic_orbit(at(340.0))), response(periodic_orbit(at(470.0)))
+    peak, valley = response(orbit(at(340.0))), response(orbit(at(470.0)))
     # the driver moves forward through its middle when the pulse comes back: contact begins before, and peaks near phase
     # 0
     assert peak.contact_phase is not None and 330.0 < peak.contact_phase < 360.0
     assert min(peak.peak_phase, 360.0 - peak.peak_phase) < 15.0
     assert peak.returning > 1.0 > 1.0 / 3.0 > valley.returning
     assert peak.transmission == pytest.approx(0.629 / 0.697, rel=0.01)
-    assert peak.sentence == "1:1 resonance" and response(periodic_orbit(at(2500.0))).sentence == "1:1 motion, stop band"
+    assert peak.sentence == "1:1 resonance" and response(orbit(at(2500.0))).sentence == "1:1 motion, stop band"

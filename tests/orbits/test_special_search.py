@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import ComputationError, scene
-from granchain_core.orbits import Branch, SpecialPoint, check_branch, continue_branch
+from granchain_core import ComputationError, branch, scene
+from granchain_core.orbits import Branch, SpecialPoint, check_branch
 from granchain_core.orbits.branch import special
 from granchain_core.orbits.branch.between import Between
 from granchain_core.orbits.branch.equations import BranchEquations
@@ -14,7 +14,7 @@ from granchain_core.orbits.branch.equations import BranchEquations
 
 def followed() -> Branch:
     """A branch with grazings in few orbits: sec2 upwards to its first fold."""
-    return continue_branch(scene("sec2"), "f", 340.0, 358.55, 1)
+    return branch(scene("sec2"), "f", 340.0, 358.55, 1)
 
 
 def fingerprint(found: list[SpecialPoint]) -> list[tuple[object, ...]]:

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from linear_chain import linear_multipliers
 
+import granchain_core
 from granchain_core import BadInput, Cancelled, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, adaptive_setting
 from granchain_core.kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from granchain_core.kernels.forces.peaks import PEAKS
 from granchain_core.kernels.status import CANCELLED
-from granchain_core.orbits import krylov, periodic_orbit
+from granchain_core.orbits import krylov
 from granchain_core.orbits import orbit as orbits
 from granchain_core.orbits.orbit import sorted_multipliers
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
@@ -57,7 +58,7 @@ def test_the_derivative_by_saltation_knows_its_limits() -> None:
 
 def test_a_scene_that_cuts_tension_is_refused_in_one_sentence() -> None:
     with pytest.raises(BadInput, match="tension = allowed"):
-        periodic_orbit(scene("sec2").evolve(tension="cut"), period=1)
+        granchain_core.orbit(scene("sec2").evolve(tension="cut"), period=1)
 
 
 @pytest.mark.parametrize("columns", [1, 8, 9])
@@ -85,17 +86,17 @@ def test_the_flow_with_and_without_tangents_ends_at_the_same_place_with_the_same
 def test_a_long_chain_has_the_leading_multipliers_of_its_linear_modes() -> None:
     # as in the short chain, but by products with single directions only; the drive moves them by about A0/δ0
     shown = scene("sec2").evolve(N=200, F0=50.0, A0=1e-10, D=1000.0, f=2000.0)
-    orbit = periodic_orbit(shown, period=1, start=rest(shown))
+    orbit = granchain_core.orbit(shown, period=1, start=rest(shown))
     assert orbit.residual <= 1e-9 and orbit.liouville is None
     exact = linear_multipliers(shown)[: len(orbit.multipliers)]
     assert np.abs(orbit.multipliers) == pytest.approx(np.abs(exact), rel=1e-4)
 
 
 def test_krylov_and_dense_multipliers_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    dense = periodic_orbit(scene("sec2"), observer=True)
+    dense = granchain_core.orbit(scene("sec2"), observer=True)
     monkeypatch.setattr(orbits, "MOST_BEADS_WITH_MULTIPLIERS", 5)
     monkeypatch.setattr(krylov, "leading_multipliers", partial(krylov.leading_multipliers, count=6))
-    sparse = periodic_orbit(scene("sec2"), period=1, start=dense.state, observer=True)
+    sparse = granchain_core.orbit(scene("sec2"), period=1, start=dense.state, observer=True)
     assert np.abs(sparse.multipliers) == pytest.approx(np.abs(dense.multipliers[:6]), abs=1e-8)
     assert dense.observer_multipliers is not None and sparse.observer_multipliers is not None
     assert np.abs(sparse.observer_multipliers) == pytest.approx(np.abs(dense.observer_multipliers[:6]), abs=1e-8)

@@ -9,6 +9,7 @@ from typing import Any
 
 from host import FakeHost
 
+import granchain_core
 from app.dashboard.table import PageSpec, overlay_names
 from app.dashboard.tabs import Tabs
 from app.serve.compiling.compiler import COMPILER
@@ -16,7 +17,7 @@ from app.serve.computing.worker_pools import WorkerPool
 from app.session.page import Page
 from app.session.session import Session
 from app.session.task import Job
-from granchain_core import Scene, Settled, State, scene, settled
+from granchain_core import Scene, Settled, State, scene
 from granchain_core.experiment import Difference, Measured
 from granchain_core.fit.overlay import Overlay
 
@@ -24,7 +25,7 @@ from granchain_core.fit.overlay import Overlay
 @cache
 def picture(f: float = 2000.0) -> Settled:
     """A settled picture of a short chain, as it is the final one for its knobs."""
-    return settled(scene("sec2").evolve(N=2, f=f), samples=8)
+    return granchain_core.settle(scene("sec2").evolve(N=2, f=f), samples=8)
 
 
 class PageHost(FakeHost):

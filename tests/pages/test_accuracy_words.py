@@ -15,7 +15,7 @@ from app.pages.accuracy.page import measured_for
 from app.pages.accuracy.view import described_methods, described_reference, described_rows, naive_message
 from app.plots.theme import THEMES
 from app.session.active_setting import locate, shown_setting
-from granchain_core import scene, settled
+from granchain_core import scene, settle
 from granchain_core.accuracy import Row, WorkPrecision, compared_methods
 from granchain_core.accuracy.naive import lesson
 from granchain_core.execution.stop import Stop
@@ -38,7 +38,7 @@ def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monk
     for module in (advance, refine_orbit, recording):
         monkeypatch.setattr(module, "Engine", noting)
     shown = scene("sec2").evolve(accuracy=accuracy)
-    picture = settled(shown)
+    picture = settle(shown)
     told = shown_setting(shown, picture, live=False)
     same = [one for one in used if one.method == picture.run.cost.method]
     assert told.method == picture.run.cost.method

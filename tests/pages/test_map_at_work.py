@@ -23,7 +23,7 @@ def tab(page_of: Callable[[str], Trial], monkeypatch: pytest.MonkeyPatch) -> Tri
         row["number"], row["period"], row["max_output_force"] = number, 1, 1.0 + number
         return row
 
-    monkeypatch.setattr(module, "iter_diagram", lambda grid, missing, *_: iter(missing))
+    monkeypatch.setattr(module, "iter_parameter_map", lambda grid, missing, *_: iter(missing))
     monkeypatch.setattr(module, "cell_of", cell)
     return page_of("map")
 
@@ -37,7 +37,7 @@ def interrupted(monkeypatch: pytest.MonkeyPatch, tab: Trial, cells: int) -> None
 
     with monkeypatch.context() as patched:
         patched.setattr(module, "_MESSAGE_EVERY", 0.0)
-        patched.setattr(module, "iter_diagram", some)
+        patched.setattr(module, "iter_parameter_map", some)
         tab.look()
         given: Any = tab.given[0]
         given.job.next_tick = lambda action, *arguments: action(*arguments)  # each cell arrives before the next
@@ -59,7 +59,7 @@ def test_only_the_cells_that_are_missing_are_computed_later(tab: Trial, monkeypa
     interrupted(monkeypatch, tab, 7)
     assert tab.last("map-status")["progress"] == "stopped; the cells computed so far are kept"
     asked: list[list[int]] = []
-    monkeypatch.setattr(module, "iter_diagram", lambda grid, missing, *_: asked.append(missing) or iter(missing))
+    monkeypatch.setattr(module, "iter_parameter_map", lambda grid, missing, *_: asked.append(missing) or iter(missing))
     tab.look()
     tab.compute()
     assert len(asked[0]) == module.ROWS * module.COLUMNS - 7 and tab.last("map-status")["status"] == "done"

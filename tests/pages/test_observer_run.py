@@ -9,7 +9,7 @@ import pytest
 
 from app.pages.observer.view import step_message
 from app.pages.observer.work import NUDGE, ObserverRun
-from granchain_core import scene, settled
+from granchain_core import scene, settle
 from granchain_core.execution.stop import Stop
 from granchain_core.scene.state import rest
 
@@ -17,7 +17,7 @@ FOUNDED = scene("fig11-founded")
 
 
 def test_a_run_measures_what_its_multiplier_predicts() -> None:
-    picture = settled(FOUNDED)
+    picture = settle(FOUNDED)
     run = ObserverRun(FOUNDED, picture, Stop(), None)
     assert run.predicted is None and "appears once the picture has settled" in run.sentence
     run.predict(picture)
@@ -33,7 +33,7 @@ def test_a_run_measures_what_its_multiplier_predicts() -> None:
 def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
     # sec2 from rest is of period 2 at 615 Hz (docs/lecture.md: two periods to a push on this peak)
     shown = scene("sec2").evolve(f=615.0, kappa=0.001)
-    picture = settled(shown)
+    picture = settle(shown)
     run = ObserverRun(shown, picture, Stop(), None)
     run.predict(picture)
     assert run.orbit is not None and run.orbit.period == 2
@@ -44,7 +44,7 @@ def test_an_orbit_of_two_periods_is_measured_over_two() -> None:
 
 def test_a_rate_is_told_when_the_fast_modes_are_gone_and_the_force_is_the_largest_of_the_motion() -> None:
     shown = scene("sec2").evolve(f=2500.0)  # a slow pair of multipliers, and an input force that jumps at closing
-    picture = settled(shown)
+    picture = settle(shown)
     run = ObserverRun(shown, picture, Stop(), None)
     run.predict(picture)
     steps = [run.step() for _ in range(18)]
@@ -58,7 +58,7 @@ def test_a_rate_is_told_when_the_fast_modes_are_gone_and_the_force_is_the_larges
 def test_the_largest_force_is_that_of_all_periods_so_far() -> None:
     """At 1130 Hz the driver pushes strongly in one of three periods."""
     shown = scene("sec2").evolve(f=1130.0)
-    picture = settled(shown)
+    picture = settle(shown)
     run = ObserverRun(shown, picture, Stop(), None)
     told = [run.step().largest_input for _ in range(6)]
     assert told == sorted(told)
@@ -75,7 +75,7 @@ def test_without_multipliers_it_says_why_and_runs() -> None:
 
 def test_a_knob_that_is_turned_goes_on_from_where_both_are() -> None:
     free = scene("fig11-free")
-    picture = settled(free)
+    picture = settle(free)
     first = ObserverRun(free, picture, Stop(), None)
     first.predict(picture)
     last = [first.step() for _ in range(12)][-1]
@@ -88,7 +88,7 @@ def test_a_knob_that_is_turned_goes_on_from_where_both_are() -> None:
 
 
 def test_wishes_move_the_observer_alone_and_the_message_is_whole() -> None:
-    run = ObserverRun(FOUNDED, settled(FOUNDED), Stop(), None)
+    run = ObserverRun(FOUNDED, settle(FOUNDED), Stop(), None)
     run.step()
     chain = run.pair.states[0].displacement
     run.from_rest()

@@ -8,7 +8,7 @@ from dataclasses import replace
 import pytest
 from page_host import Trial, picture
 
-from granchain_core import BadInput, scene, settled
+from granchain_core import BadInput, scene, settle
 
 
 @pytest.fixture
@@ -41,7 +41,7 @@ def test_the_probe_keeps_its_bead_and_a_shorter_chain_has_its_last_one(probe: Tr
     assert (probe.state["bead"], probe.state["beads"]) == (2, 2)
     probe.settle(picture(2100.0))
     assert probe.state["bead"] == 2
-    probe.settle(settled(scene("sec2").evolve(N=1, f=2000.0), samples=8))
+    probe.settle(settle(scene("sec2").evolve(N=1, f=2000.0), samples=8))
     assert (probe.state["bead"], probe.state["beads"]) == (1, 1)
     with pytest.raises(BadInput, match="bead '3' is not a whole number"):
         probe.do("probe-bead", bead=3)

@@ -26,7 +26,7 @@ from app.pages.stability.view import (
 )
 from app.pages.stability.work import OrbitAnalysis, OrbitTarget, analyse, search, section_of, transient
 from app.session.session import Session
-from granchain_core import BadInput, ComputationError, Settled, scene, settled
+from granchain_core import BadInput, ComputationError, Settled, scene, settle
 from granchain_core.execution.stop import Stop
 from granchain_core.results.regime import Regime, exponent_words, modulus_words
 
@@ -34,7 +34,7 @@ from granchain_core.results.regime import Regime, exponent_words, modulus_words
 @cache
 def picture(name: str = "sec2", **knobs: Any) -> Settled:
     """A settled picture."""
-    return settled(scene(name).evolve(**knobs), samples=96)
+    return settle(scene(name).evolve(**knobs), samples=96)
 
 
 @cache

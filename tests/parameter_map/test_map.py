@@ -19,12 +19,12 @@ from app.cli import main
 from granchain_core import BadInput, resonance_curve, scene, settle
 from granchain_core.execution.checkpoints import folder_of
 from granchain_core.execution.stop import Stop
-from granchain_core.parameter_map import Axis, Diagram, Grid, diagram
+from granchain_core.parameter_map import Axis, Grid, ParameterMap, parameter_map
 from granchain_core.parameter_map.blocks import Blocks
 from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
 from granchain_core.parameter_map.scheduled import describe, work_on
 from granchain_core.scheduler import dealt
-from granchain_core.store.diagrams import load_diagram, save_diagram
+from granchain_core.store.parameter_maps import load_parameter_map, save_parameter_map
 
 ROOT = Path(__file__).resolve().parents[2]
 FREQUENCIES = np.linspace(300.0, 1700.0, 8)
@@ -32,11 +32,11 @@ AMPLITUDES = np.geomspace(2e-7, 2e-6, 4)
 
 
 @pytest.fixture(scope="module")
-def found() -> Diagram:
-    return diagram(scene("sec2"), ("f", FREQUENCIES), ("A0", AMPLITUDES))
+def found() -> ParameterMap:
+    return parameter_map(scene("sec2"), ("f", FREQUENCIES), ("A0", AMPLITUDES))
 
 
-def test_every_cell_is_the_curves_point_at_its_amplitude(found: Diagram) -> None:
+def test_every_cell_is_the_curves_point_at_its_amplitude(found: ParameterMap) -> None:
     assert found.complete
     for i, amplitude in enumerate(AMPLITUDES):
         curve = resonance_curve(scene("sec2").evolve(A0=amplitude), FREQUENCIES)
@@ -51,11 +51,11 @@ def test_every_cell_is_the_curves_point_at_its_amplitude(found: Diagram) -> None
             assert np.isnan(cell["error_estimate"]) == (point.force_errors.output is None)
 
 
-def test_scaled_cells_are_the_same(found: Diagram) -> None:
+def test_scaled_cells_are_the_same(found: ParameterMap) -> None:
     # (A0, f, D) → (s A0, s^{1/4} f, s^{1/4} D): forces × s^{3/2} (docs/model.md, Equations), along a tilted line of the
     # diagram
     s = AMPLITUDES[1] / AMPLITUDES[0]
-    other = diagram(scene("sec2").evolve(D=100.0 * s**0.25), ("f", s**0.25 * FREQUENCIES), ("A0", s * AMPLITUDES))
+    other = parameter_map(scene("sec2").evolve(D=100.0 * s**0.25), ("f", s**0.25 * FREQUENCIES), ("A0", s * AMPLITUDES))
     assert (other.cells["regime"] == found.cells["regime"]).mean() > 0.9  # chaos from rest amplifies rounding
     both = (other.cells["regime"] == 0) & (found.cells["regime"] == 0) & (other.cells["period"] == found.cells["period"])
     assert both.sum() >= 20
@@ -64,7 +64,7 @@ def test_scaled_cells_are_the_same(found: Diagram) -> None:
 
 
 def test_an_axis_that_reaches_zero_switches_its_effect_off_there() -> None:
-    found = diagram(scene("sec2"), ("k", [0.0, 1e4]), ("D", [0.0, 100.0]))
+    found = parameter_map(scene("sec2"), ("k", [0.0, 1e4]), ("D", [0.0, 100.0]))
     assert found.complete
     for number, (k, D) in enumerate([(0.0, 0.0), (1e4, 0.0), (0.0, 100.0), (1e4, 100.0)]):
         at = found.grid.cell(number)
@@ -74,7 +74,7 @@ def test_an_axis_that_reaches_zero_switches_its_effect_off_there() -> None:
 
 
 def test_scenes_that_batches_cannot_run_are_settled_one_by_one() -> None:
-    found = diagram(scene("sec2").evolve(tension="cut"), ("f", [340.0]), ("A0", [5e-7, 6e-7]))
+    found = parameter_map(scene("sec2").evolve(tension="cut"), ("f", [340.0]), ("A0", [5e-7, 6e-7]))
     assert [CELL_REGIMES[code] for code in found.cells["regime"]] == ["periodic", "periodic"]
     for number, cell in enumerate(found.cells):
         assert cell["max_output_force"] == pytest.approx(settle(found.grid.cell(number)).run.max_output_force,
@@ -93,12 +93,12 @@ def test_the_first_cells_are_spread_over_the_whole_diagram() -> None:
 def test_a_stopped_diagram_says_what_is_missing() -> None:
     count, stop = [0], Stop()
 
-    def look(_: Diagram, __: float) -> None:
+    def look(_: ParameterMap, __: float) -> None:
         count[0] += 1
         if count[0] >= 10:
             stop.set()
 
-    found = diagram(scene("sec2"), ("f", np.linspace(300, 2000, 20)), ("A0", AMPLITUDES), stop=stop,
+    found = parameter_map(scene("sec2"), ("f", np.linspace(300, 2000, 20)), ("A0", AMPLITUDES), stop=stop,
                     progress=look)
     assert not found.complete and (found.cells["regime"] >= 0).sum() == count[0] >= 10
     missing = found.cells["regime"] < 0
@@ -117,15 +117,15 @@ def test_a_stopped_diagram_says_what_is_missing() -> None:
 ])
 def test_a_wrong_grid_is_one_clear_sentence(x: tuple, y: tuple, words: str) -> None:
     with pytest.raises(BadInput, match=words):
-        diagram(scene("sec2").evolve(D=1e5), x, y)
+        parameter_map(scene("sec2").evolve(D=1e5), x, y)
 
 
 # Files
 
 
-def test_a_map_comes_back_and_xarray_labels_it(found: Diagram, tmp_path: Path) -> None:
-    file = save_diagram(found, tmp_path / "map.h5")
-    again = load_diagram(file)
+def test_a_map_comes_back_and_xarray_labels_it(found: ParameterMap, tmp_path: Path) -> None:
+    file = save_parameter_map(found, tmp_path / "map.h5")
+    again = load_parameter_map(file)
     assert again.cells.tobytes() == found.cells.tobytes() and again.grid.digest == found.grid.digest
     with xarray.open_dataset(file, engine="h5netcdf", group="map") as data:
         assert data.max_output_force.dims == ("A0", "f") and data.max_output_force.attrs["units"] == "N"
@@ -165,7 +165,7 @@ def test_a_killed_map_resumes_and_computes_nothing_again(tmp_path: Path, capsys:
     printed = json.loads(capsys.readouterr().out)
     assert printed["cells"] == 400 and printed["computed"] == 400 - there
     assert not folder_of(out).exists()
-    found = load_diagram(out)
+    found = load_parameter_map(out)
     kept = before["regime"] >= 0
     assert found.complete and found.cells[kept].tobytes() == before[kept].tobytes()
 
@@ -222,7 +222,7 @@ def test_without_distributed_a_scheduler_is_refused_in_one_sentence(tmp_path: Pa
     assert "--scheduler needs the package distributed" in capsys.readouterr().err
 
 
-def test_a_block_can_be_sent_to_another_process_and_its_cells_back(found: Diagram) -> None:
+def test_a_block_can_be_sent_to_another_process_and_its_cells_back(found: ParameterMap) -> None:
     sent = pickle.loads(pickle.dumps((work_on, describe(found.grid), [3, 17])))
     rows = pickle.loads(pickle.dumps(sent[0](*sent[1:])))
     assert sorted(rows["number"]) == [3, 17]
@@ -241,7 +241,7 @@ def test_blocks_hold_every_cell_once() -> None:
 def test_an_axis_may_pass_through_equal_beads() -> None:
     """Equal beads are computed by other kernels than unequal ones: each cell is that of its own chain."""
     chain = scene("sec2").evolve(N=3, f=1500.0)
-    found = diagram(chain, ("dimer", [0.5, 1.0, 2.0]), ("D", [100.0])).column("max_output_force")[0]
+    found = parameter_map(chain, ("dimer", [0.5, 1.0, 2.0]), ("D", [100.0])).column("max_output_force")[0]
     for ratio, force in zip((0.5, 1.0, 2.0), found, strict=True):
         assert force == resonance_curve(chain.evolve(dimer=ratio), [1500.0]).points[0].max_output_force
     assert len(set(found)) == 3

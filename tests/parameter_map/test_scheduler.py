@@ -21,9 +21,9 @@ from granchain_core import (
     ComputationError,
     Stop,
     branch,
-    diagram,
     fit,
     orbit,
+    parameter_map,
     resonance_curve,
     run_many,
     scene,
@@ -47,7 +47,7 @@ def client() -> Iterator[Any]:
 
 
 def test_a_map_is_the_same_bytes_though_a_worker_is_killed_midway(client: Any) -> None:
-    threaded = diagram(CHAIN, *WIDE)
+    threaded = parameter_map(CHAIN, *WIDE)
     grid = Grid(CHAIN, *(Axis.of(*one) for one in WIDE))
     cells, left = empty_cells(grid), len(dealt(range(grid.size), CELLS_IN_TASK))
     victim = next(iter(client.run(os.getpid).values()))

@@ -9,7 +9,7 @@ import pytest
 from app.cli import main
 from app.cli.foundation import kept_along, kept_spring
 from app.parts.knobs.foundation import beside_kappa
-from granchain_core import scene, settled
+from granchain_core import scene, settle
 
 RIG = scene("rig")
 
@@ -58,7 +58,7 @@ def test_the_presets_of_figure_12_are_peak_valley_peak_in_period_1() -> None:
     for one in found:
         assert one.k == pytest.approx(0.001 * one.K * math.sqrt(one.A0), rel=1e-14)
         assert one.reference_overlap == RIG.reference_overlap
-    pictures = [settled(one) for one in found]
+    pictures = [settle(one) for one in found]
     assert [(p.regime.name, p.regime.period) for p in pictures] == [("periodic", 1)] * 3
     first, valley, second = (p.run.max_output_force_elastic for p in pictures)
     assert min(first, second) > 2 * valley

@@ -12,7 +12,7 @@ from bokeh.models import Range1d
 
 from app.frames import LiveWindow, settled_frames, with_jumps
 from app.parts.stage.trains import ForceTrains
-from granchain_core import LiveChain, scene, settled
+from granchain_core import LiveChain, scene, settle
 
 CHAIN = scene("sec2").evolve(D=300.0, f=100.0, accuracy=1e-4)
 
@@ -30,7 +30,7 @@ def test_a_force_without_jumps_is_drawn_as_it_is() -> None:
 
 def test_the_largest_value_drawn_is_the_largest_force_stated() -> None:
     """In the settled picture every copy of the orbit has its jumps, at the same phase."""
-    run = settled(CHAIN).run
+    run = settle(CHAIN).run
     frames = settled_frames(run)
     for jumps, series, largest in ((frames.input_jumps, frames.input_force, run.max_input_force),
                                    (frames.output_jumps, frames.output_force, run.max_output_force)):
@@ -46,7 +46,7 @@ def test_the_largest_value_drawn_is_the_largest_force_stated() -> None:
 def test_a_pull_and_a_lasting_pressure_are_told_beside_the_largest_force() -> None:
     """The driver's contact pulls when it opens at 340 Hz; at 2500 Hz the wall is pressed all the time."""
     for f, told in ((340.0, (True, False)), (2500.0, (True, True))):
-        run = settled(scene("sec2").evolve(f=f)).run
+        run = settle(scene("sec2").evolve(f=f)).run
         frames, trains = settled_frames(run), ForceTrains(Range1d())
         trains.update(frames, frames.time, frames.extremes, True)
         words = trains.peak_words(frames, (run.max_input_force, run.max_output_force), (run.force_errors.input, run.force_errors.output))
@@ -69,7 +69,7 @@ def test_a_pull_and_a_lasting_pressure_are_told_beside_the_largest_force() -> No
 def test_forces_under_the_axes_have_no_power_of_ten(least: float, most: float, axis: str, error: float | None,
                                                     words: list[str]) -> None:
     series, trains = np.array([least, most]), ForceTrains(Range1d())
-    frames = replace(settled_frames(settled(CHAIN).run), input_force=series, output_force=series)
+    frames = replace(settled_frames(settle(CHAIN).run), input_force=series, output_force=series)
     trains._factors, trains._units = ({"N": 1.0, "mN": 1e-3}[axis],) * 2, ("m", axis, axis)
     for found in trains.peak_words(frames, (most, most), (error, error)):
         assert [one.replace("\N{NO-BREAK SPACE}", " ") for one in found] == words

@@ -25,7 +25,8 @@ if not os.environ.get("GRANCHAIN_ALL"):
     COMBINATIONS = [
         ("linear", "allowed", 0.0, 0.0), ("linear", "allowed", 0.002, 0.0), ("linear", "allowed", 0.0, 2.0),
         ("linear", "cut", 0.0, 0.0), ("tsuji", "allowed", 0.0, 0.0), ("kuwabara-kono", "allowed", 0.0, 0.0),
-        ("none", "allowed", 0.002, 2.0), ("tsuji", "cut", 0.002, 2.0), ("kuwabara-kono", "cut", 0.002, 2.0),
+        ("none", "allowed", 0.0, 0.0), ("none", "allowed", 0.002, 2.0),
+        ("tsuji", "cut", 0.002, 2.0), ("kuwabara-kono", "cut", 0.002, 2.0),
     ]
 
 

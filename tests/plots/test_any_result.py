@@ -28,7 +28,7 @@ RESULTS = {
     "curve": (lambda: granchain.resonance_curve(CHAIN, [1800.0, 2000.0]), "largest output force (N)"),
     "orbit": (lambda: granchain.orbit(CHAIN), "real part of μ"),
     "branch": (lambda: granchain.branch(CHAIN, "f", 2000.0, 2020.0), "largest elastic output force (N)"),
-    "diagram": (lambda: granchain.diagram(CHAIN, ("f", [1900.0, 2000.0]), ("A0", [4e-7, 5e-7])), "drive amplitude A₀ (nm)"),
+    "parameter map": (lambda: granchain.parameter_map(CHAIN, ("f", [1900.0, 2000.0]), ("A0", [4e-7, 5e-7])), "drive amplitude A₀ (nm)"),
     "observation": (lambda: granchain.observe(CHAIN, TIME, np.sin(np.pi * TIME / 1e-3) ** 2), "time (ms)"),
     "accuracy": (lambda: granchain.WorkPrecision(CHAIN, "dop853", "SciPy's DOP853", 1e-12, [
         Row("rk4", "2 × the default steps", 1e-5, 0.001, 7, 2.0)]), "processor time"),
@@ -83,7 +83,7 @@ def test_lists_are_drawn_together_and_options_reach_the_picture() -> None:
     both = granchain.figure([up, down], elastic=True)
     assert {one.name for one in both.select({"type": ColumnDataSource})} == {"up", "down"}
     assert "elastic" in labels(both)[1] and both.height == HEIGHT
-    found = granchain.diagram(CHAIN, ("f", [1900.0, 2000.0]), ("A0", [4e-7, 5e-7]))
+    found = granchain.parameter_map(CHAIN, ("f", [1900.0, 2000.0]), ("A0", [4e-7, 5e-7]))
     assert isinstance(granchain.figure(found, shown="regime"), figure)
 
 

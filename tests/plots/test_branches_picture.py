@@ -6,17 +6,18 @@ from typing import Any
 
 import pytest
 
+import granchain_core
 from app.plots.branches import _STYLES, SPECIAL, BranchRows, branches, drawn_orbits, special_words
 from app.plots.theme import THEMES
 from granchain_core import resonance_curve, scene
-from granchain_core.orbits import Branch, continue_branch
+from granchain_core.orbits import Branch
 from granchain_core.orbits.branch.special import SPECIAL_KINDS
 
 
 @pytest.fixture(scope="module")
 def branch() -> Branch:
     """sec2 across a grazing and a period doubling."""
-    return continue_branch(scene("sec2"), "f", 262.0, 245.0, 1)
+    return granchain_core.branch(scene("sec2"), "f", 262.0, 245.0, 1)
 
 
 def data(plot: Any, name: str) -> dict[str, list[Any]]:

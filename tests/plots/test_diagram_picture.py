@@ -12,13 +12,13 @@ from app.plots.diagram import CATEGORIES, category, cell_rows, cell_words, diagr
 from app.plots.theme import THEMES
 from granchain_core import scene
 from granchain_core.bifurcation_curves import BifurcationCurve, BifurcationPoint
-from granchain_core.parameter_map import Axis, Diagram, Grid
+from granchain_core.parameter_map import Axis, Grid, ParameterMap
 from granchain_core.parameter_map.cells import CELL_REGIMES, empty_cells
 
 GRID = Grid(scene("sec2").evolve(N=2), Axis.of("f", [1900.0, 2000.0, 2100.0]), Axis.of("A0", [1e-7, 1e-6, 1e-5]))
 
 
-def filled(*numbers: int, regime: str = "periodic", period: int = 2, force: float = 0.5) -> Diagram:
+def filled(*numbers: int, regime: str = "periodic", period: int = 2, force: float = 0.5) -> ParameterMap:
     """A diagram of which some cells are computed."""
     found = nothing(GRID)
     for number in numbers:

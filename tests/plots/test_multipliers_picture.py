@@ -9,17 +9,18 @@ from typing import Any
 import numpy as np
 import pytest
 
+import granchain_core
 from app.pages.stability.trail import Trail
 from app.plots.multipliers import multiplier_words, multipliers, plane, plane_state
 from app.plots.theme import THEMES
 from granchain_core import scene
-from granchain_core.orbits import Orbit, periodic_orbit
+from granchain_core.orbits import Orbit
 
 
 @cache
 def orbit() -> Orbit:
     """The orbit of three beads."""
-    return periodic_orbit(scene("sec2").evolve(N=3, f=2000.0))
+    return granchain_core.orbit(scene("sec2").evolve(N=3, f=2000.0))
 
 
 def with_multipliers(*found: complex, observer: tuple[complex, ...] | None = None) -> Any:

@@ -83,4 +83,4 @@ def test_importing_loads_no_compiler_and_no_file_library() -> None:
 
 def test_a_function_keeps_its_name_beside_a_folder_of_the_same_name() -> None:
     assert alone("import granchain_core, granchain_core.run.live, granchain_core.parameter_map.grid, granchain_core.observe.record\n"
-                 "print(*(getattr(granchain_core, name).__name__ for name in ('run', 'diagram', 'observe')))") == "run diagram observe\n"
+                 "print(*(getattr(granchain_core, name).__name__ for name in ('run', 'parameter_map', 'observe')))") == "run parameter_map observe\n"

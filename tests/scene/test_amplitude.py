@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from granchain_core import Amplitude, BadInput, branch, diagram, resonance_curve, scene, settle
+from granchain_core import Amplitude, BadInput, branch, parameter_map, resonance_curve, scene, settle
 from granchain_core.experiment import read_amplitude
 from granchain_core.parameter_map import Grid
 from granchain_core.parameter_map.scheduled import describe
 from granchain_core.steady.curve.curve import Curve
 from granchain_core.store import load_branch, save_branch, save_curve
 from granchain_core.store.curves import load_curve
-from granchain_core.store.diagrams import load_diagram, save_diagram
+from granchain_core.store.parameter_maps import load_parameter_map, save_parameter_map
 
 CHAIN = scene("sec2").evolve(N=2)
 
@@ -109,11 +109,11 @@ DRIVE = Amplitude.table([1900.0, 2000.0, 2100.0], [4e-7, 5e-7, 5.5e-7], "a shake
 def test_a_map_drives_each_frequency_with_its_amplitude(tmp_path: Path) -> None:
     """Each cell is the cell of a map at that amplitude; the file brings the drive back and the digest knows it."""
     axes = ("f", [1900.0, 2000.0]), ("D", [80.0, 100.0])
-    found = diagram(CHAIN, *axes, amplitude=DRIVE)
+    found = parameter_map(CHAIN, *axes, amplitude=DRIVE)
     for f in (1900.0, 2000.0):
-        alone = diagram(CHAIN.evolve(A0=DRIVE.at(f)), ("f", [f]), axes[1]).column("max_output_force")[:, 0]
+        alone = parameter_map(CHAIN.evolve(A0=DRIVE.at(f)), ("f", [f]), axes[1]).column("max_output_force")[:, 0]
         np.testing.assert_array_equal(found.column("max_output_force")[:, axes[0][1].index(f)], alone)
-    again = load_diagram(save_diagram(found, tmp_path / "a.h5"))
+    again = load_parameter_map(save_parameter_map(found, tmp_path / "a.h5"))
     assert again.grid == found.grid and again.grid.amplitude == DRIVE
     assert found.grid.digest != replace(found.grid, amplitude=None).digest
     assert Grid(**{**vars(found.grid), "amplitude": Amplitude.from_json(describe(found.grid)["amplitude"])}) == found.grid

@@ -9,7 +9,7 @@ from unittest.mock import create_autospec
 import numpy as np
 import pytest
 
-from granchain_core import resonance_curve, scene, settled
+from granchain_core import resonance_curve, scene, settle
 from granchain_core.integrate import Engine, Setting, adaptive_setting
 from granchain_core.kernels.strobes import periodicity
 from granchain_core.results.regime import Regime
@@ -88,8 +88,16 @@ def test_a_long_locked_orbit_is_periodic() -> None:
 def test_a_batch_leaves_long_orbits_to_a_chain_alone() -> None:
     """1087 Hz has an orbit of 18 periods with |μ| 0.3: both ways find it, though a batch looks for 16 at most."""
     chain = scene("sec2").evolve(f=1087.0)
-    alone_, (together,) = settled(chain).regime, resonance_curve(chain, [1087.0]).points
+    alone_, (together,) = settle(chain).regime, resonance_curve(chain, [1087.0]).points
     assert (alone_.name, alone_.period) == (together.regime.name, together.regime.period) == ("periodic", 18)
+
+
+@pytest.mark.parametrize(("knobs", "f", "period"), [({"A0": 8e-7}, 1226.208, 18), ({"N": 4, "A0": 1e-6}, 2300.0, 26)])
+def test_an_approach_slower_than_the_bias_of_a_torus_is_measured_until_it_shows(knobs: dict[str, Any], f: float, period: int) -> None:
+    """Mean exponents of −0.008 over 220 to 420 periods, which a torus may have; |μ| is 0.8 to 0.9."""
+    chain = scene("sec2").evolve(f=f, **knobs)
+    found = [settle(chain).regime, resonance_curve(chain, [f]).points[0].regime]
+    assert [(one.name, one.period) for one in found] == [("periodic", period)] * 2
 
 
 def nearly_repeating(change: float) -> np.ndarray:
@@ -166,7 +174,7 @@ def test_the_evidence_for_a_closed_curve_is_kept() -> None:
 def test_one_chain_and_a_batch_have_the_same_evidence() -> None:
     """1700 Hz, quasi-periodic: the two ways judge records of the same length, up to the end of the exponent."""
     chain = scene("sec2").evolve(f=1700.0)
-    alone_, (together,) = settled(chain).regime, resonance_curve(chain, [1700.0]).points
+    alone_, (together,) = settle(chain).regime, resonance_curve(chain, [1700.0]).points
     assert alone_.name == together.regime.name == "quasi-periodic"
     assert alone_.return_limit == together.regime.return_limit == pytest.approx(10.0 * np.pi / 210.0)
     for one in (alone_, together.regime):

@@ -13,7 +13,14 @@ from granchain_core.steady.exponent_measurements import (
     ExponentMeasurements,
 )
 from granchain_core.steady.lyapunov import block_means
-from granchain_core.steady.regime_criteria import CLEAR_GROWTH, SLOW_RECORD, mean_and_error
+from granchain_core.steady.regime_criteria import (
+    _BOUNDED_GROWTH,
+    _LONGEST_COMPARISON,
+    CLEAR_GROWTH,
+    SLOW_RECORD,
+    mean_and_error,
+)
+from granchain_core.steady.settling.regime_decisions import _MOST_PARTS
 
 #: A closed curve: strobes of a bead whose phase turns by the golden mean.
 PHASE = 2.0 * np.pi * 0.6180339887 * np.arange(SLOW_RECORD + LONGEST_PERIOD)
@@ -99,6 +106,38 @@ def test_the_standard_error_is_that_of_the_mean(periods: int) -> None:
     found = np.array([mean_and_error(block_means(dice.standard_normal(periods), EXPONENT_BLOCKS)) for _ in range(4000)])
     assert found[:, 0].std() == pytest.approx(np.sqrt((found[:, 1] ** 2).mean()), rel=0.03)
     assert found[:, 0].std() == pytest.approx(1.0 / np.sqrt(periods), rel=0.08), "hardly a period is lost at the ends"
+
+
+@pytest.mark.parametrize(("mean", "name", "parts"), [(0.008, "chaotic", 4), (-0.008, "unsettled", 4), (0.003, "quasi-periodic", 1)])
+def test_a_neutral_mean_above_its_error_is_measured_until_it_exceeds_the_bias_of_a_torus(mean: float, name: str, parts: int) -> None:
+    """Over 200 periods 0.008 ± 0.0001 is e^1.6, and a torus may show e⁶; over 6/0.008 = 750 it is more. For 0.003 that
+    would take 2000 periods, longer than the longest measurement."""
+    measurements = ExponentMeasurements()
+    while measurements.latest is None:
+        measurements.add(growth(mean), OFFSET, CURVE, 400 + len(measurements.unfinished))
+    assert (measurements.latest.name, measurements.latest.lyapunov_periods) == (name, parts * MEASURED_PERIODS - TURNING_PERIODS)
+
+
+def test_a_neutral_mean_is_compared_for_as_long_as_a_chain_alone_measures() -> None:
+    assert _LONGEST_COMPARISON == _MOST_PARTS * MEASURED_PERIODS
+
+
+#: Largest swing of the logarithm of a distance that was seen on a torus (`_BOUNDED_GROWTH`).
+SEEN_SWING = 4.0
+@pytest.mark.parametrize("periods", [200, 420])
+@pytest.mark.parametrize(("length", "left"), [(0.25, 0.0), (0.4, 0.148), (0.5, 0.0), (0.75, 0.617), (0.9, 0.807), (1.0, 0.0), (1.5, 0.863), (2.0, 1.045), (4.0, 0.772)])
+def test_the_bias_of_a_bounded_swing_by_its_period(periods: int, length: float, left: float) -> None:
+    """The mean's bias at the worst phase, over the swing/P of a plain mean; the swing's period in blocks. Zeros of the
+    window are at 1, 1/2, 1/4 block. Swings that are short against half a block are averaged out, and longer ones are
+    not, so the limit of a neutral mean needs the whole swing over P."""
+    block = 2 * (periods // (EXPONENT_BLOCKS + 1))
+    time = np.arange(periods + 1)
+    bias = 0.0
+    for phase in np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False):
+        logarithm = 0.5 * SEEN_SWING * np.sin(2.0 * np.pi * time / (length * block) + phase)
+        bias = max(bias, abs(mean_and_error(block_means(np.diff(logarithm), EXPONENT_BLOCKS))[0]))
+    assert bias * periods / SEEN_SWING == pytest.approx(left, abs=0.01)
+    assert bias < _BOUNDED_GROWTH / periods
 
 
 def test_the_last_measurement_is_not_continued() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core import State, resonance_curve, run, scene, settled
+from granchain_core import State, resonance_curve, run, scene, settle
 from granchain_core.integrate import following_setting
 from granchain_core.integrate.start import at_phase_0
 from granchain_core.steady import regime_criteria
@@ -17,7 +17,7 @@ def test_section_2_from_rest_has_its_periods(f, period):
     """One push in 1, 2, 3, 4 periods on the peaks (docs/lecture.md); the picture of the orbit closes on itself and says
     how exactly.
     """
-    found = settled(scene("sec2").evolve(f=f))
+    found = settle(scene("sec2").evolve(f=f))
     assert (found.regime.name, found.regime.period) == ("periodic", period)
     kept = found.run
     assert len(kept.time) == period * kept.samples + 1
@@ -31,7 +31,7 @@ def test_section_2_from_rest_has_its_periods(f, period):
 def test_settled_orbit_is_where_a_long_plain_run_ends(f):
     """Extrapolation and relaxation lead to the attractor the chain goes to by itself."""
     chain = scene("sec2").evolve(f=f, accuracy=1e-7)
-    found = settled(chain)
+    found = settle(chain)
     n = found.regime.period
     plain = run(chain, periods=600 * n, record=n, samples=96)
     largest = np.abs(plain.displacement).max()
@@ -43,7 +43,7 @@ def test_settled_orbit_is_where_a_long_plain_run_ends(f):
 
 def test_the_founded_rig_at_140_hz_is_chaotic():
     """κ = 0.001, f = 140 Hz: a positive exponent, and its evidence."""
-    found = settled(scene("rig").evolve(f=140.0))
+    found = settle(scene("rig").evolve(f=140.0))
     assert found.regime.name == "chaotic"
     exponent, error = found.regime.lyapunov
     assert exponent > 3 * error
@@ -53,7 +53,7 @@ def test_the_founded_rig_at_140_hz_is_chaotic():
 @pytest.mark.parametrize("f", [45.0, 80.0, 120.0])
 def test_the_rig_without_its_foundation_is_not_periodic(f):
     """κ = 0: irregular everywhere in 20–160 Hz."""
-    assert settled(scene("rig").evolve(f=f, k=0.0)).regime.name != "periodic"
+    assert settle(scene("rig").evolve(f=f, k=0.0)).regime.name != "periodic"
 
 
 def test_windows_hold_the_largest_changes_oldest_first() -> None:
@@ -77,7 +77,7 @@ def test_a_cut_chain_from_rest_comes_to_the_attractor_that_rest_leads_to():
     point, = resonance_curve(chain, [742.0479417595108]).points
     assert point.regime.period == 1
     assert point.max_output_force == pytest.approx(8.19827, rel=1e-5)
-    assert settled(chain.evolve(f=742.0479417595108)).regime.period == 1
+    assert settle(chain.evolve(f=742.0479417595108)).regime.period == 1
 
 
 def test_a_cut_chain_is_where_a_finer_computation_is_at_its_next_phase_0_and_in_its_section():
@@ -95,7 +95,7 @@ def test_a_cut_chain_is_where_a_finer_computation_is_at_its_next_phase_0_and_in_
 def test_a_cut_chain_that_goes_on_from_its_orbit_stays_there():
     """The fixed-step method's own orbit has period 6."""
     chain = scene("sec2").evolve(tension="cut", f=550.0)
-    again = settled(chain, start=settled(chain).state)
+    again = settle(chain, start=settle(chain).state)
     assert (again.regime.name, again.regime.period) == ("periodic", 2)
 
 
@@ -110,6 +110,6 @@ def test_changes_within_the_tolerance_of_a_step_are_no_motion():
 
 def test_the_motion_of_a_cut_chain_without_a_drive_is_known_to_the_accuracy_asked_for():
     chain = scene("impact").evolve(N=5, tension="cut", dissipation="tsuji", D=30.0, f=2000.0, accuracy=1e-8)
-    found, fine = settled(chain).run, run(chain.evolve(accuracy=1e-11), periods=0, record=1, samples=96)
+    found, fine = settle(chain).run, run(chain.evolve(accuracy=1e-11), periods=0, record=1, samples=96)
     assert found.displacement_error < 1e-8
     assert np.abs(found.displacement - fine.displacement).max() < 1e-8 * np.abs(fine.displacement).max()

@@ -15,10 +15,10 @@ from app.cli.orbit import _start
 from granchain_core import observe, resonance_curve, run, scene
 from granchain_core.observe import first_state, read_force
 from granchain_core.orbits import Continuation, begin_branch
-from granchain_core.parameter_map import Axis, Grid, diagram
+from granchain_core.parameter_map import Axis, Grid, parameter_map
 from granchain_core.store import load, load_branch, save, save_branch, save_curve, save_observation
 from granchain_core.store.curves import load_curve
-from granchain_core.store.diagrams import load_diagram, save_diagram
+from granchain_core.store.parameter_maps import load_parameter_map, save_parameter_map
 
 BEADS = 3
 
@@ -51,7 +51,7 @@ def _curve(path: Path) -> Path:
 
 def _map(path: Path) -> Path:
     grid = Grid(_chain(), Axis.of("f", [300.0, 340.0, 380.0]), Axis.of("A0", [4e-7, 5e-7]))
-    return save_diagram(diagram(grid.scene, ("f", grid.x.values), ("A0", grid.y.values)), path)
+    return save_parameter_map(parameter_map(grid.scene, ("f", grid.x.values), ("A0", grid.y.values)), path)
 
 
 def _observation(path: Path) -> Path:
@@ -65,7 +65,7 @@ def _read_force(path: Path) -> Any:
 
 KINDS = {kind.name: kind for kind in (
     Kind("run", _run, load), Kind("start of orbit", _run, lambda path: _start(_chain(), str(path), 0)),
-    Kind("force of a run", _run, _read_force), Kind("branch", _branch, load_branch), Kind("curve", _curve, load_curve), Kind("map", _map, load_diagram),
+    Kind("force of a run", _run, _read_force), Kind("branch", _branch, load_branch), Kind("curve", _curve, load_curve), Kind("map", _map, load_parameter_map),
     Kind("observation", _observation, _read_force))}
 
 

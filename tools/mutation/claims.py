@@ -24,6 +24,8 @@ STEADY = (
            "an exponent within its error is called chaos", k.CLAIMS),
     Mutant("creeping-is-quasi-periodic", _REGIME, "if _neither_converges_nor_departs(windows) and", "if",
            "a slow approach with an exponent near zero is called quasi-periodic", k.CLAIMS),
+    Mutant("bias-of-a-torus-is-not-excluded", _REGIME, "return periods < _periods_of_comparison(mean, error) <= _LONGEST_COMPARISON", "return False",
+           "a slow approach, or weak chaos, is called quasi-periodic although its exponent is known not to be zero", k.CLAIMS),
     Mutant("drift-is-quasi-periodic", _REGIME, " and distance < limit else", " else",
            "a section that never comes back is called a closed curve", k.CLAIMS),
     Mutant("settled-error-without-distance", _RECORDING, "regime, integration + distance, cost,", "regime, 0.0 * integration + distance, cost,",

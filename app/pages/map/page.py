@@ -12,7 +12,7 @@ import numpy as np
 from granchain_core import Scene
 from granchain_core.attractors import Attractor, attractors
 from granchain_core.execution.stop import Stop
-from granchain_core.parameter_map import Axis, Grid, iter_diagram
+from granchain_core.parameter_map import Axis, Grid, iter_parameter_map
 from granchain_core.parameter_map.cells import cell_of, empty_cells
 from granchain_core.precompile.pieces import ORBIT_KERNELS
 
@@ -231,7 +231,7 @@ def _batches(grid: Grid, missing: list[int], stop: Stop, pause: Callable[[], Non
     """Cells as they are computed, in batches."""
     rows: list[np.ndarray] = []
     last = time.monotonic()
-    for result in iter_diagram(grid, missing, stop, 1, pause):
+    for result in iter_parameter_map(grid, missing, stop, 1, pause):
         rows.append(cell_of(result))
         if time.monotonic() - last > _MESSAGE_EVERY:
             yield np.array(rows)

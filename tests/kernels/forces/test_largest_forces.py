@@ -7,10 +7,10 @@ import functools
 import numpy as np
 import pytest
 
-from granchain_core import Run, Scene, resonance_curve, run, scene, settled
+from granchain_core import Run, Scene, resonance_curve, run, scene, settle
 from granchain_core.integrate import METHODS, Engine, Setting, adaptive_setting, fixed_step_setting
 from granchain_core.integrate.methods import jump_errors
-from granchain_core.parameter_map import diagram
+from granchain_core.parameter_map import parameter_map
 from granchain_core.scene.state import State
 
 #: The methods that locate contact events.
@@ -99,9 +99,9 @@ def test_every_part_of_the_program_gives_the_same_largest_force() -> None:
     """Run, curve from rest and carried along, map and settled picture: to four digits and to what each states."""
     chain = scene("sec2").evolve(D=300.0, f=100.0)
     points = [resonance_curve(chain, [100.0, 101.0], start=start).points[0] for start in ("rest", "up")]
-    cell = diagram(chain, ("f", [100.0, 101.0]), ("A0", [chain.A0])).cells[0]
+    cell = parameter_map(chain, ("f", [100.0, 101.0]), ("A0", [chain.A0])).cells[0]
     passed = run(chain, periods=30, record=1)
-    picture = settled(chain).run
+    picture = settle(chain).run
     found = [(p.max_output_force, p.force_errors.output) for p in points]
     found += [(float(cell["max_output_force"]), float(cell["error_estimate"])), (passed.max_output_force, passed.force_errors.output),
               (picture.max_output_force, picture.force_errors.output)]

@@ -11,7 +11,7 @@ import numpy as np
 from granchain_core import ComputationError, Scene, resonance_curve, run
 from granchain_core.errors import OverBudget
 from granchain_core.parameter_map.cells import ERRORS, cell_of
-from granchain_core.parameter_map.compute import iter_diagram
+from granchain_core.parameter_map.compute import iter_parameter_map
 from granchain_core.parameter_map.grid import Axis, Grid
 from granchain_core.scene.state import State
 
@@ -151,7 +151,7 @@ def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str
     """Verdicts on the periodic cells of one small map."""
     base = draw_steady(seed, index, structures)
     grid = Grid(base, Axis.of("f", base.f * np.geomspace(1.0, 1.3, _ACROSS)), Axis.of("D", base.D * np.geomspace(0.5, 1.0, _DOWN)))
-    for result in iter_diagram(grid, workers=1):
+    for result in iter_parameter_map(grid, workers=1):
         cell = cell_of(result)
         if result.failure or result.regime.period is None:
             continue

@@ -16,7 +16,7 @@ import numpy as np
 from ..hdf5 import File, opened
 from ..hdf5.border import one_of, within
 from ..hdf5.plain import Refused
-from ..parameter_map import Axis, Diagram, Grid
+from ..parameter_map import Axis, Grid, ParameterMap
 from ..parameter_map.cells import CELL, CELL_REGIMES, empty_cells
 from ..parameter_map.grid import KNOBS, MOST_CELLS
 from ..scene import Amplitude
@@ -24,19 +24,19 @@ from ..scene.quantities import QUANTITIES
 from .writing import write_file, write_result
 
 
-def save_diagram(diagram: Diagram, path: str | Path) -> Path:
+def save_parameter_map(found: ParameterMap, path: str | Path) -> Path:
     """Write a parameter map to `path`; returns the path. Raises `BadInput` where it cannot be written."""
-    return write_file(path, lambda file: write_result(file, diagram))
+    return write_file(path, lambda file: write_result(file, found))
 
 
-def load_diagram(path: str | Path) -> Diagram:
-    """The parameter map that `save_diagram` wrote. Raises `BadInput` for a file that is not one."""
+def load_parameter_map(path: str | Path) -> ParameterMap:
+    """The parameter map that `save_parameter_map` wrote. Raises `BadInput` for a file that is not one."""
     with opened(path, "is not a map written by granchain") as file:
         file.schema()
         return _read(file)
 
 
-def _read(file: File) -> Diagram:
+def _read(file: File) -> ParameterMap:
     names = file.json("map_axes")
     if not isinstance(names, list) or len(names) != 2:
         raise Refused(f"attribute map_axes is {str(names)[:40]!r}, not two knobs")
@@ -51,13 +51,13 @@ def _read(file: File) -> Diagram:
     amplitude = Amplitude.from_json(file.json("amplitude")) if file.stated("amplitude") else None
     grid = Grid(scene, across, down, amplitude)
     cells = empty_cells(grid)
-    file.expect_units(Diagram(grid, cells).tables()[0].units)
+    file.expect_units(ParameterMap(grid, cells).tables()[0].units)
     kept = [name for name in CELL.names or () if file.has(f"map/{name}")]
     for name in kept:  # earlier versions kept fewer columns
         cells[name] = _column(file, name, shape)
     if "decay" not in kept:  # files written before the two were told apart
         cells["decay"], cells["multiplier"] = cells["multiplier"].copy(), np.nan
-    return Diagram(grid, cells, file.number("wall_s"))
+    return ParameterMap(grid, cells, file.number("wall_s"))
 
 
 def _column(file: File, name: str, shape: tuple[int, ...]) -> np.ndarray:
