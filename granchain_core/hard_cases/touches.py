@@ -94,7 +94,7 @@ def run(cases: np.ndarray, driven: bool) -> np.ndarray:
 
 
 def workspace(row: int) -> Dop853Workspace:
-    """Arrays of the adaptive method for a chain of `row` bodies."""
+    """Arrays of dop853 for a chain of `row` bodies."""
     return Dop853Workspace(
         k=np.zeros((ALL_STAGES, 2 * row)), stage=np.zeros(2 * row), end=np.zeros(2 * row), probe=np.zeros(2 * row),
         slope=np.zeros(2 * row), dense=np.zeros((7, 2 * row)), scale=np.zeros(2), next_step=np.zeros(1),

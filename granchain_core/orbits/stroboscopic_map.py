@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..execution.stop import Stop
-from ..integrate import Engine, adaptive_setting
+from ..integrate import Engine, dop853_setting
 from ..integrate.dop853 import Dop853Stepper
 from ..integrate.scaling import ScaledChain, scale_like
 from ..kernels.dop853.tableau import STAGES
@@ -69,7 +69,7 @@ class StroboscopicMap:
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, tolerance: float = TOLERANCE) -> None:
         refuse_undriven(scene)
         refuse_cut(scene)
-        self.engine = Engine(scene, adaptive_setting(tolerance), 1, stop=stop)
+        self.engine = Engine(scene, dop853_setting(tolerance), 1, stop=stop)
         self.periods = periods
         self._prepare(tolerance)
 

@@ -38,7 +38,7 @@ def break_contact(engine: Engine, contact: int) -> None:
     """A contact whose stiffness is no number: what fails then, fails in the kernel."""
     stepper = engine.stepper
     stepper.scaled.slots.chain.stiffness[contact] = np.nan
-    if METHODS[engine.setting.method].adaptive:
+    if METHODS[engine.setting.method].error_control:
         stepper.use(stepper.scaled)
     else:
         stepper.work = stepper.work._replace(simd=stepper.new_simd_workspace())

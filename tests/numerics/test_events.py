@@ -53,7 +53,7 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
     assert engine.counts.events == seen == 36
 
 
-def test_across_events_the_adaptive_method_keeps_to_a_hundred_tolerances():
+def test_across_events_dop853_keeps_to_a_hundred_tolerances():
     """Without event location a method of order 8 has the order of the kink that it steps over."""
     chain = scene("sec2").evolve(F0=0.0)
     true = Engine(chain, Setting("dop853", tolerance=1e-14), 8).record(16).displacement
@@ -68,7 +68,7 @@ def test_a_chain_that_never_opens_has_no_events():
     assert result.cost.events == 0
 
 
-def test_adaptive_steps_end_on_the_events():
+def test_located_steps_end_on_the_events():
     """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
     engine = Engine(chain, Setting("dop853", tolerance=1e-9), 1)

@@ -1,4 +1,4 @@
-"""Program and kernel: brief touches by the hundred thousand, and whether the adaptive method misses one.
+"""Program and kernel: brief touches by the hundred thousand, and whether dop853 misses one.
 
     python -m tests.numerics.touches --count 100000 [--seed 1]
 

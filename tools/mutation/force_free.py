@@ -10,7 +10,7 @@ _TENSION = "kernels/effects/tension.py"
 
 FORCE_FREE = (
     Mutant("cut-kink-not-located", _DOP853_RUN, "        if outcome == KINK:", "        if outcome == KINK + 9:",
-           "adaptive steps go across the instant at which a cut contact stops pushing", k.CUT_ENERGY),
+           "steps with error control go across the instant at which a cut contact stops pushing", k.CUT_ENERGY),
     Mutant("force-free-of-tsuji", _KINKS, "stiffness * d * (r / power(law, d, r))", "stiffness * d * r",
            "the instant at which Tsuji's force ends is another one",
            k.UNLIKE),

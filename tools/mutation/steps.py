@@ -1,4 +1,4 @@
-"""Mutants of how time goes on: the equations of motion, fixed steps and what they give back, adaptive steps."""
+"""Mutants of how time goes on: the equations of motion, fixed steps and what they give back, error control."""
 
 from __future__ import annotations
 
@@ -64,9 +64,9 @@ FIXED = (
            "of several events in a step a later one is taken first", k.STEP_EVENTS),
 )
 
-ADAPTIVE = (
+ERROR_CONTROLLED = (
     Mutant("step-over-a-touch", _BRACKET, "return reach > 0.0", "return reach > 1e300",
-           "a contact that closes and opens inside an adaptive step is not looked for", k.GRAZING),
+           "a contact that closes and opens inside a step with error control is not looked for", k.GRAZING),
     Mutant("touch-bound-from-below", _BRACKET, "reach = max(sign", "reach = min(sign",
            "touches are looked for only where both straight lines meet them", k.STEP_EVENTS),
     Mutant("touch-only-from-open", _BRACKET, "if not (sign * s0 > 0.0 and sign * s1 < 0.0):",
@@ -83,15 +83,15 @@ ADAPTIVE = (
            "the driver stands still while its contact is looked for", k.TOUCHES),
     Mutant("events-not-located", _DOP853_RUN, "        if aimed < 0 or x > 1.0 - _NEAR_END:",
            "        aimed = -1\n        if aimed < 0 or x > 1.0 - _NEAR_END:",
-           "a smooth method steps across every contact event", k.ADAPTIVE_ORDER),
+           "a smooth method steps across every contact event", k.DOP853_ORDER),
     Mutant("last-event-of-a-step", _DOP853_RUN, "if root < first and 0.1", "if root <= 2.0 and 0.1",
            "of several contacts that change in a step the last is taken", k.TOUCHES),
     Mutant("rejection-loose", _DOP853_RUN, "        if error <= 1.0:", "        if error <= 1000.0:",
-           "steps a thousand times worse than asked for are accepted", k.ADAPTIVE_ORDER),
+           "steps a thousand times worse than asked for are accepted", k.DOP853_ORDER),
     Mutant("error-unit-loose", _DOP853, "unit = 1.0 / (tolerance * largest)", "unit = 1.0 / (1000.0 * tolerance * largest)",
-           "the tolerance is a thousandth of what it says", k.ADAPTIVE_ORDER),
+           "the tolerance is a thousandth of what it says", k.DOP853_ORDER),
     Mutant("error-of-displacements-only", _DOP853, "for row in range(2):\n        largest", "for row in range(1):\n        largest",
-           "errors of the velocities are not controlled", k.ADAPTIVE_ORDER),
+           "errors of the velocities are not controlled", k.DOP853_ORDER),
     Mutant("step-too-small-unseen", _DOP853_RUN, "        if t + 0.1 * h == t:", "        if t + 0.1 * h < t:",
            "a step that shrinks to nothing goes on for ever", ("tests/hard_cases/test_outcomes.py::test_step_too_small",)),
     Mutant("chatter-unseen", _DOP853_RUN, "if events > EVENTS_PER_CONTACT * (bodies - 1):", "if events < 0:",
@@ -100,9 +100,9 @@ ADAPTIVE = (
     Mutant("events-of-all-periods", _DOP853_RUN, "t, point, events = 0.0, 0, 0", "t, point = 0.0, 0",
            "a long run is called chatter", k.MANY_PERIODS),
     Mutant("samples-at-step-ends", _DOP853_RUN, "min(1.0, (at - t) / h)", "1.0",
-           "samples are taken where a step happens to end", k.ADAPTIVE_ORDER),
+           "samples are taken where a step happens to end", k.DOP853_ORDER),
     Mutant("dense-coefficient", _DOP853, "value = (value + rows[4]) * x", "value = (value + rows[4]) * back",
-           "the dense output is wrong inside a step", k.ADAPTIVE_ORDER),
+           "the dense output is wrong inside a step", k.DOP853_ORDER),
     Mutant("dop853-stage-weight", _TABLEAU, "(5, 4): 0.12546768756682242", "(5, 4): 0.12546768766682242",
            "the tenth digit of a stage weight", k.TABLEAU),
     Mutant("dop853-stage-time", _TABLEAU, "    0.6512820512820513,", "    0.6512820512810513,",
@@ -128,4 +128,4 @@ CLOCK = (
            "the top of a force is looked for on the wrong side", k.UNLIKE),
 )
 
-STEPS = MOTION + FIXED + ADAPTIVE + CLOCK
+STEPS = MOTION + FIXED + ERROR_CONTROLLED + CLOCK

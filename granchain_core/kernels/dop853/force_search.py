@@ -1,4 +1,4 @@
-"""The largest forces inside an accepted step of the adaptive method, on its dense output.
+"""The largest forces inside an accepted step of dop853, on its dense output.
 
 A force is evaluated at both ends of a step and, under the first two conditions below, in its middle. The step begins
 just past an event and ends just past the next, so these values are right limits and the jump of a closing contact is

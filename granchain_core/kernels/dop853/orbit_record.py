@@ -1,6 +1,6 @@
 """A run along an orbit that keeps the turning points of all overlaps and the largest forces.
 
-Each accepted step of the adaptive method is searched on its dense output. A contact's overlap has a turning point
+Each accepted step of dop853 is searched on its dense output. A contact's overlap has a turning point
 where its two bodies move equally fast; one at which the overlap is small is a touch or a separation about to appear or
 to vanish. The largest forces are searched inside the steps (dop853/force_search.py).
 """

@@ -21,7 +21,7 @@ from .tangent import Tangent, propagate
 #: Most steps in one drive period.
 _MOST_STEPS = 5_000_000
 #: A step that ends closer to the period's end than this, in periods, ends there. It covers the rounding of a time and
-#: of its map to x. The adaptive method's `GOAL_TOLERANCE` is larger, because it also meets the times of samples,
+#: of its map to x. dop853's `GOAL_TOLERANCE` is larger, because it also meets the times of samples,
 #: products that are rounded themselves; here it would only add to the error of the map.
 _PERIOD_END = 1e-14
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import ComputationError
-from ...integrate import Engine, adaptive_setting
+from ...integrate import Engine, dop853_setting
 from ...integrate.scaling import scale_chain
 from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
 from ...kernels.forces.peaks import PEAKS, largest_forces
@@ -132,7 +132,7 @@ def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float,
                  tolerance: float = _TOLERANCE) -> tuple[Engine, OrbitRecord]:
     """Largest forces and turning points of all overlaps along the way from the scaled state x."""
-    engine = Engine(equations.axis.scene_at(value), adaptive_setting(tolerance), 1, stop=equations.stop)
+    engine = Engine(equations.axis.scene_at(value), dop853_setting(tolerance), 1, stop=equations.stop)
     stepper, room = engine.stepper, _FIRST_ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)

@@ -104,7 +104,7 @@ def test_the_excess_is_taken_back_from_beads_and_from_the_drivers_work() -> None
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_where_the_cubic_through_a_steps_ends_crosses_a_touch_is_looked_for(sign: float) -> None:
-    """A contact of the same sign at both ends of an adaptive step: open ones that may close, closed ones that may open.
+    """A contact of the same sign at both ends of a step: open ones that may close, closed ones that may open.
     """
     rng, crossed = np.random.default_rng(1), 0
     x = np.linspace(0.0, 1.0, 401)
