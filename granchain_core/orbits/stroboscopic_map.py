@@ -109,7 +109,7 @@ class StroboscopicMap:
         Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Raises `BadInput` for a
         damping that is not the linear dashpot's.
 
-        Only tests use it. It stands here because its type `VelocityTangent` is in the list of compiled versions of
+        Only tests use it. It stands here because its type `VelocityTangent` is in the list of specializations of
         `run_flow`: were it in tests/, a process without the tests could not read that list.
         """
         scaled = self.engine.scaled

@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core import LiveChain, resonance_curve, run, scene, settle
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels.dop853.force_kinks import scaled_force
+from granchain_core.kernels.error_control.force_kinks import scaled_force
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scene.laws import LAWS
 

@@ -10,8 +10,8 @@ from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels.dop853 import run as dop853
 from granchain_core.kernels.dop853.tableau import STAGES
+from granchain_core.kernels.error_control.located_step import located_step
 
 
 def grazing(depth: float, method: str, tolerance: float = 1e-9):
@@ -75,8 +75,8 @@ def test_located_steps_end_on_the_events():
     engine.periods(2)
     t, landed = 0.0, []
     for _ in range(400):
-        status, h, contact = dop853.located_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
-                                                      engine.scaled.period, engine.counts.array)
+        status, h, contact = located_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
+                                          engine.scaled.period, engine.counts.array)
         assert status == 0
         if contact >= 0:
             end = engine.stepper.work.end
@@ -87,6 +87,6 @@ def test_located_steps_end_on_the_events():
         if t >= engine.scaled.period * (1 - 1e-12):
             break
     assert len(landed) > 5
-    # the search for the end just past an event aims at 1e-15 and stops at four times that (dop853/run.py); some events
-    # are too slow for Newton
+    # the search for the end just past an event aims at 1e-15 and stops at four times that (located_step.py); some
+    # events are too slow for Newton
     assert np.quantile(landed, 0.9) < 4e-15 and max(landed) < 1e-11

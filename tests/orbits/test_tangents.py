@@ -11,7 +11,7 @@ from linear_chain import linear_multipliers
 from granchain_core import BadInput, Cancelled, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine, dop853_setting
-from granchain_core.kernels.dop853.orbit_record import OrbitRecord, record_orbit
+from granchain_core.kernels.error_control.orbit_record import OrbitRecord, record_orbit
 from granchain_core.kernels.forces.peaks import PEAKS
 from granchain_core.kernels.status import CANCELLED
 from granchain_core.orbits import krylov, periodic_orbit

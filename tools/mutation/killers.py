@@ -6,7 +6,7 @@ from __future__ import annotations
 #: beads are not alike; NaN in every member; what is not finite.
 MOTION = ("tests/kernels/equations/test_motion.py",)
 UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py", "tests/kernels/effects/test_given_force.py",
-          "tests/kernels/dop853/test_force_kinks.py")
+          "tests/kernels/error_control/test_force_kinks.py")
 VECTORS = ("tests/kernels/simd/test_vector_nan.py",)
 FAILURES_W = ("tests/integrate/test_not_finite.py", "-k", "first_bead")
 FASTMATH = ("tests/integrate/test_not_finite.py", "tests/kernels/equations/test_motion.py", "-k",

@@ -9,7 +9,7 @@ import numpy as np
 from ...errors import ComputationError
 from ...integrate import Engine, dop853_setting
 from ...integrate.scaling import scale_chain
-from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
+from ...kernels.error_control.orbit_record import OrbitRecord, record_orbit
 from ...kernels.forces.peaks import PEAKS, largest_forces
 from ...kernels.status import FULL
 from ...scene import Scene
@@ -41,7 +41,7 @@ class BranchPoint:
     forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
     open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
     the last being the orbit's; `liouville` is how far ln |det| of the monodromy matrix is from ∫ trace. `turns` are the
-    turning points of all overlaps (kernels/dop853/orbit_record.py). `damped` is whether its chain loses energy.
+    turning points of all overlaps (kernels/error_control/orbit_record.py). `damped` is whether its chain loses energy.
     """
 
     knob: float

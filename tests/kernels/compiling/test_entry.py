@@ -52,7 +52,7 @@ def test_every_kind_of_chain(changes: dict) -> None:
     advance(RK4_SPLIT, changes, account=True)
 
 
-def test_a_workspace_of_another_type_has_a_version_of_its_own() -> None:
+def test_a_workspace_of_another_type_has_a_specialization_of_its_own() -> None:
     """Tests take its vectors away from a stepper that has run with them."""
     engine = Engine(scene("sec2"), Setting(RK4_SPLIT), 4)
     engine.record(2)
