@@ -26,7 +26,7 @@ HERE = Path(__file__).parent
 #: wrong; orders, random scenes and browsers are for the whole suite.
 QUICK = (
     "architecture", "public", "scene", "experiment", "dashboard", "session", "integrate", "kernels/equations",
-    "kernels/effects", "kernels/rk4", "kernels/dop853", "parts", "pages", "curve",
+    "kernels/effects", "kernels/rk4", "kernels/dop853", "kernels/error_control", "parts", "pages", "curve",
 )
 #: Files in these folders that are left to the whole suite: they build a wheel, start servers and notebooks, or settle a
 #: scene at hundreds of frequencies, and take a fifth of the time together.

@@ -38,7 +38,7 @@ def shown_setting(scene: Scene, settled: Settled | None, live: bool) -> Setting:
 
 def locate(setting: Setting, rows: Sequence[Row]) -> PlacedSetting | None:
     """Where `setting` lies on its method's measured line; None until that has two points."""
-    value = setting.tolerance if METHODS[setting.method].adaptive else float(setting.refine)
+    value = setting.tolerance if METHODS[setting.method].error_control else float(setting.refine)
     known = sorted((row.value, row.error, row.wall_s) for row in rows
                    if row.method == setting.method and not row.failure and 0.0 < row.error < np.inf)
     if len(known) < 2:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from granchain_core import Settled
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, adaptive_setting
+from granchain_core.integrate import Engine, dop853_setting
 from granchain_core.results.run import residual
 
 #: Tolerance per step over the accuracy asked for: small, so that the residual is not the account's own error.
@@ -16,7 +16,7 @@ _TOLERANCE_FRACTION = 0.01
 def with_account(settled: Settled, stop: Stop) -> Settled:
     """The picture with its energy residual over the periods shown. Raises `Cancelled`."""
     run = settled.run
-    setting = adaptive_setting(max(1e-13, _TOLERANCE_FRACTION * run.scene.accuracy))
+    setting = dop853_setting(max(1e-13, _TOLERANCE_FRACTION * run.scene.accuracy))
     engine = Engine(run.scene, setting, 1, account=True, stop=stop)
     engine.start(settled.state)
     samples = engine.record(max(1, round((len(run.time) - 1) / run.samples)))

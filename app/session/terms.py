@@ -11,7 +11,7 @@ from granchain_core.scene.presets import ASSETS
 FILE = next(path for path in (ASSETS / "glossary.md", ASSETS.parent / "docs" / "glossary.md") if path.is_file())
 #: Terms of the glossary that the page's own texts use, longest first so that "anti-resonance" is not "resonance".
 SHOWN = ("quasi-periodic", "anti-resonance", "Floquet multiplier", "Lyapunov exponent", "sonic vacuum", "stop band",
-         "stated error", "output force", "energy residual", "adaptive method", "fixed-step method", "special point",
+         "stated error", "output force", "energy residual", "error control", "fixed-step method", "special point",
          "time step", "tangent flow", "attractor", "resonance",
          "multiplier", "transient", "observer", "preload", "overlap", "regime", "strobe",
          "dashpot", "kernel", "basin")

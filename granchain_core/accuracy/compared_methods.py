@@ -51,7 +51,7 @@ def compared_methods() -> dict[str, MeasuredMethod]:
 
 def label(setting: Setting) -> str:
     """A setting in words."""
-    if METHODS[setting.method].adaptive:
+    if METHODS[setting.method].error_control:
         return f"tolerance {setting.tolerance:.2g}"
     return f"{setting.refine:.3g} × the default steps"
 
@@ -59,9 +59,9 @@ def label(setting: Setting) -> str:
 def measured_settings() -> Iterator[MeasuredSetting]:
     """Every setting of every method, for each method the cheap ones first."""
     for method in METHODS.values():
-        values = _TOLERANCES if method.adaptive else _REFINES
+        values = _TOLERANCES if method.error_control else _REFINES
         for value in values:
-            setting = (Setting(method.name, tolerance=value) if method.adaptive
+            setting = (Setting(method.name, tolerance=value) if method.error_control
                        else Setting(method.name, refine=int(value)))
             yield MeasuredSetting(method.name, label(setting), float(value), setting)
     for solver in SOLVERS:

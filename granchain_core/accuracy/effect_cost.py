@@ -16,7 +16,7 @@ import numpy as np
 from ..errors import Cancelled
 from ..execution.stop import Stop
 from ..integrate import Engine, Setting
-from ..integrate.methods import FIXED_STEP
+from ..integrate.methods import RK4_SPLIT
 from ..scene import Scene
 
 #: Pairs of freshly allocated chains: where an array lies in memory can make a step a fifth slower, and stays so.
@@ -28,7 +28,7 @@ _RUN = 0.004
 #: Method that shows the cost of an effect's code alone.
 CODE = "rk4"
 #: Method that shows an effect's cost in this motion, with steps split at contact events.
-MOTION = FIXED_STEP
+MOTION = RK4_SPLIT
 
 #: Drive periods that are run before timing, so that the chain is in motion.
 _BEFORE = 3

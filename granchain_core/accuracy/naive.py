@@ -11,7 +11,7 @@ import numpy as np
 
 from ..errors import ComputationError
 from ..execution.stop import Stop
-from ..integrate import METHODS, Engine, Setting, adaptive_setting
+from ..integrate import METHODS, Engine, Setting, dop853_setting
 from ..integrate.scaling import ScaledChain
 from ..scene import Scene
 
@@ -24,7 +24,7 @@ _RUN = 10
 #: The last of them, which are shown: a 1:3 resonance pushes once in three.
 _SHOWN = 3
 #: Reference.
-_TRUE = adaptive_setting(1e-11)
+_TRUE = dop853_setting(1e-11)
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from ..execution.stop import Stop
 from ..integrate import Counts
 from ..integrate.error_controlled import LEAST_STEPS_PER_PERIOD
 from ..integrate.scaling import ScaledChain, scale_chain
-from ..kernels.dop853.step import evaluate
+from ..kernels.error_control.step import evaluate
 from ..kernels.status import EVALUATIONS
 from ..scene import Scene
 from ..scene.state import rest

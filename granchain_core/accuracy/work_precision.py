@@ -1,6 +1,6 @@
 """Work and precision: error against time for every method and setting, and the error of the reference.
 
-The reference is the adaptive method at its finest. A second one shares only the equations with it: SciPy's DOP853,
+The reference is dop853 at its finest. A second one shares only the equations with it: SciPy's DOP853,
 restarted wherever a contact opens or closes. The difference of the two is the error with which the reference is known.
 """
 
@@ -15,7 +15,7 @@ import numpy as np
 
 from ..errors import BadInput, Cancelled, ComputationError
 from ..execution.stop import Stop
-from ..integrate import METHODS, Engine, Setting, adaptive_setting
+from ..integrate import METHODS, Engine, Setting, dop853_setting
 from ..integrate.stated import relative_difference
 from ..scene import Scene
 from .compared_methods import SCIPY, MeasuredSetting, measured_settings
@@ -29,7 +29,7 @@ PERIODS = 10
 #: Samples a period at which displacements are compared.
 SAMPLES = 16
 #: The reference, and SciPy's solver with its tolerance that checks it.
-_REFERENCE = adaptive_setting(3e-15)
+_REFERENCE = dop853_setting(3e-15)
 _SECOND = ("DOP853", 1e-14)
 #: Time after which a setting is abandoned [s].
 _ROW_LIMIT = 8.0

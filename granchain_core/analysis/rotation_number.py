@@ -19,7 +19,7 @@ import numpy as np
 from ..execution.stop import Stop
 from ..inputs.checks import whole_number
 from ..integrate import Engine, fixed_step_setting
-from ..integrate.methods import FIXED_STEP
+from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import IRREGULAR
 from ..results.regime import Regime
 from ..scene import Scene
@@ -144,7 +144,7 @@ class RotationNumber(Labelled):
     def attributes(self) -> dict[str, Attribute]:
         """The number with its errors, and where it comes from."""
         nearest = self.nearest_fraction
-        return {**provenance(self.scene, FIXED_STEP, None), "regime": self.regime.name, "periods": self.periods,
+        return {**provenance(self.scene, RK4_SPLIT, None), "regime": self.regime.name, "periods": self.periods,
                 "rotation_number": or_nan(self.value), "rotation_number_error": or_nan(self.error),
                 "average_error": or_nan(self.average_error), "step_error": or_nan(self.step_error),
                 "curves": self.curves, "projections": self.projections, "reason": self.reason,

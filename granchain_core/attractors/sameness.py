@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..errors import BadInput, ComputationError
-from ..integrate import Engine, Setting, adaptive_setting, following_setting
+from ..integrate import Engine, Setting, dop853_setting, following_setting
 from ..integrate.scaling import scale_chain
 from ..orbits import Orbit, periodic_orbit
 from ..orbits.search import least_period_of
@@ -31,7 +31,7 @@ _SECTION_FACTOR = 3.0
 #: that are compared where sections differ.
 _STATES_OF_SECTION = (400, 1600, 6400)
 #: Tolerance for the section of an orbit that Newton's method has found.
-_ADAPTIVE_SETTING = adaptive_setting(1e-11)
+_DOP853_SETTING = dop853_setting(1e-11)
 
 
 @dataclass(eq=False)
@@ -124,7 +124,7 @@ def _polished(one: Found) -> Found:
         return one
     try:
         orbit = periodic_orbit(one.result.scene, period, one.result.state)
-        section = _strobes(orbit.scene, orbit.state, period, _ADAPTIVE_SETTING)
+        section = _strobes(orbit.scene, orbit.state, period, _DOP853_SETTING)
         shortest = least_period_of(orbit)
         if shortest < period:  # in the batch a slow approach with alternating sign looked like twice the period
             orbit = periodic_orbit(one.result.scene, shortest, orbit.state)

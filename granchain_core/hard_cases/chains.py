@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..integrate import Engine, Setting, adaptive_setting
-from ..integrate.methods import ADAPTIVE
+from ..integrate import Engine, Setting, dop853_setting
+from ..integrate.methods import DOP853
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
@@ -37,10 +37,10 @@ class Bench:
 
     def __init__(self, beads: int, time: float, samples: int, law: Any = None, ends: tuple[float, float] = (1.0, 1.0),
                  inverse_mass: Sequence[float] | None = None, stiffness: Sequence[float] | None = None,
-                 static: np.ndarray | None = None, cut: bool = False, method: str = ADAPTIVE,
+                 static: np.ndarray | None = None, cut: bool = False, method: str = DOP853,
                  tolerance: float = 1e-13, refine: float = 1.0) -> None:
         base: Scene = scene("sec2").evolve(N=beads)
-        phi = Engine(base, adaptive_setting(1e-3)).scaled.scales.phi
+        phi = Engine(base, dop853_setting(1e-3)).scaled.scales.phi
         self.engine = Engine(base.evolve(f=phi / time), Setting(method, refine, tolerance), samples)
         scaled = self.engine.scaled
         masses = np.zeros(beads + 2)

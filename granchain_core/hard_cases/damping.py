@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..errors import ComputationError
-from ..integrate import Engine, Setting, adaptive_setting
+from ..integrate import Engine, Setting, dop853_setting
 from ..run.to_accuracy import run
 from ..scene import Scene, scene
 from ..scene.laws import LAWS
@@ -88,7 +88,7 @@ def _pulls(periods: int) -> list[Measurement]:
     """The largest pull of any contact over the largest push, cut; and that without the cut there is one."""
     forces = {}
     for tension in ("cut", "allowed"):
-        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), adaptive_setting(1e-10), 256)
+        engine = Engine(scene("sec2").evolve(tension=tension, D=200.0), dop853_setting(1e-10), 256)
         force = engine.record(256 * periods).force
         forces[tension] = float(max(0.0, -force.min()) / force.max())
     return [Measurement("largest pull of a cut contact over its largest push", forces["cut"], 1e-14),

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, adaptive_setting, fixed_step_setting
-from ..integrate.methods import ADAPTIVE
+from ..integrate import Engine, dop853_setting, fixed_step_setting
+from ..integrate.methods import DOP853
 from ..kernels.effects.driver import Harmonic
 from ..orbits.stroboscopic_map import StroboscopicMap
 from ..scene import Scene, scene
@@ -40,7 +40,7 @@ def confined(times: int, method: str, refine: float = 1.0) -> tuple[np.ndarray, 
 def free_chain(quick: bool) -> list[Measurement]:
     """Energy, its trend and momentum without damping."""
     times = 2_000 if quick else 10_000
-    clock, change = confined(times, ADAPTIVE)
+    clock, change = confined(times, DOP853)
     slope = np.polyfit(clock, change, 1)[0]
     bench = Bench(11, 40.0, 64, ends=(0.0, 0.0), tolerance=1e-14)
     bench.throw(np.eye(11)[0])
@@ -56,7 +56,7 @@ def free_chain(quick: bool) -> list[Measurement]:
 
 def free_chain_picture() -> Picture:
     """Change of energy: ours, a symplectic method's and plain RK4's with 40 steps in the shortest contact."""
-    clock, ours = confined(1_000, ADAPTIVE)
+    clock, ours = confined(1_000, DOP853)
     finer = contact_time(2.0) / 40.0
     traces = [Trace("granchain, adaptive", ours)]
     for method, label in (("verlet-naive", "velocity Verlet, symplectic"), ("rk4-naive", "plain RK4")):
@@ -79,7 +79,7 @@ def undamped(frequency: float = 340.0, beads: int = 11) -> Scene:
 
 def driven_chaos(quick: bool) -> list[Measurement]:
     """Energy account, Lyapunov exponent by two methods, and no periodic verdict."""
-    engine = Engine(undamped(), adaptive_setting(1e-14), 1, account=True)
+    engine = Engine(undamped(), dop853_setting(1e-14), 1, account=True)
     energy = engine.record(20 if quick else 100).energy
     stored, work, lost = (energy - energy[0]).T
     largest = max(np.abs(work).max(), np.abs(energy[:, 0]).max())
@@ -136,7 +136,7 @@ def chaos_picture() -> Picture:
     chosen = undamped(beads=5)
     traces = []
     for label, nudge in (("from rest", 0.0), ("from 1e-12 of an amplitude beside it", 1e-12)):
-        engine = Engine(chosen, adaptive_setting(1e-13), 1)
+        engine = Engine(chosen, dop853_setting(1e-13), 1)
         engine.start(State(np.array([nudge * chosen.A0, 0.0, 0.0, 0.0, 0.0]), np.zeros(5)))
         traces.append(Trace(label, engine.periods(60)[0][:, 0, -1]))
     return Picture(np.arange(61), "drive period", "last bead at phase 0, in amplitudes", tuple(traces))
@@ -153,7 +153,7 @@ def _segment(chosen: Scene, state: State, amplitude: float, samples: int) -> tup
 
     Returns the state, the impulse of driver less wall [N s], the largest momentum on the way [N s].
     """
-    engine = Engine(chosen, adaptive_setting(1e-13), _SWITCHED)
+    engine = Engine(chosen, dop853_setting(1e-13), _SWITCHED)
     slots = engine.scaled.slots
     engine.use(replace(engine.scaled, slots=slots._replace(driver=Harmonic(amplitude, engine.scaled.beta))))
     engine.start(state)
@@ -185,7 +185,7 @@ def switched(steps: list[tuple[float, float, int]], phase: float, beads: int = 4
 def jump_push() -> float:
     """Momentum of a chain at rest after a jump of its driver by A0, less the dashpot's D·A0, over the latter."""
     chosen = scene("sec2").evolve(N=4)
-    engine = Engine(chosen, adaptive_setting(1e-12), 4)
+    engine = Engine(chosen, dop853_setting(1e-12), 4)
     engine.grid_index = engine.grid // 4
     engine.evaluate()
     push = chosen.D * chosen.A0
@@ -212,7 +212,7 @@ def switched_picture() -> Picture:
     limit w does not jump, and the velocity does.
     """
     chosen, beads, samples = scene("sec2").evolve(N=4), 4, 2000
-    engine, shown = Engine(chosen, adaptive_setting(1e-12), samples), 100
+    engine, shown = Engine(chosen, dop853_setting(1e-12), samples), 100
     engine.grid_index = engine.grid // 4
     engine.evaluate()  # the driver is at its amplitude now; the beads, and w, are where they were
     ours = engine.record(shown).velocity.sum(axis=1)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting
+from ..integrate import Engine, Setting, dop853_setting, fixed_step_setting
 from ..kernels.effects.dissipation import LinearDashpot
 from ..kernels.effects.driver import Harmonic
 from ..run.to_accuracy import run
@@ -72,7 +72,7 @@ def amplitudes(quick: bool) -> list[Measurement]:
     times = (1e-4, 1e4) if quick else tuple(10.0**p for p in range(-4, 5))
     drives = (340.0,) if quick else (10.0, 340.0, 3000.0, 1e5)
     fixed = max(scaled_difference(f, fixed_step_setting(2.0), times) for f in drives)
-    certain = max(scaled_difference(f, adaptive_setting(1e-15), times) for f in drives)
+    certain = max(scaled_difference(f, dop853_setting(1e-15), times) for f in drives)
     return [
         Measurement("scaling from 1e-12 to 1e-4 m, fixed steps", fixed, 1e-12),
         Measurement("scaling from 1e-12 to 1e-4 m, adaptive", certain, 1e-12),
@@ -120,7 +120,7 @@ def long_chain_error(beads: int) -> float:
     """Largest difference of two methods on a long chain with one moving front, over the largest displacement."""
     chosen = scene("sec2").evolve(N=beads, f=3000.0)
     ours = Engine(chosen, fixed_step_setting(8.0), 8).record(16).displacement
-    true = Engine(chosen, adaptive_setting(1e-12), 8).record(16).displacement
+    true = Engine(chosen, dop853_setting(1e-12), 8).record(16).displacement
     return float(np.abs(ours - true).max() / np.abs(true).max())
 
 
@@ -191,7 +191,7 @@ def mode(chosen: Scene, number: int) -> tuple[float, np.ndarray]:
 
 def swing(chosen: Scene, frequency: float, shape: np.ndarray, amplitude: float, periods: int = 3) -> np.ndarray:
     """Displacements over the amplitude (49, N) of a bead chain let go from a mode's shape, driver at rest, undamped."""
-    engine = Engine(chosen.evolve(f=frequency / periods), adaptive_setting(1e-15), 48)
+    engine = Engine(chosen.evolve(f=frequency / periods), dop853_setting(1e-15), 48)
     scaled = engine.scaled
     slots = scaled.slots._replace(driver=Harmonic(0.0, scaled.beta), dissipation=LinearDashpot(0.0))
     engine.use(replace(scaled, slots=slots))

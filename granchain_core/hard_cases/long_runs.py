@@ -19,9 +19,9 @@ def cut_and_gone_on(method: str, periods: int, cuts: int, seed: int = 1) -> floa
     those with error control at whole periods.
     """
     chosen = scene("sec2").evolve(f=1130.0, N=5)
-    setting = Setting(method, 1.0, 1e-9 if METHODS[method].adaptive else 0.0)
+    setting = Setting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
     total = periods * _SAMPLES
-    unit = _SAMPLES if METHODS[method].adaptive else 1
+    unit = _SAMPLES if METHODS[method].error_control else 1
     rng = np.random.default_rng(seed)
     where = unit * np.sort(rng.choice(np.arange(1, total // unit), min(cuts, total // unit - 1), replace=False))
     whole, pieces = Engine(chosen, setting, _SAMPLES), Engine(chosen, setting, _SAMPLES)
@@ -43,7 +43,7 @@ def whole_part(engine: Engine, count: int) -> np.ndarray:
 def uninterrupted(method: str, periods: int, cuts: int) -> float:
     """How many numbers of the final state differ between one call over all periods and many cut ones."""
     chosen = scene("sec2").evolve(f=1130.0, N=5)
-    setting = Setting(method, 1.0, 1e-9 if METHODS[method].adaptive else 0.0)
+    setting = Setting(method, 1.0, 1e-9 if METHODS[method].error_control else 0.0)
     whole, pieces = Engine(chosen, setting, 1), Engine(chosen, setting, 1)
     whole.periods(periods, watch=False)
     where = np.sort(np.random.default_rng(2).choice(np.arange(1, periods), min(cuts, periods - 1), replace=False))
@@ -75,7 +75,7 @@ def long_runs(quick: bool) -> list[Measurement]:
              Measurement("periods counted wrongly", counted, 0.0)]
     cuts = 40 if quick else 1_000
     for method in METHODS:
-        run = 2 * cuts if quick else periods // (10 if METHODS[method].adaptive else 1)
+        run = 2 * cuts if quick else periods // (10 if METHODS[method].error_control else 1)
         differs = cut_and_gone_on(method, 2 * cuts, cuts) + uninterrupted(method, run, cuts)
         found.append(Measurement(f"numbers that {cuts} random cuts change, {method}", differs, 0.0,
                                  f"{run} periods in one call, and {2 * cuts} sample by sample"))

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import ComputationError
 from ..integrate import METHODS, Engine, Setting
-from ..integrate.methods import ADAPTIVE, FIXED_STEP
+from ..integrate.methods import DOP853, RK4_SPLIT
 from ..scene import scene
 from .case import Measurement, Picture, Trace
 
@@ -22,7 +22,7 @@ class Injector:
 
     def __init__(self, method: str, beads: int) -> None:
         self.method, self.beads = method, beads
-        setting = Setting(method, 1.0, 1e-6 if METHODS[method].adaptive else 0.0)
+        setting = Setting(method, 1.0, 1e-6 if METHODS[method].error_control else 0.0)
         self.engine = Engine(scene("sec2").evolve(N=beads, f=1130.0), setting, _SAMPLES)
         self.engine.record(3 * _SAMPLES)
         engine = self.engine
@@ -37,7 +37,7 @@ class Injector:
 
     def renew(self) -> None:
         """New vectors from the present parameters, where the method has any."""
-        if not METHODS[self.method].adaptive:
+        if not METHODS[self.method].error_control:
             self.engine.stepper.work = self.engine.stepper.work._replace(simd=self.engine.stepper.new_simd_workspace())
 
     def into_state(self, rng: np.random.Generator) -> bool:
@@ -45,7 +45,7 @@ class Injector:
         row, bead = self.engine.scaled.bodies, int(rng.integers(1, self.beads + 1))
         self.engine.y[bead + row * int(rng.integers(2))] = _VALUES[rng.integers(3)]
         found = self.outcome()
-        step = None if METHODS[self.method].adaptive else self._kept[2]
+        step = None if METHODS[self.method].error_control else self._kept[2]
         return found is not None and (found.bead, found.step) == (bead, step)
 
     def into_contact(self, rng: np.random.Generator) -> bool:
@@ -57,7 +57,7 @@ class Injector:
         springs[contact] = before
         self.renew()
         beads = {min(max(b, 1), self.beads) for b in (contact, contact + 1)}
-        step = None if METHODS[self.method].adaptive else self._kept[2]
+        step = None if METHODS[self.method].error_control else self._kept[2]
         return found is not None and found.bead in beads and found.step == step
 
     def into_drive(self, rng: np.random.Generator) -> bool:
@@ -85,12 +85,12 @@ class Injector:
 def injections(count: int) -> tuple[int, int]:
     """Injections made, and those not caught where they were made."""
     rng = np.random.default_rng(4)
-    injectors = [Injector(m, n) for m in ("rk4", FIXED_STEP, ADAPTIVE) for n in (1, 11)]
+    injectors = [Injector(m, n) for m in ("rk4", RK4_SPLIT, DOP853) for n in (1, 11)]
     wrong = 0
     for i in range(count):
         one = injectors[i % len(injectors)]
         where = rng.random()
-        if where < 0.6 or (where >= 0.9 and METHODS[one.method].adaptive):
+        if where < 0.6 or (where >= 0.9 and METHODS[one.method].error_control):
             wrong += not one.into_state(rng)
         elif where < 0.9:
             wrong += not one.into_contact(rng)
@@ -123,7 +123,7 @@ def bad_numbers(quick: bool) -> list[Measurement]:
     """Injections, and the cost of subnormal numbers."""
     count, wrong = injections(2_000 if quick else 100_000)
     found = [Measurement(f"of {count} injections of NaN or infinity not caught in their step", float(wrong), 0.0)]
-    for method, beads in ((FIXED_STEP, 30), (FIXED_STEP, 200), (ADAPTIVE, 200)):
+    for method, beads in ((RK4_SPLIT, 30), (RK4_SPLIT, 200), (DOP853, 200)):
         found.append(Measurement("time of an evaluation with a subnormal tail over that without, "
                                  f"{method}, {beads} beads",
                                  converging(method, beads, 20 if quick else 60), 1.2))

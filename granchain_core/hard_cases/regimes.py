@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..integrate import Engine, adaptive_setting
+from ..integrate import Engine, dop853_setting
 from ..observe.drift import observer_drift
 from ..orbits import periodic_orbit
 from ..orbits.stroboscopic_map import StroboscopicMap
@@ -179,7 +179,7 @@ def two_attractors_picture() -> Picture:
     """Output force on both orbits over three drive periods, and from rest, the only one that a single run shows."""
     chosen, traces = scene("sec2").evolve(f=_SHARED), []
     for start, point in arrivals().items():
-        engine = Engine(chosen, adaptive_setting(1e-10), 100)
+        engine = Engine(chosen, dop853_setting(1e-10), 100)
         engine.start(point.state)
         force = engine.record(300).force[:, -1] * engine.scaled.scales.force
         traces.append(Trace(f"swept {start}", force))
@@ -233,7 +233,7 @@ def _apart(base: str, count: int) -> tuple[np.ndarray, float]:
 def _two_runs(tolerance: float, count: int) -> np.ndarray:
     """Distances (count,) of chain and observer, two runs of SciPy from the same state on the chain's orbit."""
     orbit = periodic_orbit(scene("fig11-free"))
-    scales = Engine(orbit.scene, adaptive_setting()).scaled.scales
+    scales = Engine(orbit.scene, dop853_setting()).scaled.scales
     start = np.concatenate([orbit.state.displacement / scales.length, orbit.state.velocity / scales.velocity])
     apart = observed_apart(PlainChain.of(orbit.scene), start, count - 1, tolerance)
     return np.where(apart > 0.0, apart, np.nan)

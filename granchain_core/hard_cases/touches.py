@@ -13,13 +13,14 @@ from math import asin, pi
 import numpy as np
 
 from ..kernels.compiling.jit import kernel
-from ..kernels.dop853.run import located_step
-from ..kernels.dop853.step import ALL_STAGES, STAGES, Dop853, Dop853Workspace, DriveCycle, evaluate
+from ..kernels.dop853.step import ALL_STAGES, STAGES, Dop853, Dop853Workspace
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import Harmonic
 from ..kernels.effects.foundation import Foundation
 from ..kernels.effects.preload import Preload
 from ..kernels.equations.motion import Forces, Slots, Trajectory, copy
+from ..kernels.error_control.located_step import located_step
+from ..kernels.error_control.step import DriveCycle, evaluate
 
 #: Columns of a drawn case: the driver's rate β (or the bead's own ω), depth, phase it starts at, tolerance, largest
 #: step as a part of the period, first step as a part of the largest.
@@ -94,7 +95,7 @@ def run(cases: np.ndarray, driven: bool) -> np.ndarray:
 
 
 def workspace(row: int) -> Dop853Workspace:
-    """Arrays of the adaptive method for a chain of `row` bodies."""
+    """Arrays of dop853 for a chain of `row` bodies."""
     return Dop853Workspace(
         k=np.zeros((ALL_STAGES, 2 * row)), stage=np.zeros(2 * row), end=np.zeros(2 * row), probe=np.zeros(2 * row),
         slope=np.zeros(2 * row), dense=np.zeros((7, 2 * row)), scale=np.zeros(2), next_step=np.zeros(1),

@@ -6,11 +6,11 @@ from .methods import (
     METHODS,
     Method,
     Setting,
-    adaptive_setting,
+    dop853_setting,
     fixed_step_setting,
     following_setting,
     method_for,
 )
 
-__all__ = ["METHODS", "Counts", "Engine", "Method", "Setting", "adaptive_setting", "fixed_step_setting",
+__all__ = ["METHODS", "Counts", "Engine", "Method", "Setting", "dop853_setting", "fixed_step_setting",
            "following_setting", "method_for"]

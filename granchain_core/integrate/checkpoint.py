@@ -21,7 +21,7 @@ from .stepper import ErrorControl
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
-    """An engine's numbers: y (M,) and its slope, control (3,) of an adaptive method, grid index, drive periods run.
+    """An engine's numbers: y (M,) and its slope, control (3,) of an error control, grid index, drive periods run.
 
     `digest`, `method`, `refine`, `tolerance` and `samples` identify the engines that may go on from here.
     """
@@ -60,12 +60,12 @@ def checkpoint(engine: Engine) -> Checkpoint:
     A method with error control can be cut at whole drive periods only, where its steps end in any case: a cut inside
     would end one that an uninterrupted run takes whole. Raises `BadInput` there.
     """
-    adaptive = METHODS[engine.setting.method].adaptive
-    if adaptive and engine.grid_index != 0:
+    error_control = METHODS[engine.setting.method].error_control
+    if error_control and engine.grid_index != 0:
         raise BadInput(f"{engine.setting.method} can be stopped at whole drive periods only; the nearest is "
                        f"{engine.grid - engine.grid_index} of {engine.grid} grid points ahead.")
     setting, control = engine.setting, np.zeros(0)
-    if adaptive:
+    if error_control:
         work: ErrorControl = engine.stepper.work
         control = np.array([*work.next_step, *work.scale])
     return Checkpoint(engine.scaled.scene.digest, setting.method, float(setting.refine), setting.tolerance,

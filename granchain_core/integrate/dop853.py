@@ -4,15 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..kernels.compiling.entry import Entries
-from ..kernels.dop853.run import SampleRange, run_dop853
 from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace
-from ..kernels.samples import KernelIO, Samples
 from .error_controlled import ErrorControlledStepper, initial_step, largest_step
 from .scaling import ScaledChain
-
-# A kernel that is called once a period.
-_RUN_DOP853 = Entries(run_dop853)
 
 
 def dop853_workspace(scaled: ScaledChain) -> Dop853Workspace:
@@ -33,10 +27,3 @@ class Dop853Stepper(ErrorControlledStepper):
     def new_workspace(self) -> Dop853Workspace:
         """The workspace of DOP853."""
         return dop853_workspace(self.scaled)
-
-    def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
-                  out: KernelIO) -> tuple[int, int]:
-        """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled."""
-        wanted = SampleRange(first, points, self.grid, every)
-        status, rows = _RUN_DOP853(self.type_key, self.method, self.trajectory(y), wanted, samples, out)
-        return status, rows

@@ -10,10 +10,10 @@ from ..errors import BadInput
 from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
 from ..kernels.compiling.jit import unknown_slots
-from ..kernels.dop853.run import SampleRange
 from ..kernels.dop853.step import ALL_STAGES, Dop853, Dop853Workspace
 from ..kernels.dop853_root.chain import STATE_ROWS, Dop853RootWorkspace, Stages
 from ..kernels.dop853_root.run import run_dop853_root
+from ..kernels.error_control.run import SampleRange
 from ..kernels.forces.largest import new_log
 from ..kernels.samples import KernelIO, Samples
 from ..kernels.simd.vector import BLOCK_WIDTH, aligned
@@ -38,7 +38,7 @@ class Dop853RootStepper(ErrorControlledStepper):
         return dop853_workspace(self.scaled)
 
     def new_type_key(self) -> Any:
-        """A key for the types of what kernels are given, the chain's vectors included."""
+        """A key for the types of slots, method and workspace, the chain's vectors included."""
         return super().new_type_key(), types_of(self._vectors)
 
     def use(self, scaled: ScaledChain) -> None:

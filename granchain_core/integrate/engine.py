@@ -142,8 +142,8 @@ class Engine:
         """Advance by whole periods from phase 0.
 
         Returns the stroboscopic states (count + 1, 2, N), displacement and velocity in scaled units, and the largest
-        input, output and elastic output force of each period (count, 3); without `watch` the adaptive method does
-        not search the largest forces and they are NaN.
+        input, output and elastic output force of each period (count, 3); without `watch` a method with error control
+        does not search the largest forces and they are NaN.
         """
         self.stop.pause()
         self._remember()

@@ -10,8 +10,9 @@ import numpy as np
 
 from ..execution.stop import Stop
 from ..kernels.compiling.entry import Entries, types_of
-from ..kernels.dop853.step import DriveCycle
 from ..kernels.equations.motion import Trajectory, evaluate_at_phase
+from ..kernels.error_control.run import SampleRange, run_error_controlled
+from ..kernels.error_control.step import DriveCycle
 from ..kernels.forces.peaks import largest_forces, next_period
 from ..kernels.samples import KernelIO, Samples, first_not_finite
 from ..kernels.status import DONE
@@ -24,8 +25,9 @@ LEAST_STEPS_PER_PERIOD = 16
 _INITIAL_STEP = 0.01
 #: Least scale of displacements and of w, in which tolerances are measured.
 _LEAST_SCALE = 1e-3
-# A kernel that is called once a period.
+# Kernels that are called once a period.
 _EVALUATE_AT_PHASE = Entries(evaluate_at_phase)
+RUN_ERROR_CONTROLLED = Entries(run_error_controlled)
 
 
 def largest_step(scaled: ScaledChain) -> float:
@@ -57,16 +59,21 @@ class ErrorControlledStepper(ABC):
     def new_workspace(self) -> Any:
         """The workspace of the method's kernel, a named tuple."""
 
-    @abstractmethod
     def run_range(self, y: np.ndarray, first: int, points: int, every: int, samples: Samples,
                   out: KernelIO) -> tuple[int, int]:
         """One call of the kernel over `points` points of the grid from `first` on; returns status and rows filled.
 
         Every `every`-th point is kept as a sample, and largest forces are searched; neither where `every` is 0.
         """
+        wanted = SampleRange(first, points, self.grid, every)
+        status, rows = RUN_ERROR_CONTROLLED(self.type_key, self.method, self.trajectory(y), wanted, samples, out)
+        return status, rows
 
     def new_type_key(self) -> Any:
-        """A key for the types of what kernels are given, by which their compiled code is found."""
+        """A key for the types of slots, method and workspace, by which the kernels' specializations are found.
+
+        The arrays of a call are not in it: `Engine` makes all of them, C-ordered and of one type each.
+        """
         return types_of((self.method, self.scaled.slots, self.work))
 
     @property

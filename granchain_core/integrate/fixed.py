@@ -72,7 +72,7 @@ class FixedStep:
 
     @work.setter
     def work(self, work: Any) -> None:
-        """Use another workspace, maybe of another type: another version of the kernels is called then."""
+        """Use another workspace, maybe of another type: another specialization of the kernels is called then."""
         self._work = work
         self._type_key = types_of((self.method, self.scaled.slots, work))
 

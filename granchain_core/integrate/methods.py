@@ -20,18 +20,18 @@ from .scaling import ScaledChain
 from .stepper import Stepper
 
 #: Fixed steps split at contact events: the method of pictures, curves and moderate accuracy.
-FIXED_STEP = "rk4-split"
+RK4_SPLIT = "rk4-split"
 #: Error control with located events: the method of the finest accuracy.
-ADAPTIVE = "dop853"
+DOP853 = "dop853"
 
 #: Above this relative error the fixed-step method is cheaper than dop853 (`granchain accuracy sec2` measures it).
 FIXED_STEP_IS_CHEAPER = 1e-10
-#: The fixed-step method's usual relative error at the default step; it falls with the fourth power of the step.
+#: The fixed-step method's usual relative error at the default step.
 _FIXED_STEP_ERROR = 7e-6
 #: About one random scene in a thousand has an error larger than this factor times the usual one (`python -m
 #: tests.numerics.stated_errors`).
 _ERROR_SPREAD = 8.0
-#: The adaptive method's first tolerance per step, as a part of the accuracy asked for: errors of steps add up.
+#: dop853's first tolerance per step, as a part of the accuracy asked for: errors of steps add up.
 _TOLERANCE_PER_ACCURACY = 0.1
 #: Its largest first tolerance per step, whatever accuracy is asked for.
 _LARGEST_TOLERANCE = 1e-3
@@ -39,7 +39,7 @@ _LARGEST_TOLERANCE = 1e-3
 _SMALLEST_TOLERANCE = 1e-15
 #: Tolerance below which a smaller one gains nothing because of rounding.
 _FINEST_TOLERANCE = 2e-15
-#: The adaptive method's tolerance where a chain that cuts tension is followed. The distance of neighbouring
+#: dop853's tolerance where a chain that cuts tension is followed. The distance of neighbouring
 #: trajectories, 1e-8 in a Lyapunov exponent, must be far above its errors: at 1e-9 they changed exponents by 5e-3.
 _FOLLOWING_TOLERANCE = 1e-11
 #: Refinement of the fixed-step method from which a larger one gains nothing because of rounding.
@@ -55,19 +55,19 @@ class Setting:
     tolerance: float = 0.0
 
     def finer(self) -> Setting:
-        """The next finer setting: half the step, or a tolerance small enough that the error is certainly smaller.
+        """The next finer setting: half the step, or a tolerance small enough that the error is smaller in practice.
 
         With error control the error does not fall evenly with the tolerance: an eighth of it sometimes left the error
         unchanged, so the next tolerance is a sixty-fourth.
         """
-        if METHODS[self.method].adaptive:
+        if METHODS[self.method].error_control:
             return Setting(self.method, 1, min(max(self.tolerance / 64.0, _SMALLEST_TOLERANCE), self.tolerance / 8.0))
         return Setting(self.method, 2 * self.refine)
 
     def finer_than(self, scaled: ScaledChain, samples: int) -> Setting:
         """The next finer setting that really has more steps: they are rounded up to a multiple of the samples."""
         finer = self.finer()
-        if not METHODS[self.method].adaptive:
+        if not METHODS[self.method].error_control:
             while finer.steps_per_period(scaled, samples) == self.steps_per_period(scaled, samples):
                 finer = finer.finer()
         return finer
@@ -75,7 +75,7 @@ class Setting:
     @property
     def finest(self) -> bool:
         """Whether a finer setting gains nothing because of rounding."""
-        if METHODS[self.method].adaptive:
+        if METHODS[self.method].error_control:
             return self.tolerance < _FINEST_TOLERANCE
         return self.refine >= _FINEST_REFINEMENT
 
@@ -108,7 +108,7 @@ class Method:
     """A method of integration: a row of `METHODS`.
 
     `tests/numerics/test_orders.py` derives the orders in theory and measures the observed ones: the smallest of all
-    damping laws, and of adaptive methods per mean step.
+    damping laws, and of methods with error control per mean step.
 
     Attributes
     ----------
@@ -120,7 +120,7 @@ class Method:
         Observed orders where no contact opens or closes; across contact events, at the accuracies the method is used
         for; and where tension is cut, NaN where that is not measured or the method refuses the cut. Only dop853 ends
         its steps at the kink of a cut force, F = 0.
-    adaptive : bool
+    error_control : bool
         Whether an error control sets the steps.
     symplectic : bool
         Whether it is symplectic without damping.
@@ -146,7 +146,7 @@ class Method:
     order_at_events: float
     observed_smooth: float
     observed_order: float
-    adaptive: bool
+    error_control: bool
     symplectic: bool
     restrictions: str
     reference: str
@@ -171,7 +171,7 @@ def _in_velocity(kind: Any) -> Callable[[Setting, ScaledChain, int], Stepper]:
                                                                  scaled, samples)
 
 
-def _adaptive(kind: Any) -> Callable[[Setting, ScaledChain, int], Stepper]:
+def _error_controlled(kind: Any) -> Callable[[Setting, ScaledChain, int], Stepper]:
     """What makes the stepper of a method with error control."""
     return lambda setting, scaled, samples: kind(setting.tolerance, scaled, samples)
 
@@ -182,15 +182,15 @@ METHODS: dict[str, Method] = {
         Method(
             name="rk4", title="RK4 in (u, w)",
             order=4.0, order_at_events=2.0, observed_smooth=4.0, observed_order=2.0,
-            adaptive=False, symplectic=False,
+            error_control=False, symplectic=False,
             restrictions="fixed step; order 2 at contact events; a touch shorter than a step is not resolved, and the "
                          "jump of its force is taken from the ends of the step",
             reference="Kutta 1901; w-variables: docs/model.md", stepper=_fixed(Rk4), cost=StepCost(350e-9, 35e-9),
             observed_with_cut=1.0),
         Method(
-            name=FIXED_STEP, title="RK4 in (u, w), steps split at contact events, quadrature corrected there",
+            name=RK4_SPLIT, title="RK4 in (u, w), steps split at contact events, quadrature corrected there",
             order=4.0, order_at_events=3.5, observed_smooth=4.0, observed_order=3.9,
-            adaptive=False, symplectic=False,
+            error_control=False, symplectic=False,
             restrictions="fixed step; order 3.5 below errors of about 1e-9, and 1 where tension is cut; in chains of "
                          f"more than {SHORT_CHAIN} beads two changes of one inner contact within a step are not seen",
             reference="Kutta 1901; w-variables and events: docs/method.md", stepper=_fixed(Rk4Split, simd=True),
@@ -199,7 +199,7 @@ METHODS: dict[str, Method] = {
         Method(
             name="rk4-naive", title="RK4 in (u, v), the obvious first attempt",
             order=4.0, order_at_events=1.0, observed_smooth=4.0, observed_order=1.0,
-            adaptive=False, symplectic=False,
+            error_control=False, symplectic=False,
             restrictions="no energy account; its error is irregular where a contact with a dashpot opens or closes; "
                          "touches as with rk4",
             reference="Kutta 1901", stepper=_in_velocity(Rk4Naive), cost=StepCost(120e-9, 40e-9), variables="uv",
@@ -207,24 +207,24 @@ METHODS: dict[str, Method] = {
         Method(
             name="verlet-naive", title="velocity Verlet in (u, v), the obvious first attempt",
             order=1.0, order_at_events=1.0, observed_smooth=1.0, observed_order=1.0,
-            adaptive=False, symplectic=True,
+            error_control=False, symplectic=True,
             restrictions="no energy account; symplectic and of order 2 only without damping; touches as with rk4",
             reference="Verlet 1967; Swope et al. 1982", stepper=_in_velocity(VerletNaive), cost=StepCost(80e-9, 12e-9),
             variables="uv", has_account=False),
         Method(
-            name=ADAPTIVE, title="DOP853, Dormand–Prince 8(5,3), in (u, w), contact events located",
+            name=DOP853, title="DOP853, Dormand–Prince 8(5,3), in (u, w), contact events located",
             order=8.0, order_at_events=7.0, observed_smooth=8.5, observed_order=7.5,
-            adaptive=True, symplectic=False, restrictions="errors down to about 1e-12",
-            reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_adaptive(Dop853Stepper),
+            error_control=True, symplectic=False, restrictions="errors down to about 1e-12",
+            reference="Hairer, Nørsett & Wanner 1993, section II.5", stepper=_error_controlled(Dop853Stepper),
             cost=StepCost(2.5e-6, 480e-9, steps_per_time=5.0, power=0.1), usual_error=1.0, observed_with_cut=7.5),
         Method(
             name="dop853-root", title="DOP853 in (u, w), in the root of an overlap next to contact events",
             order=8.0, order_at_events=7.0, observed_smooth=8.0, observed_order=7.0,
-            adaptive=True, symplectic=False,
+            error_control=True, symplectic=False,
             restrictions=f"errors down to about 1e-12; no energy account; only chains of up to {SHORT_CHAIN} beads, "
                          "with a driver that is harmonic or at rest, and without tension cut",
             reference="Hairer, Nørsett & Wanner 1993, section II.5; the root of an overlap: docs/method.md",
-            stepper=_adaptive(Dop853RootStepper), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
+            stepper=_error_controlled(Dop853RootStepper), cost=StepCost(500e-9, 20e-9, steps_per_time=4.0, power=0.1),
             usual_error=1.0, has_account=False),
     )
 }
@@ -240,28 +240,29 @@ _COARSEST_REFINEMENT = 0.5
 
 def fixed_step_setting(refine: float = 1) -> Setting:
     """The fixed-step method with `refine` times the default steps."""
-    return Setting(FIXED_STEP, refine)
+    return Setting(RK4_SPLIT, refine)
 
 
-def adaptive_setting(tolerance: float = 0.0) -> Setting:
-    """The adaptive method at a relative tolerance per step."""
-    return Setting(ADAPTIVE, tolerance=tolerance)
+def dop853_setting(tolerance: float = 0.0) -> Setting:
+    """dop853 at a relative tolerance per step."""
+    return Setting(DOP853, tolerance=tolerance)
 
 
 def following_setting(tension_cut: bool) -> Setting:
     """The setting that follows a chain where no accuracy is asked for: to a steady state, and through sections of it.
 
     With tension cut the fixed-step method has order 1. At its default step it is wrong by about a per cent, comes to
-    cycles that do not exist, and may lead to another attractor. A curve takes no longer with the adaptive method.
+    cycles that do not exist, and may lead to another attractor. A curve takes no longer with dop853.
     """
-    return adaptive_setting(_FOLLOWING_TOLERANCE) if tension_cut else fixed_step_setting()
+    return dop853_setting(_FOLLOWING_TOLERANCE) if tension_cut else fixed_step_setting()
 
 
 def method_for(accuracy: float, tension_cut: bool = False) -> Setting:
     """The first setting to try for a relative error of `accuracy`."""
     if accuracy >= FIXED_STEP_IS_CHEAPER and not tension_cut:  # where tension is cut the fixed-step method has order 1
+        # the order without events, 4, where `typical_error` has the observed one: a guess that halvings refine
         return fixed_step_setting(max(_COARSEST_REFINEMENT, (_FIXED_STEP_ERROR / accuracy) ** 0.25))
-    return adaptive_setting(_first_tolerance(accuracy))
+    return dop853_setting(_first_tolerance(accuracy))
 
 
 def _first_tolerance(accuracy: float) -> float:
@@ -275,7 +276,7 @@ def typical_error(setting: Setting) -> float:
     steps, most of them chaotic. By the order of theory where no contact opens or closes it would be 15 to 25.
     """
     method = METHODS[setting.method]
-    if method.adaptive:
+    if method.error_control:
         return _ERROR_SPREAD * method.usual_error * setting.tolerance
     return _ERROR_SPREAD * method.usual_error / setting.refine**method.observed_order
 
@@ -292,7 +293,7 @@ def jump_errors(setting: Setting, scaled: ScaledChain, step: float, jumps: np.nd
     with the step size, so the difference of two computations does not bound it.
     """
     least = np.zeros(3)
-    if setting.method == FIXED_STEP and scaled.slots.dissipation is not None:
+    if setting.method == RK4_SPLIT and scaled.slots.dissipation is not None:
         chain = scaled.slots.chain
         root_speeds = np.sqrt(jumps / scaled.slots.dissipation.coefficient)
         at_jump = jumps > AT_A_JUMP * maxima[:2]
@@ -308,4 +309,4 @@ def setting_of(name: str, accuracy: float) -> Setting:
     """
     if name not in METHODS:
         raise unknown_name("method", name, METHODS)
-    return Setting(name, tolerance=_first_tolerance(accuracy)) if METHODS[name].adaptive else Setting(name)
+    return Setting(name, tolerance=_first_tolerance(accuracy)) if METHODS[name].error_control else Setting(name)

@@ -120,7 +120,7 @@ class Computations:
     def _falls(self, coarser: Setting, finer: Setting) -> float:
         """Expected ratio of the two errors, by the method's observed order, or with error control by the tolerances."""
         method = METHODS[finer.method]
-        if method.adaptive:
+        if method.error_control:
             return coarser.tolerance / finer.tolerance
         order = method.observed_with_cut if self.cuts_tension else method.observed_order
         if math.isnan(order):

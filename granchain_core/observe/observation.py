@@ -21,7 +21,7 @@ from ..execution.stop import Stop
 from ..execution.stopwatch import Stopwatch
 from ..experiment import model_minus_measured
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
-from ..integrate.methods import FIXED_STEP
+from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import IRREGULAR
 from ..integrate.stated import relative_changes, relative_difference
 from ..results.recorded_motion import MOST_RECORDED, RecordedMotion, elastic_output, motion_columns, time_axis
@@ -229,7 +229,7 @@ def observe(scene: Scene, time: object, force: object = None, output: object = N
         integration_error=float(integration[0]), interpolation_error=float(interpolation[0]),
         status="done" if errors[0] <= scene.accuracy else "accuracy-not-reached",
         force_errors=ForceErrors.of(np.array([np.nan, *errors[2:]])),
-        cost=Cost.of(spent.seconds, chain.counts, FIXED_STEP),
+        cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT),
         residual=residual(forces[:, -1], record.output), residual_elastic=residual(elastic, record.output),
     )
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..execution.stop import Stop
-from ..integrate import Engine, adaptive_setting
+from ..integrate import Engine, dop853_setting
 from ..integrate.scaling import ScaledChain, scale_chain
 from ..kernels.effects.contact import Chain
 from ..kernels.effects.driver import BODY_FAR_AWAY
@@ -41,7 +41,7 @@ def scale_pair(scene: Scene) -> ScaledChain:
 
 
 class Pair:
-    """A chain and its observer, carried through time together at `samples` samples a period by the adaptive method.
+    """A chain and its observer, carried through time together at `samples` samples a period by dop853.
 
     Both go through the same arithmetic, so an observer that starts where its chain is stays there, to rounding: the
     compiler may sum the terms of one bead in another order than those of its twin.
@@ -49,7 +49,7 @@ class Pair:
 
     def __init__(self, scene: Scene, samples: int, stop: Stop | None = None) -> None:
         self.scene = scene
-        self.engine = Engine(scene, adaptive_setting(TOLERANCE), samples, stop=stop,
+        self.engine = Engine(scene, dop853_setting(TOLERANCE), samples, stop=stop,
                              scaled=scale_pair(scene))
 
     def start(self, chain: State, observer: State) -> None:

@@ -16,7 +16,7 @@ from ..errors import BadInput
 from ..execution.stop import Stop
 from ..execution.stopwatch import Stopwatch
 from ..inputs.checks import whole_number
-from ..integrate.methods import ADAPTIVE
+from ..integrate.methods import DOP853
 from ..orbits import Orbit, periodic_orbit
 from ..results.run import Cost
 from ..scene import Scene
@@ -207,7 +207,7 @@ def twin(scene: Scene, perturbation: float | State = 1e-6, periods: int = 60, sa
         observer_output_force=force[:, -1] * scales.force, distance=distance,
         strobe_distance=distance[:: n * samples], window=window, rate=rate, measured=measured,
         translation=share_of_translation(strobes[max(0, window[1] - 1), :beads]),
-        cost=Cost.of(spent.seconds, pair.engine.counts, ADAPTIVE), rate_error=rate_error,
+        cost=Cost.of(spent.seconds, pair.engine.counts, DOP853), rate_error=rate_error,
     )
 
 

@@ -1,7 +1,7 @@
 """Floquet modes: eigenvectors of the monodromy matrix as motions of the chain over one orbit.
 
 A disturbance δx of an orbit of n drive periods obeys δx(n/f) = M δx(0). With M v = μ v it comes back as μ times
-itself, and in between it is the difference of two neighbouring motions, by the adaptive method:
+itself, and in between it is the difference of two neighbouring motions, by dop853:
 
     δu(t) = [u(t; x0 + ε v) − u(t; x0 − ε v)] / 2ε
 
@@ -17,7 +17,7 @@ import numpy as np
 
 from ..execution.stop import Stop
 from ..inputs.checks import whole_number
-from ..integrate import Engine, adaptive_setting
+from ..integrate import Engine, dop853_setting
 from ..steady.poincare import Section
 from ..steady.settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS
 from .krylov import arnoldi
@@ -84,7 +84,7 @@ def eigenpair(stroboscopic_map: StroboscopicMap, x: np.ndarray, rank: int,
 def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, samples: int,
              stop: Stop | None) -> tuple[np.ndarray, np.ndarray]:
     """δu (n·samples + 1, N) and δx (2N,) at the end that start as `direction`, as a central difference."""
-    engine = Engine(orbit.scene, adaptive_setting(TOLERANCE), samples, stop=stop)
+    engine = Engine(orbit.scene, dop853_setting(TOLERANCE), samples, stop=stop)
     ways = []
     for sign in (1.0, -1.0):
         engine.start_scaled(x + sign * size * direction)
@@ -95,9 +95,9 @@ def _carried(orbit: Orbit, x: np.ndarray, direction: np.ndarray, size: float, sa
 
 
 def orbit_section(orbit: Orbit, samples: int = 48, stop: Stop | None = None) -> Section:
-    """The orbit's own n points at every phase, by the adaptive method: n periods of an unstable orbit stay on it."""
+    """The orbit's own n points at every phase, by dop853: n periods of an unstable orbit stay on it."""
     stroboscopic_map = StroboscopicMap(orbit.scene, orbit.period, stop)
-    engine = Engine(orbit.scene, adaptive_setting(TOLERANCE), samples, stop=stop)
+    engine = Engine(orbit.scene, dop853_setting(TOLERANCE), samples, stop=stop)
     engine.start_scaled(stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(orbit.state)))
     record, scales = engine.record(orbit.period * samples), engine.scaled.scales
     shape = (orbit.period, samples, -1)

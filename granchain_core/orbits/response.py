@@ -13,8 +13,8 @@ from math import pi
 
 import numpy as np
 
-from ..integrate import Engine, adaptive_setting
-from ..integrate.methods import ADAPTIVE
+from ..integrate import Engine, dop853_setting
+from ..integrate.methods import DOP853
 from ..results.regime import Regime
 from ..results.run import GIVEN_STATE, Cost, Run, run_from
 from ..steady.curve.resonance import END_FRACTION, STOP_BAND_FRACTION, pushes
@@ -86,10 +86,10 @@ def _begin(force: np.ndarray, peak: int) -> int | None:
 
 def recorded(orbit: Orbit) -> Run:
     """The orbit as a run over its whole period."""
-    engine = Engine(orbit.scene, adaptive_setting(_TOLERANCE), _SAMPLES)
+    engine = Engine(orbit.scene, dop853_setting(_TOLERANCE), _SAMPLES)
     engine.start(orbit.state)
     samples = engine.record(orbit.period * _SAMPLES)
     leading = float(np.abs(orbit.multipliers).max())
     regime = Regime(name="periodic", period=orbit.period, decay=None, distance=None, periods_run=orbit.period,
                     multiplier=leading)
-    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, ADAPTIVE), start=GIVEN_STATE)
+    return run_from(engine, samples, 0, regime, None, Cost.of(0.0, engine.counts, DOP853), start=GIVEN_STATE)

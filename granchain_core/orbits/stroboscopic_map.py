@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import BadInput
 from ..execution.stop import Stop
-from ..integrate import Engine, adaptive_setting
+from ..integrate import Engine, dop853_setting
 from ..integrate.dop853 import Dop853Stepper
 from ..integrate.scaling import ScaledChain, scale_like
 from ..kernels.dop853.tableau import STAGES
@@ -69,7 +69,7 @@ class StroboscopicMap:
     def __init__(self, scene: Scene, periods: int, stop: Stop | None = None, tolerance: float = TOLERANCE) -> None:
         refuse_undriven(scene)
         refuse_cut(scene)
-        self.engine = Engine(scene, adaptive_setting(tolerance), 1, stop=stop)
+        self.engine = Engine(scene, dop853_setting(tolerance), 1, stop=stop)
         self.periods = periods
         self._prepare(tolerance)
 
@@ -109,7 +109,7 @@ class StroboscopicMap:
         Without `jumps` it is wrong on purpose: the saltation is left out, for comparison. Raises `BadInput` for a
         damping that is not the linear dashpot's.
 
-        Only tests use it. It stands here because its type `VelocityTangent` is in the list of compiled versions of
+        Only tests use it. It stands here because its type `VelocityTangent` is in the list of specializations of
         `run_flow`: were it in tests/, a process without the tests could not read that list.
         """
         scaled = self.engine.scaled

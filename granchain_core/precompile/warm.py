@@ -22,7 +22,7 @@ from ..accuracy.effect_cost import CODE, MOTION
 from ..accuracy.work_precision import compile_methods
 from ..execution.child_processes import pool, starting
 from ..execution.stop import Stop
-from ..integrate import Engine, Setting, adaptive_setting, fixed_step_setting, following_setting
+from ..integrate import Engine, Setting, dop853_setting, fixed_step_setting, following_setting
 from ..integrate.batch import Batch, can_share_batch, is_uniform
 from ..integrate.fixed import chain_width
 from ..integrate.scaling import scale_chain
@@ -40,12 +40,12 @@ from ..steady.lyapunov import growth_along
 from ..steady.regime_criteria import SLOW_RECORD, converging, find_period, return_distance
 from .pieces import (
     ACCURACY_KERNELS,
-    ADAPTIVE_KERNELS,
     BRANCH_KERNELS,
     CHECK_KERNELS,
     COST_ACCOUNT_KERNELS,
     COST_KERNELS,
     CURVE_KERNELS,
+    DOP853_KERNELS,
     FIXED_STEP_KERNELS,
     MOTION_KERNELS,
     OBSERVER_KERNELS,
@@ -140,7 +140,7 @@ def _cost(account: bool) -> Callable[[Scene], None]:
 #: Every piece with the function that compiles it by a short run, in the order in which a visitor needs them.
 PIECES: dict[str, Callable[[Scene], None]] = {
     REGIME_KERNELS: _regime, CHECK_KERNELS: _checks, CURVE_KERNELS: _curve,
-    ADAPTIVE_KERNELS: _engine(adaptive_setting(1e-3)), FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
+    DOP853_KERNELS: _engine(dop853_setting(1e-3)), FIXED_STEP_KERNELS: _engine(fixed_step_setting()),
     ORBIT_KERNELS: _orbit, BRANCH_KERNELS: _branch, OBSERVER_KERNELS: _observer,
     ACCURACY_KERNELS: compile_methods, COST_KERNELS: _cost(account=False), COST_ACCOUNT_KERNELS: _cost(account=True),
 }

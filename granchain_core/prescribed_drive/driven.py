@@ -18,7 +18,7 @@ from ..errors import BadInput
 from ..execution.stop import Stop
 from ..execution.stopwatch import Stopwatch
 from ..integrate.chain_in_pieces import MOST_HALVINGS, refined
-from ..integrate.methods import FIXED_STEP
+from ..integrate.methods import RK4_SPLIT
 from ..integrate.safety_factors import SAMPLED_DRIVE
 from ..integrate.stated import or_whole_motion, relative_changes, relative_difference
 from ..results.recorded_motion import MOST_RECORDED, RecordedMotion, motion_columns, time_axis
@@ -196,7 +196,7 @@ def drive(scene: Scene, signal: Signal, start: State | None = None, stop: Stop |
                   now.force * scales.force, inward, outward, elastic,
                   force_errors=ForceErrors.of(np.array(errors)), displacement_error=float(error),
                   energy_residual=balance, status="done" if done else "accuracy-not-reached",
-                  cost=Cost.of(spent.seconds, chain.counts, FIXED_STEP),
+                  cost=Cost.of(spent.seconds, chain.counts, RK4_SPLIT),
                   interpolation_error=float(between[0]))
 
 

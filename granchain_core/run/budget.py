@@ -60,7 +60,7 @@ def _estimate(scaled: ScaledChain, setting: Setting, periods: int, samples: int,
     twice = _relative_cost(setting) + _relative_cost(finer)
     for one in (setting, finer):
         cost = METHODS[one.method].cost
-        if METHODS[one.method].adaptive:
+        if METHODS[one.method].error_control:
             # with contacts open most of the time, as at low frequency, steps are longer
             steps_per_time = cost.steps_per_time * (1e-8 / max(one.tolerance, 1e-16)) ** cost.power
             count = periods * max(16.0, scaled.period * steps_per_time)
@@ -104,7 +104,7 @@ def refuse_long_picture(scene: Scene, periods: int, samples: int, budget: float)
 
 def _relative_cost(setting: Setting) -> float:
     """Relative cost of a computation among those of the same run."""
-    if METHODS[setting.method].adaptive:
+    if METHODS[setting.method].error_control:
         return float(max(setting.tolerance, 1e-16) ** -METHODS[setting.method].cost.power)
     return setting.refine
 

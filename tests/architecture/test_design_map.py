@@ -39,7 +39,7 @@ _WITHOUT_NUMBER = {
     ("kernels/effects/contact.py", "elastic_force"), ("kernels/effects/contact.py", "three_halves"),
     ("kernels/batch/step.py", "contact"), ("kernels/equations/chain_in_vector.py", "chain_slope"),
     ("kernels/dop853_root/chain.py", "rates_at"), ("kernels/dop853_root/chain.py", "powers"),
-    ("kernels/dop853_root/changes.py", "size_in_xi"), ("kernels/dop853/force_kinks.py", "scaled_force"),
+    ("kernels/dop853_root/changes.py", "size_in_xi"), ("kernels/error_control/force_kinks.py", "scaled_force"),
     ("kernels/rk4/contact_events.py", "add_quadrature_errors"), ("kernels/flow/event_time.py", "smooth_power"),
     ("kernels/batch/contact_correction.py", "impulse_error"), ("kernels/batch/contact_correction.py", "beside_closed"),
     ("kernels/batch/contact_correction.py", "three_halves_by_series"), ("kernels/batch/contact_correction.py", "correct_contacts"),

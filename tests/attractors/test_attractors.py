@@ -55,7 +55,7 @@ def test_every_start_leads_to_one_attractor_and_shares_add_up(many: list[Attract
 
 
 def test_every_origin_leads_there_by_itself(many: list[Attractor]) -> None:
-    # the fixed-step and the adaptive method know nothing of batches: they start from the state that is listed
+    # rk4-split and dop853 know nothing of batches: they start from the state that is listed
     for one in (named(many, "rest"), named(many, "down")):
         origin = next(o for o in one.origins if o.name.startswith("random"))
         alone = settle(one.scene, origin.state)

@@ -11,7 +11,7 @@ import granchain_core
 from granchain_core import Scene, scene
 from granchain_core.attractors.sameness import Found, found, merged
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, adaptive_setting
+from granchain_core.integrate import Engine, dop853_setting
 from granchain_core.results.regime import Regime
 from granchain_core.scene.state import rest
 from granchain_core.steady.settling.single_chain import settle_to_forces
@@ -83,7 +83,7 @@ def test_copies_of_one_cut_orbit_that_begin_in_other_periods_are_one(chain: Scen
     """No Newton's method brings them together: their sections must be as exact as their forces. Fixed steps are wrong
     by 1e-3 to 1e-1 with the cut."""
     first = settle_to_forces(chain, None, Stop())
-    engine = Engine(chain, adaptive_setting(1e-11), 1)
+    engine = Engine(chain, dop853_setting(1e-11), 1)
     engine.start(first.state)
     engine.periods(1)
     later = settle_to_forces(chain, engine.state, Stop())

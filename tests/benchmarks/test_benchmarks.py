@@ -17,7 +17,7 @@ PERIODIC = np.array([340.0, 470.0, 1130.0, 1600.0])
 
 @pytest.fixture(scope="module")
 def reference() -> np.ndarray:
-    """The trajectory by granchain's adaptive method."""
+    """The trajectory by granchain's dop853."""
     return granchain.reference().states
 
 

@@ -85,7 +85,7 @@ def report(cases: list[Case], quick: bool, tell: Callable[[str], None]) -> str:
         if case.prepare is not None:
             tell(f"{case.label} ({case.form})")
             rungs[case.label, case.form] = (case, climb(case, reference, quick))
-    note = f"Reference: granchain's adaptive method at {granchain.FINEST:g}. Distance of others: "
+    note = f"Reference: granchain's dop853 at {granchain.FINEST:g}. Distance of others: "
     return "\n".join([note + second_opinion(reference), *[_table(rungs, t, quick) for t in TARGETS]])
 
 

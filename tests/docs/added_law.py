@@ -7,7 +7,7 @@ import pytest
 
 from granchain_core import LiveChain, resonance_curve, run, scene, settle
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels.dop853.force_kinks import scaled_force
+from granchain_core.kernels.error_control.force_kinks import scaled_force
 from granchain_core.orbits.stroboscopic_map import StroboscopicMap
 from granchain_core.scene.laws import LAWS
 
@@ -16,7 +16,7 @@ REFINED = (1, 2, 4, 8, 16)
 
 
 def test_every_way_to_the_steady_state_gives_the_same_state() -> None:
-    """The adaptive method, a batch, and the fixed-step method after 200 periods; displacements at phase 0."""
+    """dop853, a batch, and the fixed-step method after 200 periods; displacements at phase 0."""
     orbit = settle(CHAIN).state.displacement
     live = LiveChain(CHAIN)
     near = {"rtol": 0.0, "atol": 1e-4 * CHAIN.A0}

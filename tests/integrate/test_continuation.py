@@ -34,7 +34,7 @@ def test_two_halves_are_the_whole_bit_by_bit(method, _):
     together = whole.record(32)
     first, second = halves.record(16), halves.record(16)
     if method == "dop853":
-        # an adaptive step ends at the record's end, so its steps differ; a hundred tolerances of 1e-11 between them
+        # dop853 ends a step at the record's end, so its steps differ; a hundred tolerances of 1e-11 between them
         near = {"rtol": 0.0, "atol": 1e-9}
         np.testing.assert_allclose(np.vstack([first.displacement, second.displacement[1:]]), together.displacement, **near)
     else:
@@ -52,7 +52,7 @@ def test_a_new_engine_started_from_a_state_goes_on_the_same_way(method, error, r
     after.start(before.state)
     assert before.state.phase == pytest.approx((rows % 8) / 8)
     kept = after.record(16)
-    # the state passes through SI and back (1e-16 relative); an adaptive method chooses new steps
+    # the state passes through SI and back (1e-16 relative); a method with error control chooses new steps
     np.testing.assert_allclose(kept.displacement, together.displacement[rows:], atol=10 * error)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from granchain_core import Cancelled, ComputationError, Stop, run, scene
-from granchain_core.integrate import METHODS, Engine, Setting, dop853, fixed
+from granchain_core.integrate import METHODS, Engine, Setting, error_controlled, fixed
 from granchain_core.integrate.failure import Failure
 from granchain_core.kernels.flow import run as flow
 from granchain_core.kernels.flow.attempt import FlowProblem
@@ -38,7 +38,7 @@ def break_contact(engine: Engine, contact: int) -> None:
     """A contact whose stiffness is no number: what fails then, fails in the kernel."""
     stepper = engine.stepper
     stepper.scaled.slots.chain.stiffness[contact] = np.nan
-    if METHODS[engine.setting.method].adaptive:
+    if METHODS[engine.setting.method].error_control:
         stepper.use(stepper.scaled)
     else:
         stepper.work = stepper.work._replace(simd=stepper.new_simd_workspace())
@@ -83,7 +83,7 @@ def test_the_repeated_call_that_finds_the_bead_is_cancelled_as_any_other(method,
         return kernel(*words)
 
     monkeypatch.setattr(fixed, "run_steps", partial(spied, fixed.run_steps))
-    monkeypatch.setattr(dop853, "_RUN_DOP853", partial(spied, dop853._RUN_DOP853))
+    monkeypatch.setattr(error_controlled, "RUN_ERROR_CONTROLLED", partial(spied, error_controlled.RUN_ERROR_CONTROLLED))
 
     def while_it_is_located(*words):
         stop.set()
@@ -148,7 +148,7 @@ def test_an_unknown_status_raises_value_error() -> None:
     assert failure(CHATTER).error.status == "chatter"
 
 
-def test_a_period_of_too_many_steps_is_no_step_that_shrank(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_steps_in_a_period_have_a_status_of_their_own(monkeypatch: pytest.MonkeyPatch) -> None:
     """The flow's own loop, with steps that lead nowhere and patience for three of them."""
     def step(*words: object) -> tuple[int, None, float, int]:
         return DONE, None, 0.0, -1

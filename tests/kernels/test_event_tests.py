@@ -10,8 +10,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from granchain_core.kernels.contact_cubic import contact_root, hermite_value, turns
-from granchain_core.kernels.dop853.bracket import may_turn
 from granchain_core.kernels.dop853_root.changes import may_touch
+from granchain_core.kernels.error_control.bracket import may_turn
 from granchain_core.kernels.rk4.long_chain import comes_nearer
 from granchain_core.kernels.rk4.step import may_change
 

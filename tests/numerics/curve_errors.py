@@ -2,8 +2,8 @@
 
     python -m tests.numerics.curve_errors --count 1000 [--seed 1]
 
-Points come from batches, from rest. True is the adaptive method on the same orbit: from the point's state through
-as many periods as it takes until the orbit repeats itself to 1e-9, then its largest input and output force.
+Points come from batches, from rest. True is dop853 on the same orbit: from the point's state through as many periods as
+it takes until the orbit repeats itself to 1e-9, then its largest input and output force.
 """
 
 from __future__ import annotations

@@ -10,8 +10,8 @@ from thrown_bead import thrown_by_a_touch
 
 from granchain_core import State, run, scene
 from granchain_core.integrate import Engine, Setting
-from granchain_core.kernels.dop853 import run as dop853
 from granchain_core.kernels.dop853.tableau import STAGES
+from granchain_core.kernels.error_control.located_step import located_step
 
 
 def grazing(depth: float, method: str, tolerance: float = 1e-9):
@@ -53,7 +53,7 @@ def test_counted_events_are_the_openings_and_closings_that_a_fine_sampling_shows
     assert engine.counts.events == seen == 36
 
 
-def test_across_events_the_adaptive_method_keeps_to_a_hundred_tolerances():
+def test_across_events_dop853_keeps_to_a_hundred_tolerances():
     """Without event location a method of order 8 has the order of the kink that it steps over."""
     chain = scene("sec2").evolve(F0=0.0)
     true = Engine(chain, Setting("dop853", tolerance=1e-14), 8).record(16).displacement
@@ -68,15 +68,15 @@ def test_a_chain_that_never_opens_has_no_events():
     assert result.cost.events == 0
 
 
-def test_adaptive_steps_end_on_the_events():
+def test_located_steps_end_on_the_events():
     """After a step that found a contact opening or closing its overlap is zero, to the tolerance of event location."""
     chain = scene("sec2").evolve(f=1130.0)
     engine = Engine(chain, Setting("dop853", tolerance=1e-9), 1)
     engine.periods(2)
     t, landed = 0.0, []
     for _ in range(400):
-        status, h, contact = dop853.located_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
-                                                      engine.scaled.period, engine.counts.array)
+        status, h, contact = located_step(engine.stepper.method, engine.stepper.trajectory(engine.y), t,
+                                          engine.scaled.period, engine.counts.array)
         assert status == 0
         if contact >= 0:
             end = engine.stepper.work.end
@@ -87,6 +87,6 @@ def test_adaptive_steps_end_on_the_events():
         if t >= engine.scaled.period * (1 - 1e-12):
             break
     assert len(landed) > 5
-    # the search for the end just past an event aims at 1e-15 and stops at four times that (dop853/run.py); some events
-    # are too slow for Newton
+    # the search for the end just past an event aims at 1e-15 and stops at four times that (located_step.py); some
+    # events are too slow for Newton
     assert np.quantile(landed, 0.9) < 4e-15 and max(landed) < 1e-11

@@ -15,7 +15,7 @@ from granchain_core.execution.stop import Stop
 from granchain_core.integrate import METHODS, Engine, Setting
 from granchain_core.integrate.batch import NEVER, Batch, can_share_batch
 from granchain_core.integrate.dop853_root import Dop853RootStepper
-from granchain_core.integrate.methods import FIXED_STEP
+from granchain_core.integrate.methods import RK4_SPLIT
 from granchain_core.integrate.scaling import scale_chain
 from granchain_core.kernels.compiling.jit import unknown_slots
 from granchain_core.kernels.effects.driver import PrescribedMotion
@@ -58,7 +58,7 @@ def chain(name: str, beads: int = BEADS) -> Scene:
 @functools.cache
 def motion(name: str, setting: Setting, beads: int = BEADS) -> np.ndarray:
     """The samples of the first periods from rest, in scaled units."""
-    engine = Engine(chain(name, beads), setting, _SAMPLES, account=METHODS[setting.method].adaptive)
+    engine = Engine(chain(name, beads), setting, _SAMPLES, account=METHODS[setting.method].error_control)
     return engine.record(_PERIODS * _SAMPLES).displacement
 
 
@@ -85,7 +85,7 @@ def test_every_method_moves_a_chain_as_dop853_does_or_refuses_it(name: str, meth
         assert method == "dop853-root" and name not in KNOWN
         assert f"use dop853 for this one. It does not know: {name}." in str(refusal)
         return
-    allowed = _PER_TOLERANCE * _TOLERANCE if METHODS[method].adaptive else of_its_order(setting, chain(name))
+    allowed = _PER_TOLERANCE * _TOLERANCE if METHODS[method].error_control else of_its_order(setting, chain(name))
     print(f"{method}, {name}: {error:.1e} of {allowed:.1e}")
     assert error < allowed
 
@@ -93,7 +93,7 @@ def test_every_method_moves_a_chain_as_dop853_does_or_refuses_it(name: str, meth
 @pytest.mark.parametrize("name", EFFECT_NAMES)
 def test_a_long_chain_moves_with_each_effect_as_dop853_moves_it(name: str) -> None:
     """In vectors along the chain where they know the effect."""
-    setting = Setting(FIXED_STEP, refine=_REFINED)
+    setting = Setting(RK4_SPLIT, refine=_REFINED)
     engine = Engine(chain(name, LONG), setting, _SAMPLES)
     known = not unknown_slots(engine.scaled.slots, "rk4")
     assert isinstance(engine.stepper.work.simd, LongChain) == known

@@ -55,9 +55,9 @@ LOST = {"rk4": 3.0, "rk4-naive": 2.0}
 def motion(smoothness: str, f: float, setting: Setting) -> tuple[np.ndarray, int]:
     """Eight samples a period in scaled units, and the steps they took.
 
-    The adaptive method carries the energy account along, as in a run: these kernels are compiled for other tests too.
+    dop853 carries the energy account along, as in a run: these kernels are compiled for other tests too.
     """
-    engine = Engine(scene("sec2").evolve(f=f, **SMOOTHNESS[smoothness]), setting, 8, account=METHODS[setting.method].adaptive)
+    engine = Engine(scene("sec2").evolve(f=f, **SMOOTHNESS[smoothness]), setting, 8, account=METHODS[setting.method].error_control)
     return engine.record(8 * PERIODS).displacement, engine.counts.steps
 
 
@@ -67,7 +67,7 @@ def frequencies(smoothness: str) -> tuple[float, ...]:
 
 
 def errors(smoothness: str, settings) -> np.ndarray:
-    """(settings, scenes): largest relative displacement error, against the adaptive method at 1e-14 per step."""
+    """(settings, scenes): largest relative displacement error, against dop853 at 1e-14 per step."""
     found = np.empty((len(settings), len(frequencies(smoothness))))
     for j, f in enumerate(frequencies(smoothness)):
         true = motion(smoothness, f, Setting("dop853", tolerance=1e-14))[0]
@@ -78,14 +78,14 @@ def errors(smoothness: str, settings) -> np.ndarray:
 
 @functools.cache
 def order(method: str, smoothness: str) -> float:
-    """Slope of log error over log step: 1.5 decades of steps, or eight of the adaptive method's tolerance."""
-    if METHODS[method].adaptive:
-        return adaptive_order(method, smoothness)
+    """Slope of log error over log step: 1.5 decades of steps, or eight of dop853's tolerance."""
+    if METHODS[method].error_control:
+        return order_by_tolerance(method, smoothness)
     found = errors(smoothness, [Setting(method, refine=r) for r in REFINED])
     return float(-np.polyfit(np.log(REFINED), np.log(found).mean(axis=1), 1)[0])
 
 
-def adaptive_order(method: str, smoothness: str) -> float:
+def order_by_tolerance(method: str, smoothness: str) -> float:
     """Slope of log error over log mean step, eight decades of tolerance."""
     settings = [Setting(method, tolerance=t) for t in TOLERANCES]
     steps = np.array([[motion(smoothness, f, s)[1] for f in frequencies(smoothness)] for s in settings])
@@ -131,7 +131,7 @@ def test_the_table_of_methods_has_the_orders_of_theory(method):
 
 
 @pytest.mark.parametrize("smoothness", [one for one in SMOOTHNESS if one not in ("none", "cut")])
-def test_error_of_the_adaptive_method_follows_its_tolerance(smoothness):
+def test_error_of_dop853_follows_its_tolerance(smoothness):
     """At every tolerance the error stays below a thousand times it: each of some hundred events and steps may add one
     tolerance, and the sensitivity of these motions is below 10 (reference.npz). Without damping, and where a force is
     cut, sensitivities are thousands."""

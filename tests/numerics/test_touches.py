@@ -1,4 +1,4 @@
-"""The adaptive method misses no touch, however brief, and times each exactly; a symmetric motion stays symmetric."""
+"""dop853 misses no touch, however brief, and times each exactly; a symmetric motion stays symmetric."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ COUNT = 2000
 
 @functools.cache
 def found(driven: bool) -> tuple[np.ndarray, np.ndarray]:
-    """Random touches and near misses, and what the adaptive method made of them."""
+    """Random touches and near misses, and what dop853 made of them."""
     cases = touches.draw(COUNT, 7, driven)
     return cases, touches.run(cases, driven)
 

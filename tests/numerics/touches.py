@@ -1,4 +1,4 @@
-"""Program and kernel: brief touches by the hundred thousand, and whether the adaptive method misses one.
+"""Program and kernel: brief touches by the hundred thousand, and whether dop853 misses one.
 
     python -m tests.numerics.touches --count 100000 [--seed 1]
 
@@ -26,13 +26,14 @@ from granchain_core.hard_cases.touches import (
     workspace,
 )
 from granchain_core.kernels.compiling.jit import kernel
-from granchain_core.kernels.dop853.run import located_step
-from granchain_core.kernels.dop853.step import STAGES, Dop853, DriveCycle, evaluate
+from granchain_core.kernels.dop853.step import STAGES, Dop853
 from granchain_core.kernels.effects.contact import Chain
 from granchain_core.kernels.effects.driver import Harmonic
 from granchain_core.kernels.effects.foundation import Foundation
 from granchain_core.kernels.effects.preload import Preload
 from granchain_core.kernels.equations.motion import Slots, Trajectory, copy
+from granchain_core.kernels.error_control.located_step import located_step
+from granchain_core.kernels.error_control.step import DriveCycle, evaluate
 
 __all__ = ["DEPTH", "ONSETS", "ONSET_ERROR", "RELEASE_ERROR", "TOLERANCE", "draw", "missed", "moved", "run", "run_pairs"]
 

@@ -1,4 +1,4 @@
-"""Forces that tests feed to observers: computed by the adaptive method from a chain whose states are known too."""
+"""Forces that tests feed to observers: computed by dop853 from a chain whose states are known too."""
 
 from __future__ import annotations
 

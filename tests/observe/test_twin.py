@@ -100,7 +100,7 @@ def test_the_chain_of_a_pair_moves_as_it_does_alone() -> None:
     pair.start(rest(FOUNDED), granchain_core.orbit(FOUNDED).state)
     alone = Engine(FOUNDED, Setting("dop853", tolerance=1e-13), 16)
     together, single = pair.engine.record(80), alone.record(80)
-    # two runs of the adaptive method with other steps
+    # two runs of dop853 with other steps
     assert together.displacement[:, : FOUNDED.N] == pytest.approx(single.displacement, abs=1e-9)
 
 

@@ -11,8 +11,8 @@ from linear_chain import linear_multipliers
 import granchain_core
 from granchain_core import BadInput, Cancelled, scene
 from granchain_core.execution.stop import Stop
-from granchain_core.integrate import Engine, adaptive_setting
-from granchain_core.kernels.dop853.orbit_record import OrbitRecord, record_orbit
+from granchain_core.integrate import Engine, dop853_setting
+from granchain_core.kernels.error_control.orbit_record import OrbitRecord, record_orbit
 from granchain_core.kernels.forces.peaks import PEAKS
 from granchain_core.kernels.status import CANCELLED
 from granchain_core.orbits import krylov
@@ -126,7 +126,7 @@ def test_the_stop_flag_ends_a_flow() -> None:
 
 def test_a_record_along_an_orbit_stops_within_its_period() -> None:
     stop = Stop()
-    engine = Engine(scene("sec2"), adaptive_setting(1e-9), 1, stop=stop)
+    engine = Engine(scene("sec2"), dop853_setting(1e-9), 1, stop=stop)
     stop.set()
     record = OrbitRecord(np.zeros((64, 4)), np.zeros(PEAKS))
     status, _, _ = record_orbit(engine.stepper.method, engine.stepper.trajectory(engine.y), 1, record,

@@ -43,7 +43,7 @@ def test_the_setting_that_is_told_is_the_one_that_computes(accuracy: float, monk
     same = [one for one in used if one.method == picture.run.cost.method]
     assert told.method == picture.run.cost.method
     # where the relaxation had to refine, the real setting is finer by powers of eight, or of two in the step
-    if METHODS[told.method].adaptive:
+    if METHODS[told.method].error_control:
         finest = min(one.tolerance for one in same)
         assert finest * (1 - 1e-9) <= told.tolerance <= 64.0 * finest
     else:

@@ -53,7 +53,7 @@ def test_the_account_closes_after_discarded_periods_too(law):
 
 
 @pytest.mark.parametrize(("law", "tension", "kappa", "preload"), [("linear", "cut", 0.0, 0.0), ("tsuji", "cut", 0.002, 0.05)])
-def test_the_adaptive_account_of_cut_contacts_closes(law, tension, kappa, preload):
+def test_dop853s_account_of_cut_contacts_closes(law, tension, kappa, preload):
     """Kinks where a contact stops pushing, and force-free contacts, lose no energy that is not accounted for."""
     engine = Engine(chain(law, tension, kappa, preload).evolve(D=400.0), Setting("dop853", tolerance=1e-11), 16, account=True)
     stored, work, lost = engine.record(16 * 6).energy.T

@@ -24,7 +24,7 @@ NAMES = ("max_input_force", "max_output_force", "max_output_force_elastic")
 def true(name: str) -> list[float]:
     """Largest samples of 16384 a period over four periods: a smooth top is then known to (π/16384·10)²/2 = 2e-6.
 
-    Tops of jumps fall between the samples. They are those of the adaptive method, which ends a step just behind them.
+    Tops of jumps fall between the samples. They are those of dop853, which ends a step just behind them.
     """
     result = run(SCENES[name].evolve(accuracy=1e-8), periods=0, record=4, samples=1 << 14, method="dop853")
     maxima = [result.jumps.of(c)[1].max(initial=0.0) for c in (0, result.scene.N)]

@@ -53,7 +53,7 @@ def test_the_difference_before_counts_with_every_method_where_tension_is_cut(met
     found.begin(coarse)
     for setting, difference in ((fine, 1e-3), (fine.finer(), 0.0)):
         found.add(setting, STEPS, np.array([difference]), np.zeros(1))
-    ratio = 64.0 if METHODS[method].adaptive else 2.0
+    ratio = 64.0 if METHODS[method].error_control else 2.0
     assert found.stated[0] == pytest.approx(max(IRREGULAR * 1e-3 / ratio, found.rounding))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from granchain_core import resonance_curve, scene, settle
-from granchain_core.integrate import Engine, Setting, adaptive_setting
+from granchain_core.integrate import Engine, Setting, dop853_setting
 from granchain_core.kernels.strobes import periodicity
 from granchain_core.results.regime import Regime
 from granchain_core.steady import regime_criteria
@@ -222,7 +222,7 @@ def test_the_forces_of_a_curve_move_as_far(monkeypatch: pytest.MonkeyPatch) -> N
     refined_orbit = single_chain.refined_orbit
     stated = []
     for modulus in (0.1, 0.9):
-        engine = Engine(settling.scene, adaptive_setting(1e-6), 1)
+        engine = Engine(settling.scene, dop853_setting(1e-6), 1)
         engine.start(settling.engine.state)
         monkeypatch.setattr(single_chain, "refined_orbit", called_as(refined_orbit, (engine, 0.0)))
         settling.regime = replace(settling.regime, multiplier=modulus)

@@ -38,7 +38,7 @@ def in_pairs(scenes: list[tuple[ScaledChain, np.ndarray]], batch: Batch, periods
 
 
 def by_tangents(shown: Scene, state: State, blocks: int, block: int, count: int = 2) -> tuple[np.ndarray, np.ndarray]:
-    """The `count` largest exponents per period and their standard errors, by the adaptive motion and its tangents."""
+    """The `count` largest exponents per period and their standard errors, by dop853's motion and its tangents."""
     stroboscopic_map = StroboscopicMap(shown, 1)
     x = stroboscopic_map.inner(stroboscopic_map.engine.scaled.from_si(state))
     frame, _ = np.linalg.qr(np.random.default_rng(3).standard_normal((len(x), count)))

@@ -17,7 +17,7 @@ import time
 
 from app.frames import samples_for
 from granchain_core import BadInput, Cancelled, ComputationError, Scene, Stop, scene, settling
-from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import DOP853_KERNELS, FIXED_STEP_KERNELS
 from granchain_core.precompile.warm import compile_piece
 
 #: Classes of chain length in the table.
@@ -72,7 +72,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
-    for piece in (FIXED_STEP_KERNELS, ADAPTIVE_KERNELS):  # the compiler cannot be cancelled; the dashboard has it in another process
+    for piece in (FIXED_STEP_KERNELS, DOP853_KERNELS):  # the compiler cannot be cancelled; the dashboard has it in another process
         compile_piece(scene("sec2"), piece)
     cancelled_after(scene("sec2"), 0.5)
     print("beads | cancellations | p50 ms | p99 ms | longest ms | processor p99 ms | longest ms | load")

@@ -3,7 +3,7 @@
     python -m tools.fuzzing --count 20000 --seed 5 [--workers 2] [--minutes 10] [--few]
     python -m tools.fuzzing --seed 5 --only 123
 
-Every scene is compared with the adaptive method at its finest, every third also with SciPy in (u, v) unless that would
+Every scene is compared with dop853 at its finest, every third also with SciPy in (u, v) unless that would
 take long; every sixteenth is also given to naive RK4 and to LSODA.
 """
 

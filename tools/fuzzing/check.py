@@ -34,7 +34,7 @@ _ROUNDING = 1e-10
 _MAGNIFIED = 1e3
 #: An energy account is a quadrature along the motion: it was seen to close to 17 times the error of the displacements.
 _ENERGY = 50.0
-#: Seconds SciPy takes, in both its runs, for one step of the adaptive method: a scene that would take too long is not
+#: Seconds SciPy takes, in both its runs, for one step of dop853: a scene that would take too long is not
 #: begun.
 _SCIPY_STEP = 2.5e-4
 #: A motion that is known less well than this is chaotic: only outcome, time and symmetries are judged.
@@ -44,7 +44,7 @@ _CHAOS = 1e-4
 @dataclass
 class Verdict:
     """The result of a draw. Errors are relative to the largest displacement; `known` is the error of the truth itself,
-    `steps` how many the adaptive method took.
+    `steps` how many dop853 took.
 
     `faults` are (name, figure) of what did not hold. `others` are outcomes and errors of the naive solvers.
     """
@@ -72,7 +72,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
     """The verdict on one draw; `compute` takes the place of `run`.
 
     The independent solver of oracle.py is a second judge if it takes at most `scipy` seconds; where tension is cut,
-    `run` uses the adaptive method itself, and that solver is the only independent one. Naive RK4 and LSODA are judged
+    `run` uses dop853 itself, and that solver is the only independent one. Naive RK4 and LSODA are judged
     too, for at most `others` seconds each. What takes longer than its time is ended after `patience` times as long, so
     that a busy machine decides nothing: what is begun at all depends on estimates and counted steps.
     """
@@ -93,7 +93,7 @@ def check(draw: Draw, compute: Callable[..., Run] = run, scipy: float = 0.0, oth
         with limit(2.0 * budget * patience) as stop:
             truth = _judge(verdict, found, stop)
             _properties(verdict, chosen, stop)
-    except Cancelled:  # the adaptive method at its finest takes longer than the run: counted as not judged
+    except Cancelled:  # dop853 at its finest takes longer than the run: counted as not judged
         return verdict
     except ComputationError as problem:
         verdict.sentence = f"the judge failed: {problem}"
@@ -156,7 +156,7 @@ def _finite(verdict: Verdict, found: Run) -> None:
 
 
 def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
-    """Compare the run with the adaptive method at its finest, check its energy; returns the true displacements [m]."""
+    """Compare the run with dop853 at its finest, check its energy; returns the true displacements [m]."""
     chosen, kept = found.scene, []
     for tolerance in (3e-14, 3e-15):
         engine = Engine(chosen, Setting("dop853", tolerance=tolerance), SAMPLES, account=True, stop=stop)
@@ -173,7 +173,7 @@ def _judge(verdict: Verdict, found: Run, stop: Stop) -> np.ndarray:
     if verdict.known < _CHAOS:
         limits = 1e-9 + 100.0 * verdict.known, 1e-9 + _ENERGY * max(verdict.stated, chosen.accuracy)
         figures = properties.energy(engine.scaled, kept[1]), found.energy_residual
-        for name, figure, bar in zip(("energy of the adaptive method", "energy"), figures, limits, strict=True):
+        for name, figure, bar in zip(("energy of dop853", "energy"), figures, limits, strict=True):
             if figure is None or not figure <= bar:
                 verdict.faults.append((name, np.nan if figure is None else figure / bar))
     return true

@@ -19,8 +19,8 @@ from scipy.optimize import brentq
 from granchain_core import ComputationError, Scene
 from granchain_core.scene.state import rest
 
-#: Power of the overlap in the damping force; not taken from granchain_core, which is judged by this.
-_POWER = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5, "none": 0.0}
+from .laws import EXPONENT
+
 #: Places inside a step where contacts are looked at, so that a brief touch is seen.
 _LOOKS = np.linspace(0.0, 1.0, 9)[1:]
 
@@ -71,7 +71,7 @@ class Chain:
         """The chain of a scene: in units of A0, bead 1 and its K, or in SI."""
         mass, stiffness, length = (scene.bead(1).mass, scene.K, scene.A0) if scaled else (1.0, 1.0, 1.0)
         rate = np.sqrt(stiffness * np.sqrt(length) / mass)
-        power = _POWER[scene.dissipation]
+        power = EXPONENT[scene.dissipation] if scene.has_dissipation else 0.0
         strength = scene.D / (mass * rate) * (length / scene.reference_overlap) ** power if scene.has_dissipation else 0.0
         constants = (scene.masses() / mass, scene.contact_stiffness() / stiffness, scene.static_overlap() / length,
                      strength, power, scene.k / (stiffness * np.sqrt(length)), scene.A0 / length,

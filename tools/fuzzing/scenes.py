@@ -9,15 +9,17 @@ import numpy as np
 
 from granchain_core import Scene, scene
 
+from .laws import Structure, with_every_law
+
 #: Decades: f [Hz], A0 [m], D [N s/m], κ, preload [N], accuracy, wall (times K), thrown beads (in A0 φ), bead sizes
 #: (times section 2's).
 RANGES = {"f": (1.5, 4.0), "A0": (-9.0, -5.0), "D": (-0.5, 3.0), "kappa": (-4.0, -0.5), "F0": (-3.0, 2.0),
           "accuracy": (-9.0, -3.0), "wall": (-1.0, 1.0), "thrown": (-1.0, 1.0), "size": (-0.4, 0.4)}
 MOST_BEADS = 40
-#: Law, tension, foundation, preload: each combination has its own set of kernels.
-STRUCTURES = [("linear", "allowed", False, False), ("tsuji", "allowed", False, False), ("linear", "cut", False, False),
-              ("kuwabara-kono", "allowed", False, False), ("linear", "allowed", True, True),
-              ("none", "allowed", True, False), ("tsuji", "cut", True, True)]
+STRUCTURES = with_every_law([
+    ("linear", "allowed", False, False), ("tsuji", "allowed", False, False), ("linear", "cut", False, False),
+    ("kuwabara-kono", "allowed", False, False), ("linear", "allowed", True, True), ("none", "allowed", True, False),
+    ("tsuji", "cut", True, True)])
 #: Part of the draws in which one knob gets a value that no scene can have.
 _SPOILED = 0.03
 _BAD: tuple[Any, ...] = (float("nan"), float("inf"), -1.0, 1e300, "word", None)
@@ -38,7 +40,7 @@ class Draw:
         return replace(scene("sec2").evolve(**self.knobs), **self.special)
 
 
-def draw(seed: int, index: int, structures: list[tuple[str, str, bool, bool]]) -> Draw:
+def draw(seed: int, index: int, structures: list[Structure]) -> Draw:
     """Draw number `index`: the same for the same seed and structures, whatever was drawn before."""
     rng = np.random.default_rng([seed, index])
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 from . import killers as k
 from .mutant import Mutant
 
-_DOP853_RUN, _KINKS = "kernels/dop853/run.py", "kernels/dop853/force_kinks.py"
+_LOCATED, _KINKS = "kernels/error_control/located_step.py", "kernels/error_control/force_kinks.py"
+_CONTROLLED_RUN = "kernels/error_control/run.py"
 _TENSION = "kernels/effects/tension.py"
 
 FORCE_FREE = (
-    Mutant("cut-kink-not-located", _DOP853_RUN, "        if outcome == KINK:", "        if outcome == KINK + 9:",
-           "adaptive steps go across the instant at which a cut contact stops pushing", k.CUT_ENERGY),
+    Mutant("cut-kink-not-located", _LOCATED, "        if outcome == KINK:", "        if outcome == KINK + 9:",
+           "steps with error control go across the instant at which a cut contact stops pushing", k.CUT_ENERGY),
     Mutant("force-free-of-tsuji", _KINKS, "stiffness * d * (r / power(law, d, r))", "stiffness * d * r",
            "the instant at which Tsuji's force ends is another one",
            k.UNLIKE),
@@ -31,7 +32,7 @@ FORCE_FREE = (
            "w keeps the straight G where the law's own is meant", k.FORCE_FREE),
     Mutant("account-stays-force-free", _KINKS, "add_to_account(slots.account, y, energy_in - own_energy_in, lost - own_lost)", "pass",
            "the account keeps the straight G where the law's own is meant", k.FORCE_FREE_ENERGY),
-    Mutant("force-free-slope-stays", _DOP853_RUN, "if changed or end == period:", "if end == period:",
+    Mutant("force-free-slope-stays", _CONTROLLED_RUN, "if changed or end == period:", "if end == period:",
            "the slope with the straight G begins the next step", k.FORCE_FREE),
     Mutant("force-free-offset", _TENSION, "- tension.slope[c] * d\n", "+ tension.slope[c] * d\n",
            "the straight G does not begin where the law's is", k.FORCE_FREE),

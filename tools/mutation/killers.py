@@ -6,7 +6,7 @@ from __future__ import annotations
 #: beads are not alike; NaN in every member; what is not finite.
 MOTION = ("tests/kernels/equations/test_motion.py",)
 UNLIKE = ("tests/kernels/effects/test_scaled_numbers.py", "tests/kernels/effects/test_given_force.py",
-          "tests/kernels/dop853/test_force_kinks.py")
+          "tests/kernels/error_control/test_force_kinks.py")
 VECTORS = ("tests/kernels/simd/test_vector_nan.py",)
 FAILURES_W = ("tests/integrate/test_not_finite.py", "-k", "first_bead")
 FASTMATH = ("tests/integrate/test_not_finite.py", "tests/kernels/equations/test_motion.py", "-k",
@@ -25,14 +25,14 @@ EVENT_TESTS = ("tests/kernels/test_event_tests.py",)
 JUMPS_LOCATED = ("tests/kernels/forces/test_largest_forces.py::test_a_jump_is_read_where_the_overlap_vanishes",)
 STEP_TOUCH = ("tests/numerics/test_fixed_step_touches.py", "-k", "1e-06-True")
 
-#: Brief touches and adaptive steps.
+#: Brief touches and steps with error control.
 TOUCHES = ("tests/numerics/test_touches.py", "-k", "none_is_invented and True or moment_of_a_touch or two_touches")
 GRAZING = ("tests/numerics/test_events.py", "-k", "brief_touch")
 
 #: Coefficients and orders of convergence.
 TABLEAU = ("tests/kernels/dop853/test_tableau.py",)
 RK4_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and rk4-closed")
-ADAPTIVE_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
+DOP853_ORDER = ("tests/numerics/test_orders.py", "-k", "dop853-none or follows_its_tolerance and linear")
 CUT_ENERGY = ("tests/physics/test_energy.py", "-k", "account_closes and linear-cut-0.0-0.0")
 CUT_ORDER = ("tests/numerics/test_orders.py", "-k", "has_its_order and dop853-cut")
 FORCE_FREE = ("tests/numerics/test_force_free.py",)

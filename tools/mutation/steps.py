@@ -1,4 +1,4 @@
-"""Mutants of how time goes on: the equations of motion, fixed steps and what they give back, adaptive steps."""
+"""Mutants of how time goes on: the equations of motion, fixed steps and what they give back, error control."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ from . import killers as k
 from .mutant import Mutant
 
 _MOTION, _FIXED, _EVENTS = "kernels/equations/motion.py", "kernels/rk4/step.py", "kernels/rk4/contact_events.py"
-_DOP853_RUN, _DOP853, _TABLEAU = "kernels/dop853/run.py", "kernels/dop853/step.py", "kernels/dop853/tableau.py"
-_BRACKET, _CUBIC = "kernels/dop853/bracket.py", "kernels/contact_cubic.py"
+_LOCATED, _CONTROLLED_RUN = "kernels/error_control/located_step.py", "kernels/error_control/run.py"
+_CONTROL, _DOP853, _TABLEAU = "kernels/error_control/step.py", "kernels/dop853/step.py", "kernels/dop853/tableau.py"
+_BRACKET, _CUBIC = "kernels/error_control/bracket.py", "kernels/contact_cubic.py"
 _SAMPLING, _ENGINE = "kernels/rk4/run.py", "integrate/engine.py"
 
 MOTION = (
@@ -64,45 +65,45 @@ FIXED = (
            "of several events in a step a later one is taken first", k.STEP_EVENTS),
 )
 
-ADAPTIVE = (
+ERROR_CONTROLLED = (
     Mutant("step-over-a-touch", _BRACKET, "return reach > 0.0", "return reach > 1e300",
-           "a contact that closes and opens inside an adaptive step is not looked for", k.GRAZING),
+           "a contact that closes and opens inside a step with error control is not looked for", k.GRAZING),
     Mutant("touch-bound-from-below", _BRACKET, "reach = max(sign", "reach = min(sign",
            "touches are looked for only where both straight lines meet them", k.STEP_EVENTS),
     Mutant("touch-only-from-open", _BRACKET, "if not (sign * s0 > 0.0 and sign * s1 < 0.0):",
            "if not (sign * s0 > 0.0 and sign * s1 < 0.0 and sign > 0.0):",
            "a contact that lets go and closes again inside a step is not seen", k.STEP_EVENTS),
-    Mutant("lands-in-front", _DOP853_RUN, "target = -past if before else past", "target = past if before else -past",
+    Mutant("lands-in-front", _LOCATED, "target = -past if before else past", "target = past if before else -past",
            "steps end in front of the event they were aimed at", k.TOUCHES),
-    Mutant("event-not-landed-on", _DOP853_RUN,
+    Mutant("event-not-landed-on", _LOCATED,
            "h = locate_event(method, step, limit, aimed, counts)", "pass",
            "the moment of a contact is as inexact as the dense output", k.TOUCHES),
-    Mutant("event-tolerance-loose", _DOP853_RUN, "_OVERLAP_AIM = 1e-15", "_OVERLAP_AIM = 1e-12",
+    Mutant("event-tolerance-loose", _LOCATED, "_OVERLAP_AIM = 1e-15", "_OVERLAP_AIM = 1e-12",
            "steps end a thousand times as far behind their events", k.TOUCHES),
-    Mutant("driver-from-dense-output", _DOP853, "(step.t + x * step.h)", "(step.t + step.h)",
+    Mutant("driver-from-dense-output", _CONTROL, "(step.t + x * step.h)", "(step.t + step.h)",
            "the driver stands still while its contact is looked for", k.TOUCHES),
-    Mutant("events-not-located", _DOP853_RUN, "        if aimed < 0 or x > 1.0 - _NEAR_END:",
+    Mutant("events-not-located", _LOCATED, "        if aimed < 0 or x > 1.0 - _NEAR_END:",
            "        aimed = -1\n        if aimed < 0 or x > 1.0 - _NEAR_END:",
-           "a smooth method steps across every contact event", k.ADAPTIVE_ORDER),
-    Mutant("last-event-of-a-step", _DOP853_RUN, "if root < first and 0.1", "if root <= 2.0 and 0.1",
+           "a smooth method steps across every contact event", k.DOP853_ORDER),
+    Mutant("last-event-of-a-step", _LOCATED, "if root < first and not", "if root <= 2.0 and not",
            "of several contacts that change in a step the last is taken", k.TOUCHES),
-    Mutant("rejection-loose", _DOP853_RUN, "        if error <= 1.0:", "        if error <= 1000.0:",
-           "steps a thousand times worse than asked for are accepted", k.ADAPTIVE_ORDER),
+    Mutant("rejection-loose", _CONTROL, "        if error <= 1.0:", "        if error <= 1000.0:",
+           "steps a thousand times worse than asked for are accepted", k.DOP853_ORDER),
     Mutant("error-unit-loose", _DOP853, "unit = 1.0 / (tolerance * largest)", "unit = 1.0 / (1000.0 * tolerance * largest)",
-           "the tolerance is a thousandth of what it says", k.ADAPTIVE_ORDER),
+           "the tolerance is a thousandth of what it says", k.DOP853_ORDER),
     Mutant("error-of-displacements-only", _DOP853, "for row in range(2):\n        largest", "for row in range(1):\n        largest",
-           "errors of the velocities are not controlled", k.ADAPTIVE_ORDER),
-    Mutant("step-too-small-unseen", _DOP853_RUN, "        if t + 0.1 * h == t:", "        if t + 0.1 * h < t:",
+           "errors of the velocities are not controlled", k.DOP853_ORDER),
+    Mutant("step-too-small-unseen", _CONTROL, "        if is_too_small(0.1 * h, t, trajectory.drive.beta):", "        if is_too_small(2.0 + h, t, trajectory.drive.beta):",
            "a step that shrinks to nothing goes on for ever", ("tests/hard_cases/test_outcomes.py::test_step_too_small",)),
-    Mutant("chatter-unseen", _DOP853_RUN, "if events > EVENTS_PER_CONTACT * (bodies - 1):", "if events < 0:",
+    Mutant("chatter-unseen", _CONTROLLED_RUN, "if events > EVENTS_PER_CONTACT * (bodies - 1):", "if events < 0:",
            "contacts that open and close without end are followed without a word",
            ("tests/hard_cases/test_outcomes.py::test_endless_touches_fail_with_a_sentence",)),
-    Mutant("events-of-all-periods", _DOP853_RUN, "t, point, events = 0.0, 0, 0", "t, point = 0.0, 0",
+    Mutant("events-of-all-periods", _CONTROLLED_RUN, "t, point, events = 0.0, 0, 0", "t, point = 0.0, 0",
            "a long run is called chatter", k.MANY_PERIODS),
-    Mutant("samples-at-step-ends", _DOP853_RUN, "min(1.0, (at - t) / h)", "1.0",
-           "samples are taken where a step happens to end", k.ADAPTIVE_ORDER),
+    Mutant("samples-at-step-ends", _CONTROLLED_RUN, "min(1.0, (at - t) / h)", "1.0",
+           "samples are taken where a step happens to end", k.DOP853_ORDER),
     Mutant("dense-coefficient", _DOP853, "value = (value + rows[4]) * x", "value = (value + rows[4]) * back",
-           "the dense output is wrong inside a step", k.ADAPTIVE_ORDER),
+           "the dense output is wrong inside a step", k.DOP853_ORDER),
     Mutant("dop853-stage-weight", _TABLEAU, "(5, 4): 0.12546768756682242", "(5, 4): 0.12546768766682242",
            "the tenth digit of a stage weight", k.TABLEAU),
     Mutant("dop853-stage-time", _TABLEAU, "    0.6512820512820513,", "    0.6512820512810513,",
@@ -128,4 +129,4 @@ CLOCK = (
            "the top of a force is looked for on the wrong side", k.UNLIKE),
 )
 
-STEPS = MOTION + FIXED + ADAPTIVE + CLOCK
+STEPS = MOTION + FIXED + ERROR_CONTROLLED + CLOCK

@@ -9,7 +9,7 @@ from typing import Any
 from granchain_core import Scene, Settled
 from granchain_core.accuracy import Lesson, Row, WorkPrecision, cheapest, work_precision
 from granchain_core.kernels.batch_size import machine
-from granchain_core.precompile.pieces import ACCURACY_KERNELS, ADAPTIVE_KERNELS, FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import ACCURACY_KERNELS, DOP853_KERNELS, FIXED_STEP_KERNELS
 
 from ...format import duration, short_error
 from ...plots.accuracy import Annotations
@@ -109,7 +109,7 @@ class AccuracyPage(Page):
         def report(found: WorkPrecision) -> None:
             job.next_tick(self._show, list(found.rows), found.lesson, described_reference(found), found.agreement)
 
-        job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, ACCURACY_KERNELS)
+        job.compile(scene, FIXED_STEP_KERNELS, DOP853_KERNELS, ACCURACY_KERNELS)
         job.report("measuring")
         work_precision(scene, job.stop, report=report, pause=job.give_way,
                        progress=lambda done: job.next_tick(self._progress, done))

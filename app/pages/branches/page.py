@@ -10,7 +10,7 @@ from typing import Any
 from granchain_core import Scene, Settled
 from granchain_core.execution.stop import Stop
 from granchain_core.orbits import Arm, Branch, Continuation, begin_branch, switch_to_doubled
-from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, BRANCH_KERNELS, FIXED_STEP_KERNELS
+from granchain_core.precompile.pieces import BRANCH_KERNELS, DOP853_KERNELS, FIXED_STEP_KERNELS
 
 from ...plots.branches import BranchRows
 from ...serve.computing.worker_pools import LONG
@@ -161,7 +161,7 @@ class BranchesPage(Page):
     def _follow_in_thread(self, begin: Callable[[Stop], list[Branch]], scene: Scene, job: Job) -> None:
         """In a worker thread: follow the branches, report every `_MESSAGE_EVERY` seconds, and let pictures go first."""
         sent = 0.0
-        job.compile(scene, FIXED_STEP_KERNELS, ADAPTIVE_KERNELS, BRANCH_KERNELS)
+        job.compile(scene, FIXED_STEP_KERNELS, DOP853_KERNELS, BRANCH_KERNELS)
         job.report("settling")
         for branch in begin(job.stop):
             continuation = Continuation(branch, job.stop)

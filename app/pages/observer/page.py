@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from granchain_core import Scene, Settled
-from granchain_core.precompile.pieces import ADAPTIVE_KERNELS, OBSERVER_KERNELS
+from granchain_core.precompile.pieces import DOP853_KERNELS, OBSERVER_KERNELS
 
 from ...serve.computing.worker_pools import PICTURES
 from ...session.host import Host
@@ -73,7 +73,7 @@ class ObserverPage(Page):
     def _next_in_thread(self, scene: Scene, settled: Settled | None, run: ObserverRun | None, wishes: list[str],
                         job: Job) -> None:
         """In a worker thread: compute one more period of this scene's run; `run` is the one so far."""
-        job.compile(scene, ADAPTIVE_KERNELS, OBSERVER_KERNELS)
+        job.compile(scene, DOP853_KERNELS, OBSERVER_KERNELS)
         mine = settled if settled is not None and settled.run.scene.digest == scene.digest else None
         began = False
         if run is None or run.scene.digest != scene.digest or "again" in wishes:

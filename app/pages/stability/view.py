@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from granchain_core import Settled
-from granchain_core.integrate.methods import FIXED_STEP
+from granchain_core.integrate.methods import RK4_SPLIT
 from granchain_core.orbits import Orbit
 from granchain_core.orbits.modes import Mode
 from granchain_core.results.regime import exponent_words, modulus_words
@@ -152,7 +152,7 @@ def evidence(settled: Settled, analysis: OrbitAnalysis | None, section: Section 
     row("settled by", f"{cost.method}, {cost.steps} steps, {duration(cost.wall_s)}",
         "Method, steps and computing time of the settled picture.")
     if section is not None:
-        row("section", f"{section.periods} periods at {section.samples} phases, {FIXED_STEP}",
+        row("section", f"{section.periods} periods at {section.samples} phases, {RK4_SPLIT}",
             "Computed again from the same start by the fixed-step method.")
     return rows
 

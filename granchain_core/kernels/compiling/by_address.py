@@ -11,14 +11,14 @@ from typing import Any
 from numba import types
 from numba.extending import intrinsic
 
-from .entry import version_for
+from .entry import specialization_for
 
 
 def address_of(kernel: Any, *arguments: Any) -> int:
-    """Address of a kernel's version for arguments of these types, compiled first where it is not there yet."""
-    _, version = version_for(kernel, arguments)
+    """Address of a kernel's specialization for arguments of these types, compiled first where it is not there yet."""
+    _, specialization = specialization_for(kernel, arguments)
     # what Numba calls a library is the code of this one specialization
-    return int(version.library.get_pointer_to_function(version.fndesc.llvm_func_name))
+    return int(specialization.library.get_pointer_to_function(specialization.fndesc.llvm_func_name))
 
 
 @intrinsic

@@ -1,4 +1,4 @@
-"""The folder of compiled kernels: which one it is, who may write to it, and when folders of other versions are removed.
+"""The folder of compiled kernels: which one it is, who may write to it, and when those of other sources are removed.
 
 Its files are unpickled and run (cache.py), so it must be one that nobody else can have written to.
 """
@@ -24,15 +24,15 @@ from .sources import source_bytes_hash, sources_hash
 _LOG = logging.getLogger("granchain")
 #: How the names of the files begin by which warm.py marks what is compiled.
 MARK = "compiled-"
-#: Folders of other versions are removed when they have not been used for this long [s].
+#: Folders of other sources are removed when they have not been used for this long [s].
 _MONTH = 30 * 86400.0
 #: Rights of the folder of kernels and of its files, less those that the umask takes away: whatever it leaves to the
 #: group, only this user writes.
 FOLDER_RIGHTS, FILE_RIGHTS = 0o755, 0o644
 #: Rights of others than the owner to write.
 _OTHERS = stat.S_IWGRP | stat.S_IWOTH
-#: Names of the folders of all versions.
-_VERSIONS = re.compile(r"kernels-[0-9a-f]{12}")
+#: Names of the folders of kernels: each has a hash of the sources, and of what else decides the code (sources.py).
+_FOLDERS = re.compile(r"kernels-[0-9a-f]{12}")
 
 
 def cache_folder() -> Path | None:
@@ -44,7 +44,7 @@ def cache_folder() -> Path | None:
     """
     base, problem = _chosen_base(), "there is no home folder"
     if base is not None:
-        name = _version_in(base)
+        name = _name_in(base)
         try:
             base.mkdir(mode=FOLDER_RIGHTS, parents=True, exist_ok=True)
             if not os.environ.get("GRANCHAIN_CACHE"):
@@ -52,31 +52,31 @@ def cache_folder() -> Path | None:
             (base / name).mkdir(mode=FOLDER_RIGHTS, exist_ok=True)
             with tempfile.TemporaryFile(dir=base / name):
                 pass
-            open_to_others = _open_to_others(base, base / name)
-            if open_to_others is None:
+            unsafe = _why_unsafe(base, base / name)
+            if unsafe is None:
                 _note_use(base, base / name)
                 return base / name
-            problem = f"others may write to {open_to_others}"
+            problem = unsafe
         except OSError as denied:
             problem = f"{base}: {denied.strerror or denied}"
-            if _holds_kernels(base / name) and _open_to_others(base, base / name) is None:
+            if _holds_kernels(base / name) and _why_unsafe(base, base / name) is None:
                 return base / name
     return _temporary_folder(problem)
 
 
-def _version_in(base: Path) -> str:
-    """Name of the folder of these sources: the one in `base` that knows their wording, else by parsing them."""
-    wording = _wording_file()
+def _name_in(base: Path) -> str:
+    """Name of the folder of these sources: that of the one in `base` with their fingerprint, else by parsing them."""
+    fingerprint = _fingerprint_file()
     with contextlib.suppress(OSError):
         for folder in base.iterdir():
-            if _VERSIONS.fullmatch(folder.name) and (folder / wording).exists():
+            if _FOLDERS.fullmatch(folder.name) and not folder.is_symlink() and (folder / fingerprint).exists():
                 return folder.name
     return f"kernels-{sources_hash()}"
 
 
 @functools.cache
-def _wording_file() -> str:
-    """Name of the empty file by which a folder knows a wording of its sources."""
+def _fingerprint_file() -> str:
+    """Name of the empty file that records a hash of the sources' bytes, so that unchanged sources are not parsed."""
     return f"sources-{source_bytes_hash()}"
 
 
@@ -104,18 +104,20 @@ def _close_to_others(base: Path) -> None:
         base.chmod(stat.S_IMODE(found.st_mode) & ~_OTHERS)
 
 
-def _open_to_others(base: Path, folder: Path) -> Path | None:
-    """The folder of kernels, or the one it is in, if others than this user and the administrator may write there.
+def _why_unsafe(base: Path, folder: Path) -> str | None:
+    """Why others than this user and the administrator may have written kernels in `folder`; None if they cannot.
 
     The files are unpickled and run. Whoever may write to `base` could put another folder in the place of the one that
-    was looked at, unless the sticky bit leaves every folder in it to its owner.
+    was looked at, unless the sticky bit leaves every folder in it to its owner. A link in a sticky folder may be
+    another user's, who could let it point to this user's folder now and elsewhere later.
     """
     if not hasattr(os, "getuid"):
         return None
-    for one, sticky in ((base, stat.S_ISVTX), (folder, 0)):
-        found = one.stat()
+    for one, found, sticky in ((base, base.stat(), stat.S_ISVTX), (folder, folder.lstat(), 0)):
+        if stat.S_ISLNK(found.st_mode):
+            return f"{one} is a link"
         if found.st_uid not in (0, os.getuid()) or (found.st_mode & _OTHERS and not found.st_mode & sticky):
-            return one
+            return f"others may write to {one}"
     return None
 
 
@@ -125,7 +127,7 @@ def _temporary_folder(problem: str) -> Path | None:
         base = Path(tempfile.gettempdir()) / f"granchain-{os.getuid()}"
         try:
             if _is_ours(base):
-                folder = base / _version_in(base)
+                folder = base / _name_in(base)
                 if _is_ours(folder):
                     _note_use(base, folder)
                     return folder
@@ -147,11 +149,11 @@ def _is_ours(folder: Path) -> bool:
 
 
 def _note_use(base: Path, used: Path) -> None:
-    """Note that a folder is used and by which wording, and remove folders that have not been used for a month."""
-    (used / _wording_file()).touch()
+    """Note that a folder is used and by which sources, and remove folders that have not been used for a month."""
+    (used / _fingerprint_file()).touch()
     os.utime(used)
     for folder in base.iterdir():
-        if _VERSIONS.fullmatch(folder.name) and folder != used:
+        if _FOLDERS.fullmatch(folder.name) and folder != used:
             with contextlib.suppress(OSError):  # another process may remove it as well
                 found = folder.lstat()
                 if stat.S_ISDIR(found.st_mode) and time.time() - found.st_mtime > _MONTH:

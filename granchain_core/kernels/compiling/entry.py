@@ -23,7 +23,7 @@ def entry(kernel: Any, *arguments: Any) -> Callable[..., Any]:
     It does not check what it is given unless `CHECK_TYPES`: later arguments must have the same types, layouts of arrays
     included.
     """
-    types, specialization = version_for(kernel, arguments)
+    types, specialization = specialization_for(kernel, arguments)
     compiled: Callable[..., Any] = specialization.entry_point
     if not CHECK_TYPES:
         return compiled
@@ -52,7 +52,11 @@ def _check_types(kernel: Any, types: tuple[Any, ...], arguments: tuple[Any, ...]
 
 
 class Entries:
-    """The specializations of one kernel, by keys of the caller's: arguments with equal keys must have equal types."""
+    """The specializations of one kernel, by keys of the caller's: arguments with equal keys must have equal types.
+
+    So the caller keeps the type and the layout of what is not in its key, such as the arrays of a call; `CHECK_TYPES`
+    compares them.
+    """
 
     def __init__(self, kernel: Any) -> None:
         self._kernel = kernel
@@ -75,7 +79,7 @@ def types_of(value: Any) -> Any:
     return type(value)
 
 
-def version_for(kernel: Any, arguments: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
+def specialization_for(kernel: Any, arguments: tuple[Any, ...]) -> tuple[tuple[Any, ...], Any]:
     """Types of these arguments and a kernel's specialization for them, compiled first where it is not there yet."""
     types = _types(kernel, arguments)
     if types not in kernel.overloads:

@@ -1,4 +1,4 @@
-"""Numba types of the functions that kernels call: how a call finds the one compiled version it shares with others.
+"""Numba types of the functions that kernels call: how a call finds the one specialization it shares with others.
 
 By itself Numba compiles a function again for each number that is written out in a call, and a function made by
 `overload` again for each set of options of its callers. Here a call asks for a version by the types of its arguments

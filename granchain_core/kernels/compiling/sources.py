@@ -1,7 +1,7 @@
 """Hashes of the kernels' sources, by which compiled code is found again (cache.py).
 
 Comments, docstrings and line breaks change no instruction, so compiled code is named by a hash of the parsed sources.
-Parsing takes a fifth of a second, so the sources are hashed as they are worded as well, which takes hardly any time.
+Parsing takes a fifth of a second, so the bytes of the sources are hashed as well, which takes hardly any time.
 """
 
 from __future__ import annotations

@@ -5,9 +5,9 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any, NamedTuple
 
-from ..compiling.jit import inline_llvm, inline_numba
-from ..dop853.step import RESOLUTION
+from ..compiling.jit import inline_numba
 from ..dop853.tableau import DENSE_EVALUATIONS, STAGES
+from ..error_control.step import is_too_small
 from ..flow.event_time import nonnegative_root
 from ..simd.sums import inverse_sixteenth_root, largest_of
 from ..simd.vector import at, splat8, with_first
@@ -74,12 +74,6 @@ class CheckedStep(NamedTuple):
     x: float
     prepared: bool
     exceeds: bool
-
-
-@inline_llvm
-def is_too_small(dt, t, beta):
-    """Whether a step in time is lost in the rounding of the time."""
-    return not beta * dt > RESOLUTION * (1.0 + beta * t)
 
 
 @inline_numba

@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..compiling.jit import internal
-from ..dop853.bracket import maximum_inside, value_at
-from ..dop853.step import TURN_SECTIONS, interpolant
+from ..dop853.step import interpolant
 from ..effects.preload import overlap
+from ..error_control.bracket import maximum_inside, value_at
+from ..error_control.step import TURN_SECTIONS
 
 #: A fraction of the step is checked when it changes by less than this; the next change would be far smaller.
 _ROOT_CHANGE = 1e-9
@@ -59,8 +60,8 @@ def _(quantity, step, x):
 def zero_between(p, low, high, f_low, f_high):
     """Where the polynomial passes from negative, f_low, to positive, f_high: secants within a bracket, else its middle.
 
-    They need fewer evaluations than `root_inside` (dop853/bracket.py), which halves a value at each end that stays.
-    Where 60 do not suffice, the last estimate is returned.
+    They need fewer evaluations than `root_inside` (error_control/bracket.py), which halves a value at each end that
+    stays. Where 60 do not suffice, the last estimate is returned.
     """
     last, x, f_last, f = low, high, f_low, f_high
     for _ in range(60):

@@ -10,9 +10,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 from ..compiling.jit import inline_llvm, inline_numba, kernel
-from ..dop853.step import GOAL_TOLERANCE, evaluate
 from ..effects.driver import driver_displacement, driver_velocity
 from ..equations.chain_in_vector import chain_values, load_row
+from ..error_control.step import GOAL_TOLERANCE, evaluate, is_too_small
 from ..flow.event_time import smooth_power
 from ..forces.largest import SAMPLE, record_closing
 from ..samples import first_not_finite, write_sample
@@ -29,7 +29,7 @@ from ..status import (
     STEP_TOO_SMALL,
     STEPS,
 )
-from .accepted_step import ATTEMPTS, RunContext, StepBegin, accepted_step, is_too_small, new_units
+from .accepted_step import ATTEMPTS, RunContext, StepBegin, accepted_step, new_units
 from .chain import (
     DISPLACEMENT,
     ELASTIC,
@@ -181,7 +181,7 @@ def write_beads(context, begin, y, bodies):
 
 @kernel
 def run_dop853_root(method, work, trajectory, sample_range, samples, out):
-    """Run over a range of the grid, as `run_dop853` (dop853/run.py) does, with the chain's own workspace `work`."""
+    """Run over a range of the grid, as `run_error_controlled` (error_control/run.py), on the workspace `work`."""
     slots, drive, y, workspace = trajectory
     points, grid, every, counts = sample_range.points, sample_range.grid, sample_range.every, out.counts
     bodies, period = slots.chain.inverse_mass.size, drive.period

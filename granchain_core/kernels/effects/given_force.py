@@ -8,7 +8,7 @@ Values     Sampled: piece (4,), the cubic of the force between two samples in th
 Terms      prescribe_primitive and prescribe_force put the force into contact 0 (Sampled) or into the contact named by
            the coupling. Elastic force e_0 and G_0 are copied separately, so that in w-variables nothing jumps in the
            observer either
-Methods    Sampled: fixed steps, from sample to sample. ObserverCoupling: the adaptive method; the quadrature errors
+Methods    Sampled: fixed steps, from sample to sample. ObserverCoupling: dop853; the quadrature errors
            that split steps subtract (rk4/step.py) are not copied
 Absent     nothing is prescribed
 """

@@ -31,8 +31,8 @@ def stored_on_bead(slots, i, u):
 
 
 @internal
-def power_lost_on_bead(slots, i, v):
-    """Power that these forces take from bead i with velocity v and do not store."""
+def power_lost_on_bead(slots, i, u, v):
+    """Power that these forces take from bead i at displacement u with velocity v and do not store."""
     return 0.0
 
 
@@ -54,14 +54,14 @@ def add_force_trace(slots, i, trace, u, v, weight):
 
 
 @by_slot
-def account_for_bodies(account, slots, dy):
+def account_for_bodies(account, slots, y, dy):
     """Add the power lost by all beads to the integrand of Q; needs the velocities in dy. Absent: nothing is
     integrated."""
 
 
 @account_for_bodies.of(EnergyAccount)
-def _(account, slots, dy):
+def _(account, slots, y, dy):
     lost = 0.0
     for i in range(1, slots.chain.inverse_mass.size - 1):
-        lost += power_lost_on_bead(slots, i, dy[i])
+        lost += power_lost_on_bead(slots, i, y[i], dy[i])
     dy[dy.size - 1] += lost

@@ -72,8 +72,8 @@ class Forces(NamedTuple):
 class Trajectory(NamedTuple):
     """What is integrated: the chain's slots, the drive, state y (M,) and the method's workspace.
 
-    `drive` is a `DriveCycle` for steps of any size (dop853/step.py), a `DriveTable` for equal ones (rk4/step.py). M is
-    twice the number of bodies N + 2, and two more with an energy account.
+    `drive` is a `DriveCycle` for steps of any size (error_control/step.py), a `DriveTable` for equal ones
+    (rk4/step.py). M is twice the number of bodies N + 2, and two more with an energy account.
     """
 
     slots: Slots
@@ -107,7 +107,7 @@ def motion(slots, u0, v0, y, dy, forces):
     for i in range(1, bodies - 1):
         dy[bodies + i] = inverse_mass[i] * force_on_bead(slots, i, e[i - 1] - e[i], y[i], dy[i])
     account_rates(slots.account, slots, y, dy, e)
-    account_for_bodies(slots.account, slots, dy)
+    account_for_bodies(slots.account, slots, y, dy)
 
 
 @internal

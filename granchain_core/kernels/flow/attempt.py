@@ -13,21 +13,21 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compiling.jit import by_slot, inline_numba, internal
-from ..dop853.bracket import may_turn, value_at
-from ..dop853.step import (
-    Overlap,
-    combine,
-    crossing,
-    dense_coefficients,
-    drive_phase,
-    error_norm,
-    evaluate,
-    shrunk,
-    turning_point,
-)
+from ..dop853.step import combine, dense_coefficients, error_norm
 from ..dop853.tableau import ALL_STAGES, DENSE_EVALUATIONS, STAGES, C
 from ..effects.preload import overlap
 from ..equations.motion import Trajectory
+from ..error_control.bracket import may_turn, value_at
+from ..error_control.step import (
+    Overlap,
+    crossing,
+    drive_phase,
+    evaluate,
+    growth,
+    is_too_small,
+    shrunk,
+    turning_point,
+)
 from ..status import DONE, EVALUATIONS, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .event_time import Time, rate_at, slope_in_x, time_at
 
@@ -92,18 +92,20 @@ def attempt_in_time(method, problem, time, h):
 
 @inline_numba
 def accepted_in_time(method, problem, time, h, counts):
-    """Shrink a step until its error is tolerable; returns (status, size, error over the tolerance)."""
+    """Shrink a step until its error is tolerable; returns (status, size, factor for the next one)."""
+    rejected = False
     while True:
         error = attempt_in_time(method, problem, time, h)
         counts[EVALUATIONS] += STAGES
         if not np.isfinite(error):
-            return NOT_FINITE, h, error
+            return NOT_FINITE, h, 1.0
         if error <= 1.0:
-            return DONE, h, error
+            return DONE, h, growth(method, error, rejected)
         counts[REJECTED] += 1
-        h = shrunk(h, error)
-        if not time.start + 0.1 * (time_at(time, h) - time.start) > time.start:
-            return STEP_TOO_SMALL, h, error
+        rejected = True
+        h = shrunk(method, h, error)
+        if is_too_small(0.1 * (time_at(time, h) - time.start), time.start, problem.trajectory.drive.beta):
+            return STEP_TOO_SMALL, h, 1.0
 
 
 @inline_numba

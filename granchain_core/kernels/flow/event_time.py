@@ -16,8 +16,8 @@ from math import sqrt
 from typing import NamedTuple
 
 from ..compiling.jit import by_slot, internal
-from ..dop853.step import evaluate
 from ..effects.dissipation import LAWS, exponent
+from ..error_control.step import evaluate
 
 #: Kinds of time: after an onset, plain, before a release.
 AFTER, PLAIN, BEFORE = 1, 0, -1

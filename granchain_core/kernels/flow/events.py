@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiling.jit import inline_numba, internal
-from ..dop853.step import growth, shrunk
 from ..dop853.tableau import STAGES
 from ..effects.preload import overlap
+from ..error_control.step import is_too_small, shrunk
 from ..status import DONE, EVALUATIONS, LOST, NOT_FINITE, REJECTED, STEP_TOO_SMALL
 from .attempt import accepted_in_time, attempt_in_time, first_event
 from .event_time import AFTER, BEFORE, PLAIN, rate_at, size_of, smooth_power, time_at, time_from
@@ -101,8 +101,8 @@ def step_to_release(method, problem, t, goal, c, counts):
     while error > 1.0:
         located = False
         counts[REJECTED] += 1
-        h = shrunk(h, error)
-        if not t + 0.1 * (time_at(time, h) - t) > t:
+        h = shrunk(method, h, error)
+        if is_too_small(0.1 * (time_at(time, h) - t), t, drive.beta):
             return STEP_TOO_SMALL, time, h, -1, goal
         error = attempt_in_time(method, problem, time, h)
         counts[EVALUATIONS] += STAGES
@@ -126,7 +126,7 @@ def flow_step(method, problem, t, onset, counts):
     usual = time_from(AFTER if onset > -np.inf else PLAIN, onset, t, smooth_power(slots.dissipation))
     time, h = usual, size_of(usual, dt)
     for _ in range(_STEP_ATTEMPTS):
-        located, error = -1, 0.0
+        located, factor = -1, 1.0
         if aiming:
             status, time, h, located, goal = step_to_release(method, problem, t, goal, target, counts)
             if status == LOST:
@@ -134,14 +134,14 @@ def flow_step(method, problem, t, onset, counts):
                 time, h = usual, size_of(usual, dt)
                 continue
         else:
-            status, h, error = accepted_in_time(method, problem, time, h, counts)
+            status, h, factor = accepted_in_time(method, problem, time, h, counts)
             dt = min(dt, time_at(time, h) - t)
         if status != DONE:
             return status, time, h, -1
         contact, x = first_event(problem, time, h, located, counts)
         if contact < 0:
             if not aiming:
-                next_step[0] = next_dt(time, h, error, next_step[0], limit)
+                next_step[0] = next_dt(time, h, factor, next_step[0], limit)
             return DONE, time, h, located
         if x * h == 0.0:
             return DONE, time, 0.0, contact
@@ -157,8 +157,8 @@ def flow_step(method, problem, t, onset, counts):
 
 
 @inline_numba
-def next_dt(time, h, error, before, limit):
+def next_dt(time, h, factor, before, limit):
     """The next step in t after an accepted one of size h in x; not less than before where only the limit cut it."""
     end = time_at(time, h)
-    dt = time_at(time, h + h * growth(error)) - end
+    dt = time_at(time, h + h * factor) - end
     return max(dt, before, _SHORTEST_STEP) if end >= limit else max(dt, _SHORTEST_STEP)

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..compiling.jit import by_slot, internal, kernel
-from ..dop853.step import evaluate, new_scale
 from ..effects.preload import overlap
 from ..equations.motion import copy
+from ..error_control.step import evaluate, new_scale
 from ..samples import first_not_finite
 from ..status import CANCELLED, CHATTER, DONE, EVENTS, NOT_FINITE, STEPS, TOO_MANY_STEPS
 from .event_time import time_at
@@ -21,7 +21,7 @@ from .tangent import Tangent, propagate
 #: Most steps in one drive period.
 _MOST_STEPS = 5_000_000
 #: A step that ends closer to the period's end than this, in periods, ends there. It covers the rounding of a time and
-#: of its map to x. The adaptive method's `GOAL_TOLERANCE` is larger, because it also meets the times of samples,
+#: of its map to x. `GOAL_TOLERANCE` (error_control/step.py) is larger, because it also meets the times of samples,
 #: products that are rounded themselves; here it would only add to the error of the map.
 _PERIOD_END = 1e-14
 

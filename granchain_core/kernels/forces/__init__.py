@@ -4,5 +4,5 @@
 * rk4 and the naive methods: the same cubics; crossings.py finds the closings.
 * SIMD along a short or a long chain: quartics through equal steps (peaks.py), events as in scalar code.
 * Batches: peaks.py and crossings.py, called from batch/step.py.
-* dop853: its dense output (dop853/force_search.py).
+* Methods with error control: their dense output (error_control/force_search.py).
 """

@@ -45,7 +45,9 @@ from .step import tabulated_displacement, tabulated_velocity
 def split_short_step(short, trajectory, j, u_end, v_end, out):
     """Repeat step j in the workspace from contact event to contact event, and overwrite its end there.
 
-    The driver is at u_end, moving at v_end, at the end.
+    `split` (step.py) is the same in scalar code, and the reference; tests/kernels/simd/test_simd.py compares runs.
+    The loops are apart since one has the state in vectors, the other in the trajectory's arrays. The driver is
+    at u_end, moving at v_end, at the end.
     """
     slots, drive, _, _ = trajectory
     h, dtheta, theta = drive.h, drive.dtheta, j * drive.dtheta

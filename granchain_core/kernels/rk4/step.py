@@ -108,7 +108,7 @@ def may_change(slots, y, slope, end, end_slope):
 
     short_chain_steps.py and dop853_root/changes.py make the same test for all contacts at once, long_chain.py and
     forces/crossings.py for turns of the two end contacts; `contact_root` (contact_cubic.py), `may_turn`
-    (dop853/bracket.py) and `may_touch` (dop853_root/changes.py) ask further how near to zero the overlap comes. A
+    (error_control/bracket.py) and `may_touch` (dop853_root/changes.py) ask further how near to zero it comes. A
     batch looks for signs alone (batch/contact_correction.py): it corrects no touch within a step.
     tests/kernels/test_event_tests.py compares them.
     """

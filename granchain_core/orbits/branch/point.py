@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...errors import ComputationError
-from ...integrate import Engine, adaptive_setting
+from ...integrate import Engine, dop853_setting
 from ...integrate.scaling import scale_chain
-from ...kernels.dop853.orbit_record import OrbitRecord, record_orbit
+from ...kernels.error_control.orbit_record import OrbitRecord, record_orbit
 from ...kernels.forces.peaks import PEAKS, largest_forces
 from ...kernels.status import FULL
 from ...scene import Scene
@@ -41,7 +41,7 @@ class BranchPoint:
     forces are in N. `closings` (N + 1,) count how often each contact closes along the orbit: 0 if it is always
     open, −1 if it is always closed. `slope` (2N,) is the map's change with p. `residuals` are those of Newton's method,
     the last being the orbit's; `liouville` is how far ln |det| of the monodromy matrix is from ∫ trace. `turns` are the
-    turning points of all overlaps (kernels/dop853/orbit_record.py). `damped` is whether its chain loses energy.
+    turning points of all overlaps (kernels/error_control/orbit_record.py). `damped` is whether its chain loses energy.
     """
 
     knob: float
@@ -132,7 +132,7 @@ def rough_point(equations: BranchEquations, z: np.ndarray, tangent: np.ndarray, 
 def record_along(equations: BranchEquations, x: np.ndarray, value: float,
                  tolerance: float = _TOLERANCE) -> tuple[Engine, OrbitRecord]:
     """Largest forces and turning points of all overlaps along the way from the scaled state x."""
-    engine = Engine(equations.axis.scene_at(value), adaptive_setting(tolerance), 1, stop=equations.stop)
+    engine = Engine(equations.axis.scene_at(value), dop853_setting(tolerance), 1, stop=equations.stop)
     stepper, room = engine.stepper, _FIRST_ROOM * (equations.size // 2 + 1) * equations.period
     while True:
         engine.start_scaled(x)

@@ -9,7 +9,7 @@ from dataclasses import replace
 from ...execution.stop import Stop
 from ...integrate import following_setting
 from ...integrate.batch import can_share_batch
-from ...integrate.methods import ADAPTIVE, FIXED_STEP
+from ...integrate.methods import DOP853, RK4_SPLIT
 from ...scene import Scene
 from ..settling.single_chain import settle_or_failure, settled_alone
 from ..steady_state import SteadyState
@@ -26,7 +26,7 @@ def settling_methods(scene: Scene, each: str) -> str:
 
 def methods_alone(scene: Scene) -> str:
     """The methods by which a chain alone comes to its steady state and is computed there."""
-    return ADAPTIVE if following_setting(scene.cuts_tension).method == ADAPTIVE else f"{FIXED_STEP} or {ADAPTIVE}"
+    return DOP853 if following_setting(scene.cuts_tension).method == DOP853 else f"{RK4_SPLIT} or {DOP853}"
 
 
 def settle_starts(starts: Iterable[Start], stop: Stop) -> Iterator[SteadyState]:

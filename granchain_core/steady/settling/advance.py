@@ -97,7 +97,7 @@ class SettlingRun:
 
     def _steps_per_period(self) -> int:
         """Steps in a drive period; with error control their mean so far."""
-        if not METHODS[self.engine.setting.method].adaptive:
+        if not METHODS[self.engine.setting.method].error_control:
             return self.engine.grid
         return max(1, self.engine.counts.steps // max(1, self.regime.periods_run - self._first))
 

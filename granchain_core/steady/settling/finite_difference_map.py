@@ -1,7 +1,7 @@
 """The n-period stroboscopic map, its derivative by finite differences, and its fixed points.
 
 While a chain settles, claims near |μ| = 1 are tested with this map: its kernels are already compiled, and it allows cut
-tension, with the adaptive method in place of fixed steps. `StroboscopicMap` (orbits/stroboscopic_map.py), whose
+tension, with dop853 in place of fixed steps. `StroboscopicMap` (orbits/stroboscopic_map.py), whose
 derivative is the tangent flow, is for orbits that are asked for. Both agree on |μ| to 1e-5
 (tests/numerics/test_regime_labels.py).
 """

@@ -26,7 +26,7 @@ FIXED = ("rk4-split", "rk4")
 REFINES = tuple(0.5 * 1.1**k for k in range(66))
 #: Its methods with error control.
 ADAPTIVE = ("dop853", "dop853-root")
-#: The reference: the adaptive method at its finest; for the curve, where 300 points are needed, coarser.
+#: The reference: dop853 at its finest; for the curve, where 300 points are needed, coarser.
 FINEST, CURVE_TOLERANCE = 3e-15, 1e-9
 
 
@@ -40,7 +40,7 @@ def _scene(frequency: float = problem.FREQUENCY) -> Scene:
 
 
 def reference() -> Solved:
-    """The trajectory by the adaptive method at its finest; states are displacements and velocities."""
+    """The trajectory by dop853 at its finest; states are displacements and velocities."""
     samples = Engine(_scene(), Setting("dop853", tolerance=FINEST), problem.SAMPLES).record(
         problem.PERIODS * problem.SAMPLES)
     return Solved(np.hstack([samples.displacement, samples.velocity]), None)
@@ -64,7 +64,7 @@ def _recording(setting: Setting) -> Callable[[], Solved]:
 
 
 def reference_peaks(frequencies: np.ndarray, tolerance: float = CURVE_TOLERANCE) -> tuple[np.ndarray, np.ndarray]:
-    """Peaks of all points and whether each is periodic, by the adaptive method on all cores."""
+    """Peaks of all points and whether each is periodic, by dop853 on all cores."""
 
     def point(frequency: float) -> tuple[float, bool]:
         engine = Engine(_scene(frequency), Setting("dop853", tolerance=tolerance), 1)

@@ -1,4 +1,4 @@
-"""Batches of unequal beads move as the adaptive method says."""
+"""Batches of unequal beads move as dop853 says."""
 
 from __future__ import annotations
 

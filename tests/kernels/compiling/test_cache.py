@@ -124,7 +124,7 @@ def reworded(tree: Path) -> Path:
 
 def test_other_words_compile_nothing_and_another_number_does(compiled: tuple[Path, Path], tmp_path: Path) -> None:
     tree, cache = reworded(tmp_path / "one"), shutil.copytree(compiled[1], tmp_path / "cache")
-    for _ in ("parsed", "known by its wording"):
+    for _ in ("parsed", "known by its bytes"):
         hits, misses = hits_and_misses(cache, tree, PLACE)
         assert hits >= 1
         assert misses == 0
@@ -142,5 +142,5 @@ def test_the_kernels_of_whole_runs_are_loaded_from_disk_too(tmp_path: Path) -> N
         engine.periods(1)
         engine.record(2)
     hits, misses = hits_and_misses(None, touched(tmp_path / "one"), METHODS)
-    assert hits >= 3  # run_steps, run_dop853, evaluate_at_phase
+    assert hits >= 3  # run_steps, run_error_controlled, evaluate_at_phase
     assert misses == 0

@@ -329,6 +329,30 @@ def test_kernels_are_run_if_nobody_else_can_put_another_folder_in_their_place(
     assert safe or not writable or str(chosen) == f"others may write to {base}"
 
 
+@pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
+def test_a_link_in_place_of_a_folder_of_kernels_is_not_followed(
+        writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a sticky folder another user may have made it, and let it point elsewhere after it was looked at."""
+    def denied(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    base, own = tmp_path / "base", tmp_path / "own"
+    for folder in (base, own):
+        folder.mkdir(mode=0o755)
+    (own / "one.nbc").write_bytes(b"")
+    (own / cache_folder._fingerprint_file()).touch()
+    base.chmod(0o1777)
+    link = base / f"kernels-{cache_folder.sources_hash()}"
+    link.symlink_to(own)
+    (base / "kernels-000000000000").symlink_to(own)  # not found by the fingerprint either
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    chosen = str(cache_folder.cache_folder())
+    assert chosen == f"{link} is a link" if writable else "Permission denied" in chosen
+
+
 def test_the_users_own_cache_is_closed_to_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is granchain's alone, and earlier versions made it with the rights that a umask of 002 leaves to the group."""
     base = tmp_path / "granchain"
@@ -358,7 +382,7 @@ def test_without_the_compiler_nothing_is_imported(tmp_path: Path) -> None:
     assert done.returncode != 0 and "NUMBA_DISABLE_JIT is set" in done.stderr.splitlines()[-1]
 
 
-def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path: Path) -> None:
+def test_folders_of_other_sources_go_after_a_month_without_use(tmp_path: Path) -> None:
     own, old, young = (tmp_path / f"kernels-{name}" for name in (cache_folder.sources_hash(), "0" * 12, "1" * 12))
     foreign = tmp_path / "kernels-of-mine"
     for folder, days in ((own, 40), (old, 31), (young, 29), (foreign, 400)):

@@ -14,7 +14,7 @@ from granchain_core import branch, resonance_curve, scene
 from granchain_core.execution.stop import Stop
 from granchain_core.integrate import Engine
 from granchain_core.integrate.batch import Batch
-from granchain_core.integrate.methods import FIXED_STEP, METHODS, Setting
+from granchain_core.integrate.methods import METHODS, RK4_SPLIT, Setting
 from granchain_core.kernels.compiling import entry
 from granchain_core.kernels.samples import first_not_finite
 from granchain_core.scene.state import State
@@ -48,13 +48,13 @@ def test_every_method(method: str) -> None:
 
 @pytest.mark.parametrize("changes", CHAINS, ids=str)
 def test_every_kind_of_chain(changes: dict) -> None:
-    advance(FIXED_STEP, changes)
-    advance(FIXED_STEP, changes, account=True)
+    advance(RK4_SPLIT, changes)
+    advance(RK4_SPLIT, changes, account=True)
 
 
-def test_a_workspace_of_another_type_has_a_version_of_its_own() -> None:
+def test_a_workspace_of_another_type_has_a_specialization_of_its_own() -> None:
     """Tests take its vectors away from a stepper that has run with them."""
-    engine = Engine(scene("sec2"), Setting(FIXED_STEP), 4)
+    engine = Engine(scene("sec2"), Setting(RK4_SPLIT), 4)
     engine.record(2)
     engine.stepper.work = engine.stepper.work._replace(simd=None)
     assert np.isfinite(engine.record(2).force).all()

@@ -35,7 +35,7 @@ def hashed(folder: Path, text: str) -> str:
     ("#: A comment.", "#: Another comment,\n#: of two lines."), ("  # of a spring", ""), ('"""Docstring."""', '"""Other words."""'),
     ('"""Module."""\n', ""), ("\n\n\n", "\n\n\n\n"), ("x**power", "x ** power"), ("FACTOR * x**power + 1.0", "(FACTOR * x**power\n            + 1.0)"),
 ])
-def test_words_and_layout_do_not_name_the_code(old: str, new: str, tmp_path: Path) -> None:
+def test_comments_and_layout_keep_the_hash(old: str, new: str, tmp_path: Path) -> None:
     assert old in SOURCE
     assert hashed(tmp_path, SOURCE) == hashed(tmp_path, SOURCE.replace(old, new))
 
@@ -44,7 +44,7 @@ def test_words_and_layout_do_not_name_the_code(old: str, new: str, tmp_path: Pat
     ("2.0", "2.5"), ("2.0", "2"), ("1.5", "2.5"), ("* x", "- x"), ("fast=True", "fast=False"), ("FACTOR *", "FACTOR +"),
     ("import kernel", "import internal"), ("a text", "another"), ("@kernel(fast=True)\n", ""), ("power", "exponent"),
 ])
-def test_what_can_change_an_instruction_names_it(old: str, new: str, tmp_path: Path) -> None:
+def test_what_can_change_an_instruction_changes_the_hash(old: str, new: str, tmp_path: Path) -> None:
     assert old in SOURCE
     assert hashed(tmp_path, SOURCE) != hashed(tmp_path, SOURCE.replace(old, new))
 
@@ -54,21 +54,21 @@ def test_a_file_that_cannot_be_parsed_counts_with_its_bytes(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("name", ["BATCH_SIZE", "processor"])
-def test_another_batch_or_processor_has_other_code(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_batch_size_or_processor_changes_the_hash(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = hashed(tmp_path, SOURCE)
     monkeypatch.setattr(sources, name, 2 * sources.BATCH_SIZE if name == "BATCH_SIZE" else lambda: "another")
     assert hashed(tmp_path, SOURCE) != before
 
 
 @pytest.mark.parametrize("name", sources._NOT_IN_CODE)
-def test_what_only_stores_and_calls_does_not_name_the_code(name: str, tmp_path: Path) -> None:
+def test_sources_that_only_store_and_call_keep_the_hash(name: str, tmp_path: Path) -> None:
     before = hashed(tmp_path, SOURCE)
     (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text("changed = True", encoding="utf-8")
     assert sources.sources_hash(tmp_path) == before
 
 
-def test_another_compiler_has_other_code(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_compiler_changes_the_hash(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = hashed(tmp_path, SOURCE)
     for module in (sources.numba, sources.llvmlite):
         with monkeypatch.context() as patch:
@@ -77,7 +77,7 @@ def test_another_compiler_has_other_code(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("level", [0, 1, "max"])
-def test_another_optimisation_level_has_other_code(level: int | str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_optimisation_level_changes_the_hash(level: int | str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     before = hashed(tmp_path, SOURCE), sources.source_bytes_hash(tmp_path)
     usual = sources.numba.config.OPT
     assert level != usual
@@ -86,7 +86,7 @@ def test_another_optimisation_level_has_other_code(level: int | str, tmp_path: P
 
 
 @pytest.mark.parametrize("name", ["BOUNDSCHECK", "DEBUGINFO_DEFAULT", "SLP_VECTORIZE", "LOOP_VECTORIZE", "ENABLE_AVX"])
-def test_a_setting_that_changes_the_code_has_other_code(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_setting_that_changes_the_code_changes_the_hash(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With a cache filled without bounds checks, NUMBA_BOUNDSCHECK=1 would find no error."""
     before = hashed(tmp_path, SOURCE), sources.source_bytes_hash(tmp_path)
     monkeypatch.setattr(sources.numba.config, name, not getattr(sources.numba.config, name))

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from types import ModuleType
 from typing import NamedTuple
 
 import numba
@@ -12,6 +13,10 @@ from granchain_core.kernels.compiling.jit import by_slot, by_type, check_effects
 from granchain_core.kernels.effects import dissipation as loss
 from granchain_core.scene.effects import Effect
 from granchain_core.scene.laws import LAWS, Law
+from tests.numerics import stated_errors
+from tests.numerics.forces import draw
+from tools.fuzzing import scenes
+from tools.fuzzing.laws import EXPONENT, with_every_law
 
 TABLE = [(name, law.slot, law.exponent) for name, law in LAWS.items()]
 
@@ -34,6 +39,23 @@ def test_a_law_has_the_terms_of_its_exponent(name: str, slot: type, a: float, d:
     """g = c δ^a, g' = a c δ^{a−1}, G = c δ^{1+a}/(1 + a), compiled."""
     primitive = d ** (1.0 + a) / (1.0 + a)
     assert terms(slot(0.3), d) == pytest.approx((0.3 * d**a, 0.3 * a * d ** (a - 1.0), 0.3 * primitive, primitive), rel=1e-14)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_independent_computations_have_the_exponent_of_every_law(name: str) -> None:
+    """Theirs are written by hand."""
+    assert name in EXPONENT, f"add {name} to EXPONENT of tools/fuzzing/laws.py"
+    assert EXPONENT[name] == LAWS[name].exponent
+
+
+@pytest.mark.parametrize("lists", [scenes, draw, stated_errors], ids=lambda module: module.__name__)
+def test_random_scenes_are_drawn_with_every_law(lists: ModuleType) -> None:
+    assert {law for law, *_ in lists.STRUCTURES} == {*LAWS, "none"}
+
+
+def test_a_law_that_is_in_no_chosen_structure_is_added() -> None:
+    chosen = [("linear", "cut", True, False), ("tsuji", "allowed", False, False)]
+    assert with_every_law(chosen) == [*chosen, ("kuwabara-kono", "allowed", False, False)]
 
 
 @pytest.mark.parametrize(("name", "slot", "a"), TABLE)

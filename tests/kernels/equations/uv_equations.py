@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from granchain_core import Scene
+from tools.fuzzing.laws import EXPONENT
 
-EXPONENT = {"linear": 0.0, "tsuji": 0.25, "kuwabara-kono": 0.5}
 WALL = {"bead": 1.0, "same-material": math.sqrt(2), "rigid": 2 * math.sqrt(2)}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from granchain_core.kernels.dop853.force_search import is_monotone
+from granchain_core.kernels.error_control.force_search import is_monotone
 from granchain_core.kernels.forces.crossings import brief_touch, closing_rate
 from granchain_core.kernels.forces.largest import cubic_top
 from granchain_core.kernels.forces.peaks import quartic_top

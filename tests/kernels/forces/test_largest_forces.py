@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from granchain_core import Run, Scene, resonance_curve, run, scene, settle
-from granchain_core.integrate import METHODS, Engine, Setting, adaptive_setting, fixed_step_setting
+from granchain_core.integrate import METHODS, Engine, Setting, dop853_setting, fixed_step_setting
 from granchain_core.integrate.methods import jump_errors
 from granchain_core.parameter_map import parameter_map
 from granchain_core.scene.state import State
 
 #: The methods that locate contact events.
-LOCATING = [name for name, method in METHODS.items() if method.adaptive or method.converges_regularly]
+LOCATING = [name for name, method in METHODS.items() if method.error_control or method.converges_regularly]
 #: One bead that touches the driver when that starts with its full speed: the first force there is D A₀ 2πf, at t = 0+.
 STRIKE = scene("sec2").evolve(N=1, D=400.0, f=500.0, accuracy=1e-6)
 
@@ -62,7 +62,7 @@ def test_a_jump_is_read_where_the_overlap_vanishes(beads: int) -> None:
     chain = scene("sec2").evolve(f=88.679, A0=1.60810e-8, D=211.888, k=2513.91, N=beads)
     on_its_way = Engine(chain, fixed_step_setting(), 1)
     on_its_way.periods(36)
-    exact = jump_and_force(chain, adaptive_setting(1e-11), on_its_way.state)[1]
+    exact = jump_and_force(chain, dop853_setting(1e-11), on_its_way.state)[1]
     for refine in (4, 6, 8, 12, 16):
         least, force = jump_and_force(chain, fixed_step_setting(refine), on_its_way.state)
         assert abs(force / exact - 1.0) < least

@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from granchain_core import Scene, scene
+from tools.fuzzing.laws import with_every_law
 
-#: Law, tension, foundation, preload: each is a kernel of its own.
-STRUCTURES = [
+STRUCTURES = with_every_law([
     ("linear", "allowed", False, False), ("tsuji", "allowed", False, False), ("linear", "cut", False, False),
     ("kuwabara-kono", "allowed", False, False), ("none", "allowed", False, False), ("linear", "allowed", True, False),
     ("linear", "allowed", False, True), ("tsuji", "cut", True, True), ("kuwabara-kono", "cut", False, False),
     ("kuwabara-kono", "allowed", True, True),
-]
+])
 #: Those that the test suite has time to compile.
 FEW = STRUCTURES[:3]
 #: Decades: f [Hz], A0 [m], λ = D/(mφ), κ, preload [N], thrown beads (in A0 φ).

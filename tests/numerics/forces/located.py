@@ -20,6 +20,7 @@ import numpy as np
 
 from granchain_core import Scene
 from granchain_core.scene.state import State
+from tools.fuzzing.laws import EXPONENT
 
 from .events import OVERLAP, after, begin, first_event, missing
 from .step import (
@@ -37,8 +38,6 @@ from .step import (
     workspace,
 )
 
-#: Power of the overlap in g(δ), times four; not taken from granchain_core, which is judged by this.
-_POWER = {"linear": 0, "tsuji": 1, "kuwabara-kono": 2, "none": 0}
 #: A step is at most this part of a period. It grows and shrinks at most by these factors.
 _LONGEST, _GROWS, _SHRINKS, _SAFETY = 1.0 / 16.0, 6.0, 0.2, 0.9
 #: Behind an event a step begins so many times as long as the last such step was.
@@ -237,7 +236,7 @@ class Scaled:
         """The constants of a scene."""
         mass, length = scene.bead(1).mass, scene.A0
         rate = np.sqrt(scene.K * np.sqrt(length) / mass)
-        power = _POWER[scene.dissipation]
+        power = round(4.0 * EXPONENT[scene.dissipation]) if scene.has_dissipation else 0
         strength = scene.D / (mass * rate) * (length / scene.reference_overlap) ** (power / 4.0) if scene.has_dissipation else 0.0
         law = Law(mass / scene.masses(), scene.contact_stiffness() / scene.K, scene.static_overlap() / length, strength, power,
                   scene.k / (scene.K * np.sqrt(length)), 2.0 * np.pi * scene.f / rate, scene.cuts_tension)

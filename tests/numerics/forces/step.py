@@ -87,7 +87,9 @@ def damping(law, d):
         return law.strength
     if law.power == 1:
         return law.strength * np.sqrt(np.sqrt(d))
-    return law.strength * np.sqrt(d)
+    if law.power == 2:
+        return law.strength * np.sqrt(d)
+    return law.strength * d ** (0.25 * law.power)
 
 
 @jit

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from granchain_core.kernels.dop853.force_kinks import scaled_force
 from granchain_core.kernels.effects.dissipation import KuwabaraKono, LinearDashpot, Tsuji
+from granchain_core.kernels.error_control.force_kinks import scaled_force
 
 
 @pytest.mark.parametrize(("law", "power"), [(LinearDashpot(0.4), 0.0), (Tsuji(0.4), 0.25), (KuwabaraKono(0.4), 0.5)])

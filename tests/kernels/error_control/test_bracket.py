@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from granchain_core.kernels.dop853.bracket import Bracket, maximum_inside, root_inside, value_at
+from granchain_core.kernels.error_control.bracket import Bracket, maximum_inside, root_inside, value_at
 
 
 class Cubic(NamedTuple):

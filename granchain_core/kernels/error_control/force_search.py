@@ -1,4 +1,4 @@
-"""The largest forces inside an accepted step of the adaptive method, on its dense output.
+"""The largest forces inside an accepted step with error control, on its dense output.
 
 A force is evaluated at both ends of a step and, under the first two conditions below, in its middle. The step begins
 just past an event and ends just past the next, so these values are right limits and the jump of a closing contact is
@@ -25,8 +25,7 @@ from ..forces.largest import cubic_top, force_slope
 from ..forces.peaks import row_of
 from ..status import EVALUATIONS
 from .bracket import maximum_inside, value_at
-from .step import evaluate, interpolate, prepare_dense
-from .tableau import DENSE_EVALUATIONS, STAGES
+from .step import evaluate, interpolate, prepare_dense, stages
 
 #: Golden sections around a maximum of a force; each shrinks the bracket by 0.618 and, since a maximum is flat, its
 #: error by 0.382.
@@ -60,8 +59,8 @@ def forces_of(slots, y, dy):
 @internal
 def forces_in_step(step, x):
     """The three forces at fraction x of the step, whose dense output is prepared."""
-    slots, drive, y, workspace = step.trajectory
-    interpolate(y, workspace, x)
+    slots, drive, _, workspace = step.trajectory
+    interpolate(step, x)
     evaluate(slots, drive.beta, step.t + x * step.h, workspace.probe, workspace.slope, workspace.forces)
     return forces_of(slots, workspace.probe, workspace.slope)
 
@@ -117,27 +116,26 @@ def may_hold_maximum(start, rises, middle, end, falls):
 def update_forces_in_step(step, ready, peaks, counts):
     """Raise the largest forces to those in the accepted step; returns whether its dense output is prepared now.
 
-    Its slopes at both ends are workspace.k[0] and workspace.k[12]. A force that only rises or only falls is largest at
-    an end.
+    A force that only rises or only falls is largest at an end.
     """
     slots, _, y, workspace = step.trajectory
-    start, end = forces_of(slots, y, workspace.k[0]), forces_of(slots, workspace.end, workspace.k[STAGES])
+    slope, end_slope = workspace.k[0], workspace.k[stages(workspace)]
+    start, end = forces_of(slots, y, slope), forces_of(slots, workspace.end, end_slope)
     large = False
     for q in range(3):
         peaks[row_of(q)] = max(peaks[row_of(q)], start[q], end[q])
         large = large or max(start[q], end[q]) > SEARCHED * peaks[row_of(q)]
     if not large:
         return ready
-    rises = slopes_of(slots, y, workspace.k[0], workspace)
-    falls = slopes_of(slots, workspace.end, workspace.k[STAGES], workspace)
+    rises = slopes_of(slots, y, slope, workspace)
+    falls = slopes_of(slots, workspace.end, end_slope, workspace)
     turns = False
     for q in range(3):
         turns = turns or not is_monotone(start[q], rises[q], end[q], falls[q], step.h)
     if not turns:
         return ready
     if not ready:
-        prepare_dense(step)
-        counts[EVALUATIONS] += DENSE_EVALUATIONS
+        counts[EVALUATIONS] += prepare_dense(workspace, step)
     middle = forces_in_step(step, 0.5)
     counts[EVALUATIONS] += 1
     for q in range(3):

@@ -1,8 +1,8 @@
 """A run along an orbit that keeps the turning points of all overlaps and the largest forces.
 
-Each accepted step of the adaptive method is searched on its dense output. A contact's overlap has a turning point
+Each accepted step is searched on its dense output. A contact's overlap has a turning point
 where its two bodies move equally fast; one at which the overlap is small is a touch or a separation about to appear or
-to vanish. The largest forces are searched inside the steps (dop853/force_search.py).
+to vanish. The largest forces are searched inside the steps (force_search.py).
 """
 
 from __future__ import annotations
@@ -17,9 +17,8 @@ from ..samples import first_not_finite
 from ..status import CANCELLED, DONE, FULL, NOT_FINITE
 from .bracket import value_at
 from .force_search import update_forces_in_step
-from .run import located_step
-from .step import GOAL_TOLERANCE, Overlap, Step, evaluate, new_scale, prepare_dense, turning_point
-from .tableau import STAGES
+from .located_step import located_step
+from .step import GOAL_TOLERANCE, Overlap, Step, evaluate, new_scale, prepare_dense, stages, turning_point
 
 
 class OrbitRecord(NamedTuple):
@@ -38,12 +37,12 @@ class OrbitRecord(NamedTuple):
 def record_turns(step, since, record, row):
     """Keep the turning points of all overlaps inside the step; returns the next free row.
 
-    Its slopes at both ends are workspace.k[0] and workspace.k[12]; it begins `since` after the orbit's start.
+    The step begins `since` after the orbit's start.
     """
     slots, _, _, workspace = step.trajectory
-    k = workspace.k
+    slope, end = workspace.k[0], workspace.k[stages(workspace)]
     for c in range(slots.chain.stiffness.size):
-        s0, s1 = k[0, c] - k[0, c + 1], k[STAGES, c] - k[STAGES, c + 1]
+        s0, s1 = slope[c] - slope[c + 1], end[c] - end[c + 1]
         if (s0 > 0.0) != (s1 > 0.0):
             if row < record.turns.shape[0]:
                 sign = 1.0 if s0 > 0.0 else -1.0
@@ -70,12 +69,12 @@ def record_orbit(method, trajectory, periods, record, counts, stop):
             if status != DONE:
                 return status, p, row
             step = Step(trajectory, t, h)
-            prepare_dense(step)
+            prepare_dense(workspace, step)
             row = record_turns(step, p * period + t, record, row)
             update_forces_in_step(step, True, record.peaks, counts)
             copy(workspace.end, y)
             new_scale(y, workspace, bodies)
-            copy(workspace.k[STAGES], workspace.k[0])
+            copy(workspace.k[stages(workspace)], workspace.k[0])
             t = period if period - (t + h) < GOAL_TOLERANCE * period else t + h
         evaluate(slots, drive.beta, 0.0, y, workspace.k[0], workspace.forces)
         if first_not_finite(y, bodies) != 0:

@@ -20,8 +20,7 @@ from ..equations.motion import write_w
 from ..simd.functions import gate, root
 from ..status import EVALUATIONS
 from .bracket import Bracket, root_inside, value_at
-from .step import evaluate, interpolate, prepare_dense
-from .tableau import DENSE_EVALUATIONS, STAGES
+from .step import evaluate, interpolate, prepare_dense, stages
 
 #: What `first_kink` finds.
 NO_KINK, KINK, WRONG_SIDE = range(3)
@@ -52,9 +51,9 @@ def _(law, stiffness, d, rate):
 
 @value_at.of(ScaledForce)
 def _(quantity, step, x):
-    slots, drive, y, workspace = step.trajectory
+    slots, drive, _, workspace = step.trajectory
     c = quantity.contact
-    interpolate(y, workspace, x)
+    interpolate(step, x)
     evaluate(slots, drive.beta, step.t + x * step.h, workspace.probe, workspace.slope, workspace.forces)
     quantity.counts[EVALUATIONS] += 1
     d = positive_part(overlap(slots.preload, workspace.probe, c))
@@ -123,6 +122,7 @@ def first_kink(tension, step, until, counts, skip_wrong_side):
 def _(tension, step, until, counts, skip_wrong_side):
     slots, drive, y, workspace = step.trajectory
     first, ready, turned, k, still = 1.0, False, False, workspace.k, _REST_PART * workspace.scale[1]
+    end = k[stages(workspace)]
     for c in range(slots.chain.stiffness.size):
         d0 = overlap(slots.preload, y, c)
         if not d0 > 0.0:
@@ -130,12 +130,11 @@ def _(tension, step, until, counts, skip_wrong_side):
         free, stiffness = tension.force_free[c] != 0, slots.chain.stiffness[c]
         d1 = positive_part(overlap(slots.preload, workspace.end, c))
         f0 = scaled_force(slots.dissipation, stiffness, d0, k[0, c] - k[0, c + 1])
-        f1 = scaled_force(slots.dissipation, stiffness, d1, k[STAGES, c] - k[STAGES, c + 1])
+        f1 = scaled_force(slots.dissipation, stiffness, d1, end[c] - end[c + 1])
         if max(abs(f0), abs(f1)) < still or (until == 1.0 and free != (f1 > 0.0)):
             continue
         if not ready:
-            prepare_dense(step)
-            counts[EVALUATIONS] += DENSE_EVALUATIONS
+            counts[EVALUATIONS] += prepare_dense(workspace, step)
             ready = True
         force = ScaledForce(c, counts)
         if until < 1.0:
