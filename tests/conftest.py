@@ -16,6 +16,10 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+# Before NumPy is imported, and for every process that a test starts. OpenBLAS divides even small products among all
+# processors, where its threads wait for each other in loops: with as many workers as processors, twenty times the time.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # Kernels are compiled inside the first example on a cold cache, which is no sign of a slow test.
 settings.register_profile("granchain", deadline=None, derandomize=True, max_examples=60)
 settings.load_profile("granchain")

@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -27,10 +28,20 @@ from granchain_core.precompile.pieces import ACCURACY_KERNELS
 from granchain_core.precompile.warm import compile_piece
 
 SHORT = scene("sec2").evolve(N=2, f=2000.0)
+#: The module whose function has its name.
+MEASURING = import_module("granchain_core.accuracy.work_precision")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def timed_briefly() -> Iterator[None]:
+    """Each setting runs once a round, not up to nine times: no test here looks at how well its time is known."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(MEASURING, "_MOST_RUNS", 1)
+        yield
 
 
 @pytest.fixture(scope="module")
-def measured() -> WorkPrecision:
+def measured(timed_briefly: None) -> WorkPrecision:
     return work_precision(scene("sec2"))
 
 
@@ -90,7 +101,6 @@ def test_progress_reaches_the_end_while_rows_are_added(monkeypatch: pytest.Monke
 @pytest.mark.long
 def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     """A solver that gives up and one that is too slow once: rows with their sentences, and the others go on."""
-    module = __import__("sys").modules["granchain_core.accuracy.work_precision"]
     slow = iter([True])
 
     def solver(shown, name, tolerance, periods, samples, stop, located=False):
@@ -102,8 +112,8 @@ def test_what_fails_is_named_and_kept(monkeypatch: pytest.MonkeyPatch, capsys: p
             raise Cancelled
         return solve(shown, name, tolerance, periods, samples, stop, located)
 
-    monkeypatch.setattr(module, "solve", solver)
-    monkeypatch.setattr(module, "_ROW_LIMIT", 5.0)  # the other rows take tenths of a second on a quiet machine
+    monkeypatch.setattr(MEASURING, "solve", solver)
+    monkeypatch.setattr(MEASURING, "_ROW_LIMIT", 5.0)  # the other rows take tenths of a second on a quiet machine
     kept: list[WorkPrecision] = []
 
     def measuring(*words: Any) -> WorkPrecision:

@@ -59,11 +59,14 @@ def lattice(chain: Scene, f: float) -> complex:
 
 @pytest.mark.parametrize("changes", [{"N": 4}, {"N": 5, "F0": 1.0, "dissipation": "tsuji"}], ids=["jumps", "pressed"])
 def test_gain_and_phase_are_known_to_the_errors_that_are_stated(changes: dict[str, object]) -> None:
-    """Against sixteen times the samples or more; without a jump the error is that of the motion."""
+    """Against sixteen times the samples or more; without a jump the error is that of the motion.
+
+    Both chains are settled after 60 periods: after 300 no figure differs by more than 1e-10 of what is stated.
+    """
     chain = scene("sec2").evolve(f=1200.0, **changes)
-    fine = transfer(run(chain.evolve(accuracy=1e-9), periods=300, record=2, samples=4096))
+    fine = transfer(run(chain.evolve(accuracy=1e-9), periods=60, record=2, samples=4096))
     for samples in (64, 256):
-        found = transfer(run(chain, periods=300, record=2, samples=samples))
+        found = transfer(run(chain, periods=60, record=2, samples=samples))
         same = np.searchsorted(fine.frequency, found.frequency * (1.0 - 1e-9))
         wrong = np.abs(found.gain - fine.gain[same])
         turned = np.abs(np.angle(np.exp(1j * (found.phase - fine.phase[same]))))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import functools
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,17 +21,32 @@ class Import(NamedTuple):
     names: tuple[tuple[str, str], ...] = ()
 
 
+@functools.cache
 def parsed(path: Path) -> ast.Module:
-    """A file as a syntax tree."""
+    """A file as a syntax tree, which the tests share and leave as it is."""
     return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@functools.cache
+def nodes(path: Path) -> tuple[ast.AST, ...]:
+    """All nodes of a file's syntax tree."""
+    return tuple(ast.walk(parsed(path)))
+
+
+def by_folder(paths: Iterable[Path]) -> dict[str, list[Path]]:
+    """The files of each folder, by its name from the root: one test looks at a folder, and its words name the file."""
+    found: dict[str, list[Path]] = {}
+    for path in paths:
+        found.setdefault(path.parent.relative_to(ROOT).as_posix(), []).append(path)
+    return found
 
 
 @functools.cache
 def imports_in(path: Path, everywhere: bool = True) -> tuple[Import, ...]:
     """What a file imports: everywhere, in functions and for type checking too, or only at its top."""
-    tree, package = parsed(path), path.relative_to(ROOT).parts[:-1]
+    package = path.relative_to(ROOT).parts[:-1]
     found: list[Import] = []
-    for node in ast.walk(tree) if everywhere else tree.body:
+    for node in nodes(path) if everywhere else parsed(path).body:
         if isinstance(node, ast.Import):
             found += [Import(alias.name) for alias in node.names]
         elif isinstance(node, ast.ImportFrom):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import ast
+import functools
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -11,7 +12,7 @@ from typing import Any
 
 import pytest
 from panel.custom import JSComponent
-from source import ROOT, imports_in
+from source import ROOT, by_folder, imports_in, nodes
 
 import app.dashboard.layout  # noqa: F401  (makes every component known)
 from app import needed
@@ -29,6 +30,8 @@ def module_name(path: Path) -> str:
 
 
 MODULES = {module_name(path): path for name in ("granchain_core", "app") for path in sorted((ROOT / name).rglob("*.py"))}
+#: The modules of each folder.
+FOLDERS = {folder: [module_name(path) for path in paths] for folder, paths in by_folder(MODULES.values()).items()}
 
 
 def imports(module: str) -> set[str]:
@@ -94,6 +97,7 @@ def layer(module: str) -> str:
     return ".".join(parts[:2]) if parts[0] in FAMILIES and len(parts) > 2 else parts[0]
 
 
+@functools.cache
 def allowed(folder: str) -> set[str]:
     """The folders that a folder may import: itself, what it uses, and what those use.
 
@@ -114,13 +118,14 @@ def test_the_order_of_the_map_is_read() -> None:
     assert {"parts.chain", "serve.computing"} <= allowed("pages.map") and "pages.probe" not in allowed("pages.map")
 
 
-@pytest.mark.parametrize("module", [name for name in MODULES if name.startswith("app.")])
-def test_a_folder_of_the_app_imports_only_what_the_map_says(module: str) -> None:
+@pytest.mark.parametrize("folder", [folder for folder in FOLDERS if folder.startswith("app")])
+def test_a_folder_of_the_app_imports_only_what_the_map_says(folder: str) -> None:
     """Pages know their host and not the controller, parts know no page, the command line only plots and the server.
     """
-    mine = layer(module)
-    for name in sorted(one for one in imports(module) if one.startswith("app.")):
-        theirs = layer(name)
+    pairs = [(module, name) for module in FOLDERS[folder] if module != "app"
+             for name in sorted(imports(module)) if name.startswith("app.")]
+    for module, name in pairs:
+        mine, theirs = layer(module), layer(name)
         if mine in SHARED:
             assert theirs in SHARED, f"{module} imports {name}"
         elif module == "app.cli.serve":
@@ -185,7 +190,7 @@ PARAMETERS = {"_with_props"}
 
 def private_uses(module: str) -> Iterator[str]:
     """Private attributes of other objects than a class's own, by a dot or by name."""
-    for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
+    for node in nodes(MODULES[module]):
         if isinstance(node, ast.Attribute):
             if not node.attr.startswith("_") or ast.unparse(node.value) in ("self", "cls", "os"):
                 continue
@@ -219,14 +224,15 @@ PRIVATE = {module: {name for name in names if re.match("_[a-z]", name)} for modu
 PRIVATE_OF_NUMBA = {f"granchain_core.{module}": names for module, names in documented("compiling.md", "kernels").items()}
 
 
-@pytest.mark.parametrize("module", MODULES)
-def test_private_attributes_of_others_are_in_the_table_of_the_module_that_uses_them(module: str) -> None:
-    used = set(private_uses(module))
-    if module.startswith("app."):
-        assert used | PARAMETERS & PRIVATE.get(module, set()) == PRIVATE.get(module, set())
-        assert module in NEEDED or "\nNEEDED = " not in MODULES[module].read_text(encoding="utf-8")
-    else:
-        assert used <= PRIVATE_OF_NUMBA.get(module, set())
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_private_attributes_of_others_are_in_the_table_of_the_module_that_uses_them(folder: str) -> None:
+    for module in FOLDERS[folder]:
+        used = set(private_uses(module))
+        if folder.startswith("app"):
+            assert used | PARAMETERS & PRIVATE.get(module, set()) == PRIVATE.get(module, set()), module
+            assert module in NEEDED or "\nNEEDED = " not in MODULES[module].read_text(encoding="utf-8"), module
+        else:
+            assert used <= PRIVATE_OF_NUMBA.get(module, set()), module
 
 
 def test_the_tables_name_modules_that_are_there() -> None:

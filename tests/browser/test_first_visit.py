@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from knobs import COMPILED, Visit, field, settled
-from playwright.sync_api import Browser, expect
-from server import dashboard
+from playwright.sync_api import Browser, Locator, Page, expect
+from server import dashboard, until
 
 from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER, MARK
 
@@ -96,6 +96,13 @@ def test_pictures_of_another_scene_are_grey_until_its_own_come(visit: Visit) -> 
     expect(page.locator("#dashboard.another")).to_have_count(0)
 
 
+def pointed_at(page: Page, term: Locator) -> bool:
+    """Move the pointer from elsewhere to a term; whether its meaning is shown."""
+    page.mouse.move(0, 0)
+    term.hover()
+    return page.get_by_role("tooltip").is_visible()
+
+
 def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:
     first = "addEventListener('DOMContentLoaded', () => { localStorage.removeItem('granchain-toured'); }, { once: true });"
     page = visit(script=f"if (!sessionStorage.getItem('again')) {{ sessionStorage.setItem('again', 1); {first} }}")
@@ -110,8 +117,8 @@ def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:
         tour.get_by_role("button", name="next" if number < 5 else "to the stories").click()
     expect(tour).to_be_hidden()
     expect(page.locator(".toured")).to_have_count(0)
-    term = page.locator("#tabs dfn").first
-    term.hover()
+    settled(page)
+    until(page, lambda: pointed_at(page, page.locator("#tabs dfn").first))  # until what comes late has moved the tab
     expect(page.get_by_role("tooltip")).to_contain_text("a peak of the largest output force")
     page.reload()
     page.wait_for_function("window.painted.length > 0")
@@ -126,9 +133,9 @@ def test_a_first_visit_is_shown_round_once(visit: Visit) -> None:
 def test_a_meaning_stays_when_the_tab_is_made_anew_under_the_pointer(visit: Visit) -> None:
     """A tab is made anew with every scene; within a second of a first visit, too."""
     page = visit()
+    settled(page)
     term = page.locator("#tabs dfn").first
-    term.hover()
-    expect(page.get_by_role("tooltip")).to_be_visible()
+    until(page, lambda: pointed_at(page, term))
     term.evaluate("(one) => { one.dataset.before = ''; }")
     page.locator("select.scene").select_option("fig3b")
     expect(page.locator("#tabs dfn[data-before]")).to_have_count(0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -61,7 +62,7 @@ EXAMPLES = {
 
 @pytest.fixture()
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A measured force with an output, a measured curve, and hard cases that take no time."""
+    """A measured force with an output, a measured curve, hard cases that take no time, and settings that run once."""
     monkeypatch.chdir(tmp_path)
     time = np.linspace(0.0, 1e-3, 51)
     rows = "".join(f"{t:.6e},{max(0.0, np.sin(2e3 * np.pi * t)):.6e},0.1\n" for t in time)
@@ -73,6 +74,7 @@ def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
             yield case.name, [Check(case.name, 0.5, 1.0, True, 0.1, case.hard, case.naive, case.oracle)]
 
     monkeypatch.setattr(runner, "run_cases", rows_at_once)
+    monkeypatch.setattr(import_module("granchain_core.accuracy.work_precision"), "_MOST_RUNS", 1)
 
 
 def keys(found: dict[str, Any], before: str = "") -> set[str]:

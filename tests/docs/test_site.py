@@ -1,6 +1,6 @@
 """The documentation as a site: built strictly, its notebooks run, and nothing of it comes from elsewhere.
 
-It takes some 40 s of processor time with compiled kernels, most of it in the four notebooks, which run only here.
+It takes some 30 s of processor time with compiled kernels, most of it in the four notebooks, which run only here.
 """
 
 from __future__ import annotations

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import re
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 
 from app.cli import main
-from granchain_core import BadInput, Run, Signal, drive, run, scene
+from granchain_core import BadInput, Driven, Run, Signal, drive, run, scene
 from granchain_core.prescribed_drive.signal import KNOTS
 
 CHAIN = scene("sec2").evolve(N=3)
@@ -86,18 +87,26 @@ def test_the_largest_forces_of_a_sine_are_within_their_errors_of_the_harmonic_ru
     assert 1e-7 < errors.input < 2e-5
 
 
+#: A signal for each law.
+FORMULAS: dict[str, Callable[[], Signal]] = {
+    "linear": lambda: Signal.chirp(CHAIN.A0, 300.0, 600.0, 0.02),
+    "tsuji": lambda: Signal.tones(CHAIN.A0, 700.0, 1103.0, 0.007, 0.3),
+    "none": lambda: Signal.tones(CHAIN.A0, 700.0, 1103.0, 0.004, 0.3)}
+
+
+@functools.cache
+def with_fine_knots(law: str) -> Driven:
+    """The chain with this law under its signal at sixteen times the knots, computed once for all accuracies."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("granchain_core.prescribed_drive.signal.KNOTS", 16 * KNOTS)
+        return drive(CHAIN.evolve(dissipation=law, accuracy=1e-10), FORMULAS[law]())
+
+
 @pytest.mark.parametrize("accuracy", [1e-6, 1e-8, 1e-10])
-@pytest.mark.parametrize(("law", "signal"), [
-    ("linear", lambda: Signal.chirp(CHAIN.A0, 300.0, 600.0, 0.02)),
-    ("tsuji", lambda: Signal.tones(CHAIN.A0, 700.0, 1103.0, 0.007, 0.3)),
-    ("none", lambda: Signal.tones(CHAIN.A0, 700.0, 1103.0, 0.004, 0.3))])
-def test_errors_of_the_largest_input_force_hold_what_knots_leave_out_of_a_formula(
-        law: str, signal: Callable[[], Signal], accuracy: float, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("law", FORMULAS)
+def test_errors_of_the_largest_input_force_hold_what_knots_leave_out_of_a_formula(law: str, accuracy: float) -> None:
     """Against sixteen times the knots, whose velocity is off by 1/256 of the error stated here."""
-    chain = CHAIN.evolve(dissipation=law)
-    found = drive(chain.evolve(accuracy=accuracy), signal())
-    monkeypatch.setattr("granchain_core.prescribed_drive.signal.KNOTS", 16 * KNOTS)
-    fine = drive(chain.evolve(accuracy=1e-10), signal())
+    found, fine = drive(CHAIN.evolve(dissipation=law, accuracy=accuracy), FORMULAS[law]()), with_fine_knots(law)
     wrong = abs(found.max_input_force / fine.max_input_force - 1.0)
     stated = found.force_errors.input
     assert stated is not None and fine.force_errors.input is not None

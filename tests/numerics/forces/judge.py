@@ -90,11 +90,11 @@ def apart(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.where(a == b, 0.0, np.abs(a - b) / np.where(b > 0.0, b, 1e-300))
 
 
-def judge_run(drawn: Draw, most_steps: int = MOST_STEPS) -> Verdict | str:
+def judge_run(drawn: Draw, most_steps: int = MOST_STEPS, budget: float = BUDGET) -> Verdict | str:
     """The verdict on a whole motion, or why there is none; the reference is given up after `most_steps`."""
     chosen = drawn.scene
     try:
-        found = run(chosen, drawn.periods, drawn.record, 16, budget=BUDGET)
+        found = run(chosen, drawn.periods, drawn.record, 16, budget=budget)
     except (ComputationError, OverBudget):
         return "refused or failed, and said so"
     try:
@@ -160,13 +160,14 @@ def judge_map(seed: int, index: int, structures: list) -> Iterator[Verdict | str
         yield judge_point("map", index, result.scene, result.state, result.regime.period, maxima, stated)
 
 
-def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0, longest: float = LONGEST) -> Iterator[Verdict | str]:
+def verdicts(kind: str, count: int, seed: int, structures: list, first: int = 0, longest: float = LONGEST,
+             budget: float = BUDGET) -> Iterator[Verdict | str]:
     """Verdicts on draws `first` to `first + count − 1` of one kind; words where there is none.
 
-    `longest` is that of a run.
+    `longest` and `budget` are those of a run.
     """
     for index in range(first, first + count):
         if kind == "run":
-            yield judge_run(draw(seed, index, structures, longest))
+            yield judge_run(draw(seed, index, structures, longest), budget=budget)
         else:
             yield from (judge_curve if kind == "curve" else judge_map)(seed, index, structures)

@@ -35,12 +35,14 @@ _GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 
 class _Kept(KernelCache):
-    """Compiled versions on disk: those of the core's kernels know an edit by their own file, these call one another."""
+    """Compiled versions on disk: those of the core's kernels know an edit by their own file, these call one another.
+    Files without compiled code do not count.
+    """
 
     def __init__(self, function: Any) -> None:
         super().__init__(function)
-        sources = sorted(Path(__file__).parent.glob("*.py"))
-        self._cache_file._stamp = hashlib.sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()
+        sources = [path.read_bytes() for path in sorted(Path(__file__).parent.glob("*.py"))]
+        self._cache_file._stamp = hashlib.sha256(b"".join(one for one in sources if b"\n@jit\n" in one)).hexdigest()
 
 
 def jit(function: Any) -> Any:
