@@ -68,5 +68,5 @@ class Calls:
                 action()
             except Exception:
                 METRICS.count("errors")
-                log.exception("a visitor who left was not quite forgotten")
+                log.exception("cleanup of a closed session failed")
         self._closing.clear()

@@ -173,10 +173,9 @@ class WorkerPool:
 
 
 #: One thread for each session whose picture is awaited; live steps, energy accounts and drafts are computed in it. The
-#: number of threads is limited because each takes memory. It is below the largest `--most-visitors`, since most pages
-#: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served. In
-#: `/metrics` the pool keeps its older name.
-SESSION_WORK = WorkerPool("visitors", 1000)
+#: number of threads is limited because each takes memory. It is below the largest `--max-sessions`, since most pages
+#: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served.
+SESSION_WORK = WorkerPool("session_work", 1000)
 #: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
 #: for the compiler keeps its thread. While more pictures than this are computed or wait for a turn, the next wait for a
 #: thread, first come, first served: turns do not put a first picture before refinements then.
