@@ -24,7 +24,7 @@ TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap((
   const host = document.getElementById(id).getBoundingClientRect();
   const view = figures.viewOf(figures.model(name));
   const pen = document.createElement("canvas").getContext("2d");
-  const size = getComputedStyle(document.documentElement).getPropertyValue("--small");
+  const size = getComputedStyle(document.documentElement).getPropertyValue("--small-font-size");
   pen.font = `bold ${size} helvetica`;
   if (!view?.frame) return [["", -1]];
   const { left, right } = view.frame.bbox;
@@ -38,7 +38,7 @@ TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap((
 BEADS = """() => {
   const map = figures.viewOf(figures.model("kinetic energy"));
   const pen = document.createElement("canvas").getContext("2d");
-  pen.font = `${getComputedStyle(document.documentElement).getPropertyValue("--small")} helvetica`;
+  pen.font = `${getComputedStyle(document.documentElement).getPropertyValue("--small-font-size")} helvetica`;
   const { x_scale } = map.frame, { interval } = map.model.above[0].ticker;
   return x_scale.compute(interval) - x_scale.compute(0) - pen.measureText("10").width;
 }"""

@@ -360,8 +360,8 @@ def test_the_figures_of_the_page_and_of_its_pages_follow_a_theme(dashboard: Dash
     widths = [line.glyph.line_width for line in views.trains._lines]
     views.apply_theme(theme)
     ring = views.curve._dot.glyph
-    assert (ring.line_color, ring.size) == (theme.ink, 15 * theme.line)
-    assert [line.glyph.line_width for line in views.trains._lines] == [pytest.approx(theme.line * width) for width in widths]
+    assert (ring.line_color, ring.size) == (theme.ink, 15 * theme.line_scale)
+    assert [line.glyph.line_width for line in views.trains._lines] == [pytest.approx(theme.line_scale * width) for width in widths]
     assert views.overlays["branches"].theme == theme
 
 
