@@ -76,7 +76,7 @@ def fits(page: Page) -> None:
 
 def test_dark_differs_from_light_in_colours_only() -> None:
     """The tests below look at the light theme only: with equal sizes, what fits there fits in the dark one."""
-    for role in ("line", "type", "small"):
+    for role in ("line_scale", "font_size", "small_font_size"):
         assert getattr(THEMES["dark"], role) == getattr(THEMES["light"], role)
     dark = next(rule for rule in style_sheet().splitlines() if "data-theme=dark" in rule)
     values = re.findall(r"--[\w-]+: ([^;}]+)", dark)
