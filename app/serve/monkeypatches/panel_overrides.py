@@ -104,10 +104,10 @@ class WithoutChildren:
     Panel looks at all 40 parameters of each. Where a release asks in another way, it is asked again.
     """
 
-    def _get_children(self, *arguments: Any) -> Any:
+    def _get_children(self, *args: Any) -> Any:
         if type(self) in _CHILDLESS:
             return {}, []
-        found = super()._get_children(*arguments)  # type: ignore[misc]
+        found = super()._get_children(*args)  # type: ignore[misc]
         if found == ({}, []):
             _CHILDLESS.add(type(self))
         return found
