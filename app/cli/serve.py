@@ -6,8 +6,10 @@ import argparse
 import contextlib
 import gc
 import hmac
+import logging
 import os
 import secrets
+import stat
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,6 +18,8 @@ from granchain_core import BadInput
 from ..serve.http.limits import MOST_SESSIONS, USUAL_SESSIONS
 from .options import whole
 from .waiting import Waiting
+
+log = logging.getLogger("granchain")
 
 LEVELS = ("debug", "info", "warning", "error")
 #: Shortest secret [bytes].
@@ -85,9 +89,16 @@ def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]
             "HOST:PORT, and --generate-secret or --secret-file FILE (docs/security.md).")
     access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.max_sessions,
                     tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()))
+
+    def ready() -> None:  # the log has been set up by then
+        if arguments.secret_file is not None and Path(arguments.secret_file).stat().st_mode & stat.S_IROTH:
+            log.warning("all users of this machine can read the secret in %s; chmod o= closes it",
+                        arguments.secret_file)
+        on_ready_to_listen()
+
     try:
         serve_dashboard(arguments.port, arguments.address, access=access, log_level=arguments.log_level,
-                        on_ready_to_listen=on_ready_to_listen)
+                        on_ready_to_listen=ready)
     except MissingPart as lack:
         raise BadInput(str(lack)) from None
     except OSError as problem:

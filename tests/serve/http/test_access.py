@@ -71,6 +71,18 @@ def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_p
     assert len(dict(access.sign_in)["cookie_secret"]) == 64
 
 
+@pytest.mark.parametrize(("rights", "warned"), [(0o600, False), (0o640, False), (0o644, True)])
+def test_a_secret_that_all_users_can_read_is_a_line_in_the_log(
+        rights: int, warned: bool, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    monkeypatch.setattr(server, "serve", lambda *args, **kwargs: kwargs["on_ready_to_listen"]())
+    secret = tmp_path / "secret"
+    secret.write_bytes(_SECRET)
+    secret.chmod(rights)
+    with caplog.at_level("WARNING", "granchain"):
+        assert main(["serve", "--secret-file", str(secret)]) == 0
+    assert ["can read the secret" in one for one in caplog.messages] == [True] * warned
+
+
 def test_the_secret_of_cookies_is_given_or_follows_from_that_of_the_sessions(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """Otherwise each process signs with its own, and a visitor who comes to another one has to sign in again."""
     asked: list[str] = []

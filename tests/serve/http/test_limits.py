@@ -56,9 +56,9 @@ def test_the_limits_of_the_document_are_those_of_the_code() -> None:
                                f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
         "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; one counts once more for every {FRAME_UNIT // 1000} kB "
                             "of it; beyond that the connection is closed (1008)",
-        "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the pages at once",
+        "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
         "a link": f"{LONGEST} characters",
-        "pages at once": f"{Access().max_sessions}",
+        "sessions at once": f"{Access().max_sessions}",
         "long computations of a visitor at once": f"{LONG.per_owner_limit} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
                                                   "experiments); more wait",
         "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
