@@ -46,8 +46,8 @@ class Theme:
     warn: str
     warn_paper: str
     line_scale: float = 1.0
-    font_size: int = 15
-    small_font_size: int = 14
+    text_size: int = 15
+    small_text_size: int = 14
     naive: str = "#d97706"
     second: str = VIOLET
 
@@ -65,13 +65,14 @@ THEMES = {
                        accent="#003cc0", steel="#66707d",
                        steel_shine="#ffffff", steel_edge="#4a525d", steel_number="#000000",
                        warn=BROWN, warn_paper="#ffe8c2",
-                       line_scale=1.8, font_size=19, small_font_size=17),
+                       line_scale=1.8, text_size=19, small_text_size=17),
 }
 
 
 def style_sheet() -> str:
     """The themes as CSS: a custom property for every role. A theme's rule has only what differs from the first one's,
-    so that the page may change sizes on large and small screens for all themes at once.
+    so that the page may change sizes on large and small screens for all themes at once. None of them may be
+    called `--font-size`: Bokeh's style sheet sets that one in every figure.
     """
     rules: list[str] = []
     first: dict[str, str] = {}
@@ -79,7 +80,7 @@ def style_sheet() -> str:
         values = {**asdict(theme), "drive": theme.drive, "input": theme.input, "output": theme.output}
         roles = {f"--{role.replace('_', '-')}": str(value) for role, value in values.items()}
         roles["color-scheme"] = roles.pop("--scheme")
-        for size in ("--font-size", "--small-font-size"):
+        for size in ("--text-size", "--small-text-size"):
             roles[size] += "px"
         own = "; ".join(f"{role}: {value}" for role, value in roles.items() if first.get(role) != value)
         rules.append(f':root{(first and f"[data-theme={name}]") or ""} {{ {own} }}\n')

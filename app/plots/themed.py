@@ -63,7 +63,7 @@ def apply_theme(plot: figure, theme: Theme) -> figure:
     """Give a figure, and all in it that `themed` has named, the colours and widths of a theme. Returns `plot`."""
     plot.background_fill_color = plot.border_fill_color = theme.card
     plot.grid.grid_line_color = theme.faint
-    small = f"{theme.small_font_size}px"
+    small = f"{theme.small_text_size}px"
     plot.title.update(text_color=theme.soft, text_font_size=small)
     for axis in (*plot.xaxis, *plot.yaxis):
         axis.update(axis_label_text_color=theme.soft, major_label_text_color=theme.ink,

@@ -36,7 +36,7 @@ export class ChainDrawing {
       output: read("--output"),
       accent: read("--accent"),
       bold: parseFloat(read("--line-scale")) || 1,
-      small: read("--small-font-size"),
+      small: read("--small-text-size"),
       font: read("--font"),
     };
     this.steel.forget();
