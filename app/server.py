@@ -7,7 +7,7 @@ import ipaddress
 import secrets
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -18,18 +18,20 @@ from bokeh.settings import settings
 from .curve.sweep import CURVES_SHARED
 from .dashboard.entry import page
 from .dashboard.main_picture import PICTURES_SHARED
-from .needed import check_releases
+from .library_internals import check_releases
 from .serve.compiling.compiler import COMPILER
 from .serve.computing.shared import Shared
 from .serve.computing.turns import TURNS
-from .serve.computing.worker_pools import COMPUTING, POOLS
-from .serve.http.guard import Readiness, Rules, install_guards, is_guarded
-from .serve.http.limits import LARGEST_UPLOAD, USUAL_VISITORS
+from .serve.computing.worker_pools import COMPUTING, POOLS, SESSION_WORK, WorkerPool
+from .serve.http.guard import Readiness, is_guarded
+from .serve.http.limits import LARGEST_UPLOAD, USUAL_SESSIONS
+from .serve.http.rules import Rules
 from .serve.http.sessions import TOKEN_LIFETIME, Sessions
 from .serve.monitoring import logs
 from .serve.monitoring.metrics import METRICS, Liveness, Metric, MetricsHandler
 from .serve.monkeypatches.bokeh_defaults import install_defaults_cache
 from .serve.monkeypatches.panel_resources import install_resources_cache
+from .serve.monkeypatches.request_handlers import install_guards
 from .session.session import Session
 
 #: The largest message a page sends is an uploaded file in base64 [bytes].
@@ -62,11 +64,11 @@ class Access:
     """
 
     origins: tuple[str, ...] = ()
-    secret: bytes | None = None
-    most_visitors: int = USUAL_VISITORS
+    secret: bytes | None = field(default=None, repr=False)
+    max_sessions: int = USUAL_SESSIONS
     embedding: tuple[str, ...] = ()
     proxy: bool = False
-    sign_in: tuple[tuple[str, str], ...] = ()
+    sign_in: tuple[tuple[str, str], ...] = field(default=(), repr=False)
 
 
 def is_loopback(address: str) -> bool:
@@ -112,7 +114,7 @@ def server_at(port: int, address: str, access: Access | None = None) -> Server:
     names = [*access.origins, *(f"{host}:{port}" for host in ("localhost", "127.0.0.1", _in_url(address)) if host)]
     hosts = frozenset(_name_of(origin) for origin in names)
     secret = access.secret or secrets.token_bytes(32)
-    rules = Rules(hosts, Sessions(access.most_visitors), access.embedding, secret, frozenset(filter(_is_ipv6, names)))
+    rules = Rules(hosts, Sessions(access.max_sessions), access.embedding, secret, frozenset(filter(_is_ipv6, names)))
     server = rules.sessions.server = pn.serve(
         {"/": _guarded_page}, port=port, address=address, start=False, show=False, title="granchain", location=False,
         verbose=False, websocket_origin=[name for name in names if not _is_ipv6(name)],
@@ -136,21 +138,32 @@ def _guarded_page() -> None:
 
 
 def add_shared_metrics() -> None:
-    """The queues and caches of all visitors, for `/metrics`."""
+    """The worker pools and caches of all sessions, for `/metrics`."""
     METRICS.turn_wait = lambda: TURNS.wait
     shared: dict[str, Shared[Any]] = {"picture": PICTURES_SHARED, "curve": CURVES_SHARED}
+
+    def queued(former: bool = False) -> dict[str, float]:
+        return {_pool_name(pool, former): pool.queued + pool.held for pool in POOLS}
+
+    def busy(former: bool = False) -> dict[str, float]:
+        return {_pool_name(pool, former): pool.busy_threads for pool in POOLS}
+
     METRICS.added = (
-        Metric("queue", "gauge", "Work that waits: for a thread of any queue, for its owner's share, or for a turn.",
-               lambda: TURNS.waiting + sum(pool.queued + pool.held for pool in POOLS)),
-        Metric("computing", "gauge", "Computations that have a turn, and work under way in the queues "
-                                     f"{', '.join(queue.name for queue in COMPUTING)}.",
-               lambda: TURNS.running + sum(queue.busy_threads for queue in COMPUTING)),
+        Metric("computing", "gauge", "Computations that have a turn, and work under way in the worker pools "
+                                     f"{', '.join(pool.name for pool in COMPUTING)}.",
+               lambda: TURNS.running + sum(pool.busy_threads for pool in COMPUTING)),
         Metric("turns_waiting", "gauge",
-               "Computations that wait for a turn; each also keeps a thread of its queue busy.", lambda: TURNS.waiting),
-        Metric("queue_waiting", "gauge", "Work that waits for a thread of the queue or for its owner's share.",
-               lambda: {pool.name: pool.queued + pool.held for pool in POOLS}, "queue"),
-        Metric("queue_busy", "gauge", "Threads of the queue that have work, even if it waits for a turn or another "
-                                      "queue.", lambda: {pool.name: pool.busy_threads for pool in POOLS}, "queue"),
+               "Computations that wait for a turn; each also keeps a thread of its pool busy.", lambda: TURNS.waiting),
+        Metric("pool_queued", "gauge", "Work that waits for a thread of the worker pool or for its owner's share.",
+               queued, "pool"),
+        Metric("pool_busy_threads", "gauge", "Threads of the worker pool that have work, even if it waits for a turn "
+                                             "or another pool.", busy, "pool"),
+        Metric("queue", "gauge", "The sum of `granchain_pool_queued` and `granchain_turns_waiting`; kept for older "
+                                 "dashboards.", lambda: TURNS.waiting + sum(queued().values())),
+        Metric("queue_waiting", "gauge", "The former name of `granchain_pool_queued`; there the pool `session_work` is "
+                                         "called `visitors`.", partial(queued, former=True), "queue"),
+        Metric("queue_busy", "gauge", "The former name of `granchain_pool_busy_threads`, with the same names.",
+               partial(busy, former=True), "queue"),
         *(metric for name, cache in shared.items() for metric in (
             Metric(f"{name}_cache_hits_total", "counter", f"Requests of a {name} that was there or under way.",
                    partial(getattr, cache, "hits")),
@@ -158,6 +171,10 @@ def add_shared_metrics() -> None:
                    partial(getattr, cache, "misses")),
             Metric(f"{name}_cache_bytes", "gauge", f"Memory of the {name}s that are kept.",
                    partial(getattr, cache, "used")))))
+
+
+def _pool_name(pool: WorkerPool, former: bool) -> str:
+    return "visitors" if former and pool is SESSION_WORK else pool.name
 
 
 def _in_url(address: str) -> str:

@@ -21,13 +21,13 @@ def hide(monkeypatch: pytest.MonkeyPatch, module: ModuleType, owner: type, name:
 
 
 def lose(monkeypatch: pytest.MonkeyPatch, owner: str, name: str) -> None:
-    """Take away what a row of a table `NEEDED` names: from the class or module, and from what its instances set."""
-    from app import needed
+    """Take away what a row of a table `INTERNALS` names: from the class or module, and from what its instances set."""
+    from app import library_internals
 
-    found = needed._find(owner)
+    found = library_internals._find(owner)
     for one in found.__mro__ if isinstance(found, type) else [found]:
         if name in vars(one):
             monkeypatch.delattr(one, name)
-    attributes, keywords = needed._attributes, needed._keywords
-    monkeypatch.setattr(needed, "_attributes", lambda one: attributes(one) - {name})
-    monkeypatch.setattr(needed, "_keywords", lambda one: {*keywords(one)} - {name})
+    attributes, keywords = library_internals._attributes, library_internals._keywords
+    monkeypatch.setattr(library_internals, "_attributes", lambda one: attributes(one) - {name})
+    monkeypatch.setattr(library_internals, "_keywords", lambda one: {*keywords(one)} - {name})

@@ -10,9 +10,9 @@ import math
 import textwrap
 from importlib import import_module
 
-from app import needed
+from app import library_internals
 from app.cli.commands import COMMANDS
-from app.serve.monitoring.metrics import HISTOGRAM, HISTOGRAM_HELP, METRICS
+from app.serve.monitoring.metrics import FORMER_NAMES, HISTOGRAM, HISTOGRAM_HELP, METRICS
 from app.server import add_shared_metrics
 from granchain_core import scene, scene_names
 from granchain_core.integrate import METHODS
@@ -82,14 +82,20 @@ def _help(command: str) -> str:
 
 def table_of_libraries() -> str:
     """The table of docs/libraries.md: what is used of libraries beyond their documentation, and where."""
-    rows = [f"| `{row.owner}`: {', '.join(f'`{name}`' for name in row.names)} | `app/{module.replace('.', '/')}.py` | {row.without} |"
-            for module, table in needed.tables().items() for row in table]
+    rows = []
+    for module, table in library_internals.tables().items():
+        for without in dict.fromkeys(row.without for row in table):
+            used = "<br>".join(f"`{row.owner}`: {', '.join(f'`{name}`' for name in row.names)}" for row in table if row.without == without)
+            rows.append(f"| {used} | `{module.replace('.', '/')}.py` | {without} |")
     return "\n".join(["| what | where | without it |", "|---|---|---|", *rows])
 
 
 def table_of_metrics() -> str:
     """The table of docs/deployment.md: every metric of the server, its kind and its help text."""
     add_shared_metrics()
-    rows = [f"| `granchain_{metric.name}`{f', label `{metric.label}`' if metric.label else ''} | {metric.kind} | {metric.help} |"
-            for metric in METRICS.table()]
+    rows = []
+    for metric in METRICS.table():
+        label, former = f", label `{metric.label}`" if metric.label else "", FORMER_NAMES.get(metric.full_name)
+        also = f" Also under its former name `{former}`." if former else ""
+        rows.append(f"| `{metric.full_name}`{label} | {metric.kind} | {metric.help}{also} |")
     return "\n".join(["| metric | kind | what it is |", "|---|---|---|", *rows, f"| `{HISTOGRAM}` | histogram | {HISTOGRAM_HELP} |"])

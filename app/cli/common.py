@@ -49,9 +49,9 @@ def chosen_scene(arguments: argparse.Namespace) -> Scene:
     return chosen
 
 
-def say(*words: object) -> None:
+def say(*args: object) -> None:
     """Tell a person something, on stderr: stdout is for results."""
-    print(*words, file=sys.stderr, flush=True)
+    print(*args, file=sys.stderr, flush=True)
 
 
 def say_if(sentence: str) -> None:

@@ -6,16 +6,20 @@ import argparse
 import contextlib
 import gc
 import hmac
+import logging
 import os
 import secrets
+import stat
 from collections.abc import Callable
 from pathlib import Path
 
 from granchain_core import BadInput
 
-from ..serve.http.limits import MOST_VISITORS, USUAL_VISITORS
+from ..serve.http.limits import MOST_SESSIONS, USUAL_SESSIONS
 from .options import whole
 from .waiting import Waiting
+
+log = logging.getLogger("granchain")
 
 LEVELS = ("debug", "info", "warning", "error")
 #: Shortest secret [bytes].
@@ -38,7 +42,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
                         help="if no other secret is given, sign sessions with one of this process's own")
     parser.add_argument("--allow-embedding", action="append", metavar="ORIGIN",
                         help="an origin, such as https://courses.example.org, whose pages may show it in a frame")
-    parser.add_argument("--most-visitors", type=whole, default=USUAL_VISITORS, help="pages that may be open at once")
+    parser.add_argument("--max-sessions", "--most-visitors", type=whole, default=USUAL_SESSIONS, metavar="N",
+                        help="pages that may be open at once")
     parser.add_argument("--behind-proxy", action="store_true",
                         help="take the visitor's address from X-Real-IP or X-Forwarded-For, which a proxy sets")
     parser.add_argument("--basic-auth", metavar="FILE",
@@ -53,9 +58,9 @@ def do(arguments: argparse.Namespace) -> None:
     """Open the dashboard."""
     if not 0 <= arguments.port <= 65535:
         raise BadInput(f"port {arguments.port} is outside 0 to 65535; the usual one is 5006.")
-    if not 1 <= arguments.most_visitors <= MOST_VISITORS:
-        raise BadInput(f"--most-visitors {arguments.most_visitors} is outside 1 to {MOST_VISITORS}; the usual number "
-                       f"is {USUAL_VISITORS}.")
+    if not 1 <= arguments.max_sessions <= MOST_SESSIONS:
+        raise BadInput(f"--max-sessions {arguments.max_sessions} is outside 1 to {MOST_SESSIONS}; the usual number "
+                       f"is {USUAL_SESSIONS}.")
     with contextlib.closing(Waiting(arguments.address, arguments.port)) as waiting:
         _serve(arguments, waiting.close)
 
@@ -63,7 +68,7 @@ def do(arguments: argparse.Namespace) -> None:
 def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]) -> None:
     """Import the dashboard and serve it; `on_ready_to_listen` is called just before it takes the port."""
     gc.disable()  # an import makes nothing but what stays, and a tenth of its time was the search for garbage
-    from ..needed import MissingPart, missing_in_import
+    from ..library_internals import MissingPart, missing_in_import
 
     try:
         from ..server import Access, is_loopback
@@ -82,11 +87,18 @@ def _serve(arguments: argparse.Namespace, on_ready_to_listen: Callable[[], None]
             f"{reached} can be reached from other machines, so the server needs the names under "
             "which browsers reach it, and a secret that signs sessions: add --allow-websocket-origin "
             "HOST:PORT, and --generate-secret or --secret-file FILE (docs/security.md).")
-    access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.most_visitors,
+    access = Access(tuple(arguments.allow_websocket_origin or ()), secret, arguments.max_sessions,
                     tuple(arguments.allow_embedding or ()), arguments.behind_proxy, tuple(sign_in.items()))
+
+    def ready() -> None:  # the log has been set up by then
+        if arguments.secret_file is not None and Path(arguments.secret_file).stat().st_mode & stat.S_IROTH:
+            log.warning("all users of this machine can read the secret in %s; chmod o= closes it",
+                        arguments.secret_file)
+        on_ready_to_listen()
+
     try:
         serve_dashboard(arguments.port, arguments.address, access=access, log_level=arguments.log_level,
-                        on_ready_to_listen=on_ready_to_listen)
+                        on_ready_to_listen=ready)
     except MissingPart as lack:
         raise BadInput(str(lack)) from None
     except OSError as problem:

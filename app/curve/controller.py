@@ -14,8 +14,9 @@ from granchain_core.steady.curve.resonance_curve import draft_curve
 
 from ..plots.curve import WORDS
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, Requests
+from ..serve.computing.latest_wins import LatestWins
 from ..serve.computing.turns import TurnFlag
-from ..serve.computing.worker_pools import CURVES, LatestWins
+from ..serve.computing.worker_pools import CURVES
 from ..session.activities import Activity
 from ..session.budget import curve_affordable
 from ..session.debounce import Debounce

@@ -14,13 +14,14 @@ from granchain_core.steady.curve.resonance import Place, place_of
 
 from ..format import prefixed
 from ..frames import round_up
-from ..parts.figures.figure_style import bare_axis, bare_plot, models_collected_once
+from ..parts.figures.figure_style import bare_axis, bare_plot
 from ..plots.axes import knob_scale
 from ..plots.curve import DASHES, curve_columns, curve_line, curve_marks, curve_tooltips
 from ..plots.measured import COLUMNS, TOOLTIPS, measured_columns
 from ..plots.theme import GREY, OUTPUT_COLOUR
 from ..plots.themed import themed
 from ..serve.document.changes import set_properties
+from ..serve.document.document_models import models_collected_once
 from .pinned_curves import PinnedCurves
 
 

@@ -26,27 +26,27 @@ class Calls:
         self._closing: list[Callable[[], object]] = []
         self._closed = False
 
-    def now(self, action: Callable[..., None], *arguments: object) -> None:
+    def now(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` as soon as the document may be changed; on the event loop."""
-        with_document_lock(self._document, partial(self.guarded, action, *arguments))
+        with_document_lock(self._document, partial(self.guarded, action, *args))
 
-    def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
+    def next_tick(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` in the next iteration of the event loop; from any thread."""
         if not self._closed:
-            self._channel.next_tick(partial(self.guarded, action, *arguments))
+            self._channel.next_tick(partial(self.guarded, action, *args))
 
-    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+    def call_later(self, seconds: float, action: Callable[..., None], *args: object) -> None:
         """Call `action` after `seconds`; on the event loop."""
         if not self._closed:
-            self._channel.call_later(seconds, partial(self.guarded, action, *arguments))
+            self._channel.call_later(seconds, partial(self.guarded, action, *args))
 
-    def guarded(self, action: Callable[..., None], *arguments: object) -> None:
+    def guarded(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` now, where the document is locked already; `failed` takes its error."""
         if self._closed:
             return
         with batched_changes(self._document):  # does nothing inside `run_locked`, where changes are gathered already
             try:
-                action(*arguments)
+                action(*args)
             except Exception as error:
                 self._failed(error)
 
@@ -68,5 +68,5 @@ class Calls:
                 action()
             except Exception:
                 METRICS.count("errors")
-                log.exception("a visitor who left was not quite forgotten")
+                log.exception("cleanup of a closed session failed")
         self._closing.clear()

@@ -116,13 +116,13 @@ class Controller:
 
     # What the pages ask for
 
-    def next_tick(self, action: Callable[..., None], *arguments: Any) -> None:
+    def next_tick(self, action: Callable[..., None], *args: Any) -> None:
         """See `Host`."""
-        self._calls.next_tick(action, *arguments)
+        self._calls.next_tick(action, *args)
 
-    def call_later(self, seconds: float, action: Callable[..., None], *arguments: Any) -> None:
+    def call_later(self, seconds: float, action: Callable[..., None], *args: Any) -> None:
         """See `Host`."""
-        self._calls.call_later(seconds, action, *arguments)
+        self._calls.call_later(seconds, action, *args)
 
     def on_close(self, action: Callable[[], object]) -> None:
         """See `Host`."""

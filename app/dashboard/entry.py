@@ -34,8 +34,8 @@ def page() -> None:
         controller.show_message(" ".join(sentences))
     when_left(document, controller.leave)
     pn.state.on_session_destroyed(controller.close)
-    METRICS.visitor_came()  # counted when the page is sure to be told that it was left
-    controller.on_close(METRICS.visitor_left)
+    METRICS.session_opened()  # counted when the page is sure to be told that it was left
+    controller.on_close(METRICS.session_closed)
 
 
 def _handler(controller: Controller) -> Callable[[Exception], None]:

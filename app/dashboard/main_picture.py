@@ -18,9 +18,10 @@ from granchain_core.precompile.pieces import FIXED_STEP_KERNELS, MOTION_KERNELS
 
 from ..frames import Frames, prepared_frames, samples_for
 from ..serve.compiling.compiler import COMPILER, PICTURE_PIECES, compiling_words
+from ..serve.computing.latest_wins import LatestWins
 from ..serve.computing.shared import Shared
 from ..serve.computing.turns import TurnFlag
-from ..serve.computing.worker_pools import PICTURES, LatestWins
+from ..serve.computing.worker_pools import PICTURES
 from ..serve.document.pacing import PicturePacer
 from ..serve.monitoring.metrics import METRICS
 from ..session.budget import WHOLE_PICTURE, RefusedPicture, TooLong, check_first_picture

@@ -14,8 +14,8 @@ from ..pages.branches.page import BranchesPage
 from ..pages.branches.view import Branches
 from ..pages.data.page import DataPage
 from ..pages.effects.page import EffectsPage
-from ..pages.hard.page import HardCasesPage
-from ..pages.hard.view import ABOUT, HardCases
+from ..pages.hard_cases.page import HardCasesPage
+from ..pages.hard_cases.view import ABOUT, HardCases
 from ..pages.map.page import MapPage
 from ..pages.numbers.page import NumbersPage
 from ..pages.observer.page import ObserverPage

@@ -10,8 +10,8 @@ from bokeh.document import Document
 from bokeh.models import Plot
 from jinja2 import Environment, Template
 
-from ..parts.figures.figure_style import models_collected_once
 from ..parts.toolkit.component import Component
+from ..serve.document.document_models import models_collected_once
 from ..serve.document.part_messages import register
 
 

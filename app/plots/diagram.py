@@ -86,8 +86,8 @@ def diagram(found: ParameterMap, theme: Theme, shown: str = "force", now: tuple[
     for name, properties in {**shown_models(shown), **scale_models(computed)}.items():
         plot.select_one({"name": name}).update(**properties)
     bar.update(title_text_color=theme.soft, major_label_text_color=theme.ink, background_fill_color=theme.card,
-               title_text_font_style="normal", major_label_text_font_size=f"{theme.small}px",
-               title_text_font_size=f"{theme.small}px", title_standoff=2)
+               title_text_font_style="normal", major_label_text_font_size=f"{theme.small_text_size}px",
+               title_text_font_size=f"{theme.small_text_size}px", title_standoff=2)
     plot.xaxis.axis_label, plot.yaxis.axis_label = across.label, up.label
     plot.grid.visible = False
     return apply_theme(plot, theme)

@@ -21,10 +21,11 @@ OUTPUT_COLOUR = "#2f9e6a"
 
 @dataclass(frozen=True)
 class Theme:
-    """Colours by role. `line` multiplies all line widths; `type` and `small` are sizes of words in pixels.
+    """Colours by role, a factor of all line widths, and sizes of words [px].
 
     `scheme` is "light" or "dark", the colour scheme of what the browser draws itself. The roles `drive`, `input` and
-    `output` have one colour in all themes. `style_sheet` gives the page the same.
+    `output` have one colour in all themes. `style_sheet` gives the page the same. Links and the browser's storage call
+    the theme `look`, a name that is kept for links that were sent.
     """
 
     drive: ClassVar[str] = DRIVE_COLOUR
@@ -44,9 +45,9 @@ class Theme:
     steel_number: str
     warn: str
     warn_paper: str
-    line: float = 1.0
-    type: int = 15
-    small: int = 14
+    line_scale: float = 1.0
+    text_size: int = 15
+    small_text_size: int = 14
     naive: str = "#d97706"
     second: str = VIOLET
 
@@ -64,13 +65,14 @@ THEMES = {
                        accent="#003cc0", steel="#66707d",
                        steel_shine="#ffffff", steel_edge="#4a525d", steel_number="#000000",
                        warn=BROWN, warn_paper="#ffe8c2",
-                       line=1.8, type=19, small=17),
+                       line_scale=1.8, text_size=19, small_text_size=17),
 }
 
 
 def style_sheet() -> str:
     """The themes as CSS: a custom property for every role. A theme's rule has only what differs from the first one's,
-    so that the page may change sizes on large and small screens for all themes at once.
+    so that the page may change sizes on large and small screens for all themes at once. None of them may be
+    called `--font-size`: Bokeh's style sheet sets that one in every figure.
     """
     rules: list[str] = []
     first: dict[str, str] = {}
@@ -78,7 +80,7 @@ def style_sheet() -> str:
         values = {**asdict(theme), "drive": theme.drive, "input": theme.input, "output": theme.output}
         roles = {f"--{role.replace('_', '-')}": str(value) for role, value in values.items()}
         roles["color-scheme"] = roles.pop("--scheme")
-        for size in ("--type", "--small"):
+        for size in ("--text-size", "--small-text-size"):
             roles[size] += "px"
         own = "; ".join(f"{role}: {value}" for role, value in roles.items() if first.get(role) != value)
         rules.append(f':root{(first and f"[data-theme={name}]") or ""} {{ {own} }}\n')

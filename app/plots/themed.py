@@ -55,14 +55,15 @@ def follow_theme(plot: Plot, theme: Theme) -> None:
 
 def _dress(model: Any, roles: Mapping[str, str | float], theme: Theme) -> None:
     getattr(model, "glyph", model).update(**{
-        name: getattr(theme, role) if isinstance(role, str) else role * theme.line for name, role in roles.items()})
+        name: getattr(theme, role) if isinstance(role, str) else role * theme.line_scale
+        for name, role in roles.items()})
 
 
 def apply_theme(plot: figure, theme: Theme) -> figure:
     """Give a figure, and all in it that `themed` has named, the colours and widths of a theme. Returns `plot`."""
     plot.background_fill_color = plot.border_fill_color = theme.card
     plot.grid.grid_line_color = theme.faint
-    small = f"{theme.small}px"
+    small = f"{theme.small_text_size}px"
     plot.title.update(text_color=theme.soft, text_font_size=small)
     for axis in (*plot.xaxis, *plot.yaxis):
         axis.update(axis_label_text_color=theme.soft, major_label_text_color=theme.ink,

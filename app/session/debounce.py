@@ -17,18 +17,18 @@ class Debounce:
         self._last = 0
         self.pending = False
 
-    def start(self, action: Callable[..., None], *arguments: Any) -> None:
+    def start(self, action: Callable[..., None], *args: Any) -> None:
         """Call `action` after the quiet time, in place of what was started before."""
         self._last += 1
         self.pending = True
-        self._host.call_later(self._seconds, self._run, self._last, action, arguments)
+        self._host.call_later(self._seconds, self._run, self._last, action, args)
 
     def cancel(self) -> None:
         """Drop the action that waits."""
         self._last += 1
         self.pending = False
 
-    def _run(self, number: int, action: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+    def _run(self, number: int, action: Callable[..., None], args: tuple[Any, ...]) -> None:
         if number == self._last:
             self.pending = False
-            action(*arguments)
+            action(*args)

@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 class Caller(Protocol):
     """Calls with the document locked, until the session ends."""
 
-    def next_tick(self, action: Callable[..., None], *arguments: object) -> None:
+    def next_tick(self, action: Callable[..., None], *args: object) -> None:
         """Call `action` with the document locked, as soon as that is possible; from any thread."""
 
-    def call_later(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
+    def call_later(self, seconds: float, action: Callable[..., None], *args: object) -> None:
         """Call `action` with the document locked, after `seconds`."""
 
     def on_close(self, action: Callable[[], object]) -> None:

@@ -38,12 +38,12 @@ class Job:
         self._host = host
         self._report = report
 
-    def next_tick(self, action: Callable[..., None], *arguments: Any, **named: Any) -> None:
+    def next_tick(self, action: Callable[..., None], *args: Any, **kwargs: Any) -> None:
         """Call `action` with the document locked, unless the job is cancelled by then."""
 
         def act() -> None:
             if not self.stop:
-                action(*arguments, **named)
+                action(*args, **kwargs)
 
         self._host.next_tick(act)
 

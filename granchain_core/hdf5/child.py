@@ -79,9 +79,9 @@ class Child:
             raise self._ended()
         return np.frombuffer(bytearray(content), kind).reshape(shape)
 
-    def _ask(self, *words: Any) -> Any:
+    def _ask(self, *args: Any) -> Any:
         with contextlib.suppress(OSError):  # a child that has ended is told below
-            self._process.stdin.write(json.dumps(words).encode() + b"\n")  # type: ignore[union-attr]
+            self._process.stdin.write(json.dumps(args).encode() + b"\n")  # type: ignore[union-attr]
             self._process.stdin.flush()  # type: ignore[union-attr]
         return self._answer()
 

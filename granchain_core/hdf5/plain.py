@@ -207,10 +207,10 @@ def _value(value: Any, called: str) -> float | int | str:
 def answer_requests(file: Plain, requests: Iterable[bytes], out: BinaryIO) -> None:
     """Answer requests: one line of JSON each and, for numbers, their bytes after it."""
     for line in requests:
-        name, *words = json.loads(line)
+        name, *args = json.loads(line)
         content: bytes | memoryview = b""
         try:
-            found = getattr(file, name)(*words)
+            found = getattr(file, name)(*args)
             if isinstance(found, np.ndarray):
                 content = found.data.cast("B") if found.size else b""
                 found = {"type": found.dtype.str, "shape": found.shape}

@@ -14,8 +14,8 @@ import pytest
 from panel.custom import JSComponent
 from source import ROOT, by_folder, imports_in, nodes
 
-import app.dashboard.layout  # noqa: F401  (makes every component known)
-from app import needed
+import app.server  # noqa: F401  (makes every component and table known)
+from app import library_internals
 from app.parts.figures.figure_part import FigurePart
 from app.parts.figures.result_figure import ResultFigure
 from app.parts.toolkit.component import Component
@@ -84,7 +84,7 @@ def test_no_import_goes_in_a_circle() -> None:
 USES = {folder.replace("/", "."): re.findall(r"`(\w+)`", uses) for folder, uses in re.findall(
     r"^\| `app/([\w/]+)` \| [^|]+ \| ([^|]+) \|$", (ROOT / "docs" / "design.md").read_text(encoding="utf-8"), re.MULTILINE)}
 #: Modules beside the folders that any folder may use; the others are above all.
-SHARED = {"format", "frames", "needed", "scripts"}
+SHARED = {"format", "frames", "library_internals", "scripts"}
 
 
 #: Folders whose own folders the map orders. Others may use all of them; of a folder of `pages`, `dashboard` alone.
@@ -129,7 +129,7 @@ def test_a_folder_of_the_app_imports_only_what_the_map_says(folder: str) -> None
         if mine in SHARED:
             assert theirs in SHARED, f"{module} imports {name}"
         elif module == "app.cli.serve":
-            assert name in ("app.server", "app.needed", "app.cli.common", "app.cli.options", "app.cli.waiting",
+            assert name in ("app.server", "app.library_internals", "app.cli.common", "app.cli.options", "app.cli.waiting",
                             "app.serve.http.limits"), f"{module} imports {name}"
         elif mine in USES:
             fits = allowed(mine) | ({one for one in USES if one.startswith("pages.")} if mine == "dashboard" else set())
@@ -216,9 +216,9 @@ def documented(page: str, folder: str) -> dict[str, set[str]]:
 
 
 #: What is used of Tornado, Bokeh, Panel and Param beyond their documentation, by the only modules that use it.
-NEEDED = {f"app.{module}": {name for row in table for name in row.names} for module, table in needed.tables().items()}
+INTERNALS = {module: {name for row in table for name in row.names} for module, table in library_internals.tables().items()}
 #: Those of these names that are private.
-PRIVATE = {module: {name for name in names if re.match("_[a-z]", name)} for module, names in NEEDED.items()}
+PRIVATE = {module: {name for name in names if re.match("_[a-z]", name)} for module, names in INTERNALS.items()}
 #: Those of Numba, by the modules of the core; among them names that a class uses of the one it is derived from, which
 #: `private_uses` does not find.
 PRIVATE_OF_NUMBA = {f"granchain_core.{module}": names for module, names in documented("compiling.md", "kernels").items()}
@@ -230,7 +230,7 @@ def test_private_attributes_of_others_are_in_the_table_of_the_module_that_uses_t
         used = set(private_uses(module))
         if folder.startswith("app"):
             assert used | PARAMETERS & PRIVATE.get(module, set()) == PRIVATE.get(module, set()), module
-            assert module in NEEDED or "\nNEEDED = " not in MODULES[module].read_text(encoding="utf-8"), module
+            assert module in INTERNALS or "\nINTERNALS = " not in MODULES[module].read_text(encoding="utf-8"), module
         else:
             assert used <= PRIVATE_OF_NUMBA.get(module, set()), module
 
@@ -239,15 +239,15 @@ def test_the_tables_name_modules_that_are_there() -> None:
     assert PRIVATE and PRIVATE_OF_NUMBA and {*PRIVATE, *PRIVATE_OF_NUMBA} <= set(MODULES)
 
 
-@pytest.mark.parametrize("module", NEEDED)
+@pytest.mark.parametrize("module", INTERNALS)
 def test_a_module_uses_what_is_in_its_table(module: str) -> None:
     """By a dot, by name, or as what it imports; of the logger of another module only its name."""
     tree = ast.parse(MODULES[module].read_text(encoding="utf-8"))
-    tree.body = [node for node in tree.body if not isinstance(node, ast.Assign) or ast.unparse(node.targets[0]) != "NEEDED"]
+    tree.body = [node for node in tree.body if not isinstance(node, ast.Assign) or ast.unparse(node.targets[0]) != "INTERNALS"]
     words = {word for node in ast.walk(tree) for word in (
         getattr(node, "attr", None), getattr(node, "arg", None), getattr(node, "id", None), getattr(node, "name", None),
         getattr(node, "value", None) if isinstance(node, ast.Constant) else None)}
-    assert NEEDED[module] <= words | ({"log"} if module == "app.serve.monitoring.logs" else set())
+    assert INTERNALS[module] <= words | ({"log"} if module == "app.serve.monitoring.logs" else set())
 
 
 #: Attributes that app/serve/document/changes.py uses of documented classes: Bokeh's documents, models and their events,
@@ -267,7 +267,7 @@ def test_the_table_names_what_is_used_of_bokeh_without_an_underscore() -> None:
     own = {node.name for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)} | {"arrays", "connection"}
     used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)
             and ast.unparse(node.value).split(".")[0] not in ({"self", *names} - {"pn"})}
-    assert used - own - DOCUMENTED_ATTRIBUTES <= NEEDED[module]
+    assert used - own - DOCUMENTED_ATTRIBUTES <= INTERNALS[module]
 
 
 def test_the_documentation_names_what_is_used_of_numba() -> None:

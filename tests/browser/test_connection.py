@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from http.client import HTTPConnection
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 from bokeh_figures import FIGURES
 from evidence import watch
 from knobs import COMPILED, field, knob, type_into
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 from server import Server
 
 
@@ -211,3 +214,34 @@ def test_what_the_server_never_heard_of_comes_back_too(server: Server, page: Pag
     for name, typed in moved.items():
         expect(field(page, name)).to_have_value(typed)
     page.wait_for_function(BELONGS, arg=float(value(page)))
+
+
+def test_a_page_that_has_lost_its_place_before_it_connects_comes_back(chromium: Browser, server: Server, request: pytest.FixtureRequest) -> None:
+    """Its token is used up here, so its websocket is refused as that of a page that made room for a newer one."""
+    context = chromium.new_context(viewport={"width": 1280, "height": 800})
+    page = context.new_page()
+    watch(request.node, page, server.log)
+    place, used = urlsplit(server.address), list[HTTPConnection]()
+
+    def use_token(route: Route) -> None:
+        if used:
+            route.continue_()
+            return
+        answer = route.fetch()
+        found = re.search(r'"token":"([^"]+)"', answer.text())
+        assert found is not None
+        used.append(HTTPConnection(str(place.hostname), place.port))
+        used[0].request("GET", "/ws", headers={
+            "Upgrade": "websocket", "Connection": "Upgrade", "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==",
+            "Sec-WebSocket-Version": "13", "Sec-WebSocket-Protocol": f"bokeh, {found[1]}", "Origin": f"http://{place.netloc}"})
+        assert used[0].getresponse().status == 101
+        route.fulfill(response=answer)
+
+    page.route(lambda address: urlsplit(address).path == "/", use_token)
+    page.add_init_script(FIRST + FIGURES)
+    page.goto(f"{server.address}?v=1&scene=sec2&f=1130&D=90&start=previous")
+    page.wait_for_function(BELONGS, arg=1130, timeout=COMPILED)
+    assert len(used) == 1 and (value(page), value(page, "D")) == ("1130", "90")
+    expect(page.locator("#lost")).to_be_hidden()
+    used[0].close()
+    context.close()

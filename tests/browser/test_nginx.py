@@ -144,6 +144,14 @@ def test_pages_beyond_the_rate_are_asked_to_try_again_and_none_waits(port: int) 
     assert answers(port, "/liveness", source).status == 200
 
 
+def test_attempts_to_sign_in_are_limited(port: int) -> None:
+    """For each address, however many there are from others; these processes ask nobody to sign in, and answer 404."""
+    found = [answers(port, "/login", "127.3.3.3").status for _ in range(15)]
+    assert found[:11] == [404] * 11 and 429 in found[11:]
+    assert answers(port, "/login", "127.3.3.4").status == 404
+    assert answers(port, "/liveness", "127.3.3.3").status == 200
+
+
 def test_a_visitor_always_reaches_the_same_process_and_not_all_the_same_one(port: int) -> None:
     def reached(source: str) -> str | None:
         return answers(port, "/liveness", source).headers["X-Process"]

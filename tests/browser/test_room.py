@@ -24,7 +24,7 @@ TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap((
   const host = document.getElementById(id).getBoundingClientRect();
   const view = figures.viewOf(figures.model(name));
   const pen = document.createElement("canvas").getContext("2d");
-  const size = getComputedStyle(document.documentElement).getPropertyValue("--small");
+  const size = getComputedStyle(document.documentElement).getPropertyValue("--small-text-size");
   pen.font = `bold ${size} helvetica`;
   if (!view?.frame) return [["", -1]];
   const { left, right } = view.frame.bbox;
@@ -38,7 +38,7 @@ TITLES = """() => [["left", "input force"], ["right", "output force"]].flatMap((
 BEADS = """() => {
   const map = figures.viewOf(figures.model("kinetic energy"));
   const pen = document.createElement("canvas").getContext("2d");
-  pen.font = `${getComputedStyle(document.documentElement).getPropertyValue("--small")} helvetica`;
+  pen.font = `${getComputedStyle(document.documentElement).getPropertyValue("--small-text-size")} helvetica`;
   const { x_scale } = map.frame, { interval } = map.model.above[0].ticker;
   return x_scale.compute(interval) - x_scale.compute(0) - pen.measureText("10").width;
 }"""
@@ -76,7 +76,7 @@ def fits(page: Page) -> None:
 
 def test_dark_differs_from_light_in_colours_only() -> None:
     """The tests below look at the light theme only: with equal sizes, what fits there fits in the dark one."""
-    for role in ("line", "type", "small"):
+    for role in ("line_scale", "text_size", "small_text_size"):
         assert getattr(THEMES["dark"], role) == getattr(THEMES["light"], role)
     dark = next(rule for rule in style_sheet().splitlines() if "data-theme=dark" in rule)
     values = re.findall(r"--[\w-]+: ([^;}]+)", dark)

@@ -124,7 +124,7 @@ def test_nothing_is_left_of_a_command_that_is_killed(name: str, started: Callabl
 
 def test_the_page_of_hard_cases_leaves_no_process_either(started: Callable[..., Command]) -> None:
     program = ("from granchain_core.hard_cases import CASES\nfrom granchain_core.execution.stop import Stop\n"
-               "from app.pages.hard.work import CaseProcess\n"
+               "from app.pages.hard_cases.work import CaseProcess\n"
                "for case in CASES:\n    print(case.name, flush=True)\n    list(CaseProcess().measure(case, Stop()))\n")
     command = started(program=("-c", program))
     while not command.descendants():

@@ -15,4 +15,4 @@ def test_a_visitor_who_leaves_ends_everything_although_one_end_fails(dashboard: 
         dashboard.on_close(lambda number=number: ended.append(number) if number != 1 else 1 / 0)  # type: ignore[misc]
     dashboard.close(None)
     assert ended == [0, 2] and METRICS.counted["errors"] == errors + 1
-    assert "not quite forgotten" in caplog.text
+    assert "cleanup of a closed session failed" in caplog.text

@@ -50,7 +50,7 @@ def test_a_live_run_is_made_in_a_thread(dashboard: Dashboard, monkeypatch: pytes
     assert threads == []
     pictures.advance(7)
     dashboard.run_callbacks_until(lambda: pictures.shown_run() is not None)
-    assert threads == ["visitors", "visitors"]
+    assert threads == ["session_work", "session_work"]
 
 
 def test_two_pictures_are_in_transit_from_the_first_step_on(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -31,16 +31,16 @@ def properties(name: str) -> dict[str, str]:
 def test_the_page_has_the_colours_of_its_pictures(name: str) -> None:
     style, theme = properties(name), THEMES[name]
     assert style.pop("color-scheme") == theme.scheme
-    assert (style.pop("--small"), style.pop("--type")) == (f"{theme.small}px", f"{theme.type}px")
+    assert (style.pop("--small-text-size"), style.pop("--text-size")) == (f"{theme.small_text_size}px", f"{theme.text_size}px")
     assert style == {f"--{field.name.replace('_', '-')}": str(getattr(theme, field.name)) for field in fields(Theme)
-                     if field.name not in ("scheme", "small", "type")} | {
+                     if field.name not in ("scheme", "small_text_size", "text_size")} | {
         "--drive": DRIVE.colour, "--input": INPUT.colour, "--output": OUTPUT.colour}
 
 
 def test_no_theme_but_the_projectors_fixes_the_size_of_words() -> None:
     """On a large or small screen dashboard.css gives them another size, in a rule for `:root` alone."""
     rules = dict(re.findall(r"(\S+) \{ (.*) \}", style_sheet()))
-    assert [selector for selector, body in rules.items() if "--type" in body] == [":root", ":root[data-theme=projector]"]
+    assert [selector for selector, body in rules.items() if "--text-size" in body] == [":root", ":root[data-theme=projector]"]
 
 
 @pytest.mark.parametrize("path", sorted(Path(app.__file__).parent.rglob("*.css")), ids=lambda path: path.name)

@@ -53,4 +53,4 @@ def test_a_theme_is_the_same_whether_drawn_in_it_or_applied_later(name: str) -> 
     drawn = seen(check(picture, theme))
     assert drawn == seen(apply_theme(check(picture, LIGHT), theme))
     assert len(set(drawn)) == 5
-    assert drawn[1][0] == theme.ink and drawn[1][1] == 2.6 * theme.line  # type: ignore[index]
+    assert drawn[1][0] == theme.ink and drawn[1][1] == 2.6 * theme.line_scale  # type: ignore[index]

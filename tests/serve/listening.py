@@ -14,6 +14,8 @@ from tornado.ioloop import IOLoop
 
 from app.server import Access, server_at
 
+SECRET = b"a secret of tests alone, long enough"
+
 
 class Listening:
     """A dashboard in a thread, reached at an address of this machine."""
@@ -70,4 +72,7 @@ class Listening:
                  "Sec-WebSocket-Key": "dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version": "13",
                  "Sec-WebSocket-Protocol": f"bokeh, {token}", "Origin": f"http://127.0.0.1:{self.port}", **headers}
         one.sendall(("GET /ws HTTP/1.1\r\n" + "".join(f"{a}: {b}\r\n" for a, b in words.items()) + "\r\n").encode())
-        return int(one.recv(4096).split()[1]), one
+        answer = b""
+        while not answer.endswith(b"\r\n\r\n") and (byte := one.recv(1)):  # what comes after the head is the caller's
+            answer += byte
+        return int(answer.split()[1]), one

@@ -70,14 +70,14 @@ def test_a_page_that_could_not_be_made_is_no_visitor(monkeypatch: pytest.MonkeyP
     def fails(*_: object) -> None:
         raise ZeroDivisionError
 
-    one, before = Listening(Access()), METRICS.visitors
+    one, before = Listening(Access()), METRICS.sessions
     try:
         monkeypatch.setattr(Views, "put_into", fails)
         assert 'id="knobs"' not in one.ask()[2]
-        assert METRICS.visitors == before
+        assert METRICS.sessions == before
         monkeypatch.undo()
         assert one.connect(one.token()) == 101
-        until(lambda: METRICS.visitors == before, pause=lambda: time.sleep(0.05))
+        until(lambda: METRICS.sessions == before, pause=lambda: time.sleep(0.05))
     finally:
         one.stop()
 

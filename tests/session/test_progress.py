@@ -10,7 +10,7 @@ from typing import get_args
 import pytest
 
 from app.pages.branches.page import WORDS as BRANCHES
-from app.pages.hard.page import WORDS as HARD_CASES
+from app.pages.hard_cases.page import WORDS as HARD_CASES
 from app.pages.map.page import SEARCH_WORDS
 from app.session import progress as module
 from app.session.progress import UNDER_WAY, Status, StatusWords

@@ -3,6 +3,7 @@
     python -m tools.visitors --count 24 --minutes 1
     python -m tools.visitors --count 24 --minutes 1 --heavy      with nine pages of 10,000 beads at 0.1 Hz beside them
     python -m tools.visitors soak --minutes 120                  visits that open, move and leave: memory, threads, …
+    python -m tools.visitors restart --count 200                 how soon all pages are back after a restart
 
 It starts a server of its own; `--address` names one that runs already.
 """
@@ -14,14 +15,14 @@ import asyncio
 import tempfile
 from pathlib import Path
 
-from . import load, soak
+from . import load, restart, soak
 from .started import Started
 
 
 def main() -> None:
-    """Read the options, run the load or the soak, print its table."""
+    """Read the options, run the load, the soak or the restart, print its table."""
     parser = argparse.ArgumentParser(prog="python -m tools.visitors", description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("what", nargs="?", choices=("load", "soak"), default="load")
+    parser.add_argument("what", nargs="?", choices=("load", "soak", "restart"), default="load")
     parser.add_argument("--count", type=int, default=24, help="visitors")
     parser.add_argument("--minutes", type=float, default=1.0)
     parser.add_argument("--heavy", "--bomb", action="store_true",
@@ -33,6 +34,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder, Started(options.address, Path(folder) / "log") as server:
         if options.what == "soak":
             asyncio.run(soak.run(server, options.minutes, options.seed))
+        elif options.what == "restart":
+            asyncio.run(restart.run(server, options.count, options.seed))
         else:
             asyncio.run(load.run(server, options.count, options.minutes, options.heavy, options.same, options.seed))
 

@@ -24,10 +24,7 @@ class Started:
 
     def __enter__(self) -> Started:
         if self._ours:
-            port = self.address.rpartition(":")[2]
-            with self._log.open("wb") as output:
-                self.process = subprocess.Popen([sys.executable, "-m", "app.cli", "serve", "--port", port], cwd=ROOT,
-                                                stdout=output, stderr=output)
+            self._start()
         end = time.monotonic() + 60
         while True:
             try:
@@ -37,6 +34,18 @@ class Started:
                 if time.monotonic() > end:
                     raise
                 time.sleep(0.2)
+
+    def _start(self) -> None:
+        with self._log.open("ab") as output:
+            self.process = subprocess.Popen([sys.executable, "-m", "app.cli", "serve", "--port", self.address.rpartition(":")[2]],
+                                            cwd=ROOT, stdout=output, stderr=output)
+
+    def restart(self) -> None:
+        """End the process and start another one at the same address; only of a server started here."""
+        assert self.process is not None, "a restart needs a server that this tool starts"
+        self.process.terminate()
+        self.process.wait(timeout=30)
+        self._start()
 
     def __exit__(self, *_: object) -> None:
         if self.process is not None:

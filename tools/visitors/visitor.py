@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import random
 import re
 import time
 from contextlib import suppress
@@ -25,11 +26,13 @@ _LARGEST = 200_000_000
 class Visitor:
     """One visitor: `open`, then `move` and `answered`, then `leave`.
 
-    `arrived` is the time at which the last picture came, by `time.perf_counter`; `pictures` counts them.
+    `arrived` is the time at which the last picture came, by `time.perf_counter`; `pictures` counts them. The scripts of
+    the page take `scripts_time` to load, at least and at most [s].
     """
 
-    def __init__(self, address: str, query: str = "") -> None:
+    def __init__(self, address: str, query: str = "", scripts_time: tuple[float, float] = (0.0, 0.0)) -> None:
         self.address, self.query = address.rstrip("/"), query
+        self._scripts_time = scripts_time
         self.arrived, self.pictures, self.opened_in = 0.0, 0, 0.0
         self.sentences: list[str] = []
         self.shown: set[str] = set()
@@ -43,6 +46,7 @@ class Visitor:
     async def open(self, patience: float = 120.0) -> None:
         """Load the page and wait for its first picture."""
         began = time.perf_counter()
+        self._picture.clear()
         client = AsyncHTTPClient(max_clients=1000)
         page = await client.fetch(HTTPRequest(f"{self.address}/{self.query}", request_timeout=patience,
                                               connect_timeout=patience))
@@ -50,6 +54,7 @@ class Visitor:
         if found is None:
             raise RuntimeError("the page has no token")
         token = found.group(1)
+        await asyncio.sleep(random.uniform(*self._scripts_time))
         place = urlsplit(self.address)
         request = HTTPRequest(f"ws://{place.netloc}/ws", request_timeout=patience, connect_timeout=patience,
                               headers={"Origin": self.address})
@@ -74,6 +79,13 @@ class Visitor:
             if name != "f" or f"{value}" in self.shown:
                 return self.arrived - began
             self._picture.clear()
+
+    async def lost(self) -> None:
+        """Wait until the server closes the connection."""
+        assert self._reader is not None
+        await asyncio.wait([self._reader])
+        if self._pings is not None:
+            self._pings.cancel()
 
     async def leave(self) -> None:
         """Close the page."""
@@ -104,8 +116,9 @@ class Visitor:
         assert self._socket is not None
         self._last += 1
         with suppress(WebSocketClosedError):  # parts of two messages must not mix: nothing is awaited in between
-            await asyncio.gather(*[self._socket.write_message(json.dumps(part))
-                                   for part in ({"msgid": str(self._last), "msgtype": kind}, {}, content)])
+            await asyncio.gather(*[self._socket.write_message(json.dumps(part))  # each of them may find it closed
+                                   for part in ({"msgid": str(self._last), "msgtype": kind}, {}, content)],
+                                 return_exceptions=True)
 
     async def _read(self) -> None:
         """Messages of header, metadata, content, and a header and a payload for each buffer."""

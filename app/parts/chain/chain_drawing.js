@@ -35,8 +35,8 @@ export class ChainDrawing {
       input: read("--input"),
       output: read("--output"),
       accent: read("--accent"),
-      bold: parseFloat(read("--line")) || 1,
-      small: read("--small"),
+      bold: parseFloat(read("--line-scale")) || 1,
+      small: read("--small-text-size"),
       font: read("--font"),
     };
     this.steel.forget();

@@ -2,19 +2,9 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, nullcontext
 from typing import Any
 
-from bokeh.document import Document
 from bokeh.models import BasicTicker, Grid, LinearAxis, Plot
-
-from ...needed import Needed
-
-#: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.document.models.DocumentModelManager", ("freeze",),
-           "Bokeh collects what a document refers to anew for each part: a page opens more slowly"),
-)
 
 # Borders [px], the same for all figures over time, so that one cursor and the chain fit them exactly.
 TOP = 78
@@ -59,10 +49,3 @@ def bare_axis(axis: Any, colour: str | None = None) -> None:
     axis.major_label_standoff = 2
     if colour:
         axis.css_variables = {"--bk-axis-label-text-color": colour}
-
-
-def models_collected_once(document: Document | None) -> AbstractContextManager[None]:
-    """Collect the document's models once for all that is added to it inside, not anew for each change."""
-    freeze = getattr(getattr(document, "models", None), "freeze", nullcontext)
-    once: AbstractContextManager[None] = freeze()
-    return once

@@ -96,7 +96,7 @@ function broken(words, most) {
 // A whole picture: a title that says what it shows, and below it every piece at its place on the screen.
 function sheet(title, { parts, words, bars }) {
   const all = bounds([...parts, ...words, ...bars].map(({ box }) => box));
-  const line = parseFloat(style("--small")) || 14;
+  const line = parseFloat(style("--small-text-size")) || 14;
   const lines = broken(title, all.width / (0.56 * line)); // 0.56: mean width of a letter over the height of a line
   const head = 1.25 * line * lines.length + 2 * MARGIN;
   return {

@@ -75,6 +75,7 @@
 
     constructor() {
       if (this.#again) this.#showLastPictures();
+      this.#watchFirstSocket();
       setInterval(() => this.#tick(), TICK);
     }
 
@@ -127,12 +128,28 @@
       if (this.#lost && !this.#closed) this.#setLost(false);
     }
 
+    // Bokeh gives up the first connection without an event. The server refuses it if the page has lost its place to a
+    // newer one, as some do where all pages of a full server come back at once.
+    #watchFirstSocket() {
+      const closed = () => {
+        if (this.#ping) return; // Bokeh reports it
+        this.#closed = true;
+        this.#tick();
+      };
+      window.WebSocket = class extends WebSocket {
+        constructor(...args) {
+          super(...args);
+          this.addEventListener("close", closed);
+        }
+      };
+    }
+
     // A late tick counts as four at most: the server is not to blame if the computer slept or the page is busy.
     #tick() {
       const now = performance.now(),
         passed = Math.min(now - this.#lastTick, 4 * TICK);
       this.#lastTick = now;
-      if (this.#leaving || !this.#ping || (document.hidden && !this.#closed)) return;
+      if (this.#leaving || !(this.#ping || this.#closed) || (document.hidden && !this.#closed)) return;
       this.#countSilence(passed);
       if (!this.#lost && (this.#closed || this.#sincePing > PING_TIMEOUT)) this.#setLost(true);
       if (!this.#lost) return;
@@ -176,7 +193,8 @@
       this.#leaving = true;
       try {
         const { at } = granchain.steps;
-        sessionStorage.setItem(AGAIN, JSON.stringify({ ...this.#kept, at, snapshot: LastPictures.taken() }));
+        const before = this.#ping ? {} : this.#again; // a page that had no connection has no pictures of its own
+        sessionStorage.setItem(AGAIN, JSON.stringify({ ...this.#kept, at, snapshot: LastPictures.taken(), ...before }));
       } catch {
         /* no room to keep them: the sentence and the last pictures are missing for a moment */
       }

@@ -54,7 +54,7 @@ export class StageLayout {
   // Whether an axis title under the force trains is wider than its room.
   isCompact({ left, right }) {
     const pen = document.createElement("canvas").getContext("2d");
-    pen.font = `bold ${getComputedStyle(document.documentElement).getPropertyValue("--small").trim()} helvetica`;
+    pen.font = `bold ${getComputedStyle(document.documentElement).getPropertyValue("--small-text-size").trim()} helvetica`;
     const room = (id) => document.getElementById(id).clientWidth;
     const width = (title) => pen.measureText(title).width;
     return width(left) > room("left") - this.left + this.gap || width(right) > room("right") - 2 * this.gap;

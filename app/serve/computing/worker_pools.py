@@ -1,34 +1,24 @@
 """Where computations of the dashboard run.
 
-All sessions share named pools of threads. Each session has two latest-wins jobs, one for the picture and one for
-drafts of the curve. Kernels release the GIL, so threads are enough; those that compute pictures take fair turns
-(turns.py). Long work has pools of its own, because a picture must never wait for it.
+All sessions share named pools of threads. Kernels release the GIL, so threads are enough; those that compute pictures
+take fair turns (turns.py), and of a session's pictures the latest request counts (latest_wins.py). Long work has pools
+of its own, because a picture must never wait for it.
 """
 
 from __future__ import annotations
 
-import heapq
-import logging
 import threading
-import time
 from collections import Counter, deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import Future
 from functools import partial
 from itertools import count
 from queue import SimpleQueue
 from typing import TypeVar
 
-from granchain_core import Cancelled
-
-from ..monitoring.metrics import METRICS
-from .cpu_time import CpuTime
 from .priorities import begin, has_lower_priority, lower_priority
-from .turns import TurnFlag
 
 Result = TypeVar("Result")
-
-log = logging.getLogger("granchain")
 
 
 class WorkerPool:
@@ -69,7 +59,7 @@ class WorkerPool:
         with self._lock:
             return sum(map(len, self._held.values()))
 
-    def submit(self, work: Callable[..., Result], *arguments: object, owner: object = None) -> Future[Result]:
+    def submit(self, work: Callable[..., Result], *args: object, owner: object = None) -> Future[Result]:
         """Call `work` as soon as a thread is free; the future has what it returns or raises.
 
         Work without an `owner` has no limit. If the future is cancelled before the work has begun, the work
@@ -77,7 +67,7 @@ class WorkerPool:
         """
         future: Future[Result] = Future()
         limited = self.per_owner_limit is not None and owner is not None
-        piece = [partial(work, *arguments)]
+        piece = [partial(work, *args)]
         owners = [owner]  # emptied at the end: a future keeps its callbacks, and they would keep the owner
 
         def do() -> None:
@@ -173,10 +163,9 @@ class WorkerPool:
 
 
 #: One thread for each session whose picture is awaited; live steps, energy accounts and drafts are computed in it. The
-#: number of threads is limited because each takes memory. It is below the largest `--most-visitors`, since most pages
-#: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served. In
-#: `/metrics` the pool keeps its older name.
-SESSION_WORK = WorkerPool("visitors", 1000)
+#: number of threads is limited because each takes memory. It is below the largest `--max-sessions`, since most pages
+#: rest: only if more than this many are answered at once, the next wait for a thread, first come, first served.
+SESSION_WORK = WorkerPool("session_work", 1000)
 #: Pictures. There are more threads than cores, because turns decide who computes (turns.py), and a picture that waits
 #: for the compiler keeps its thread. While more pictures than this are computed or wait for a turn, the next wait for a
 #: thread, first come, first served: turns do not put a first picture before refinements then.
@@ -206,139 +195,3 @@ POOLS = (SESSION_WORK, PICTURES, ANALYSES, FILES, LOADING, CURVES, SWEEPS, LONG,
 #: Those whose threads compute while they are busy. A thread of `PICTURES` or `SESSION_WORK` computes while it has a
 #: turn, and one of `CURVES` waits for `SWEEPS`.
 COMPUTING = (ANALYSES, SWEEPS, LONG, MEASUREMENTS)
-
-TurnWork = Callable[[TurnFlag], Iterator[object]]
-
-#: Time for which a first result is computed before a newer request stops it [s].
-_FIRST_RESULT_TIME = 1.0
-
-
-class _Alarms:
-    """One thread that calls actions when they are due."""
-
-    def __init__(self) -> None:
-        self._changed = threading.Condition()
-        self._due: list[tuple[float, int, Callable[..., None], tuple[object, ...]]] = []
-        self._count = 0
-        self._thread: threading.Thread | None = None
-
-    def __call__(self, seconds: float, action: Callable[..., None], *arguments: object) -> None:
-        """Call `action` after `seconds`."""
-        with self._changed:
-            self._count += 1
-            heapq.heappush(self._due, (time.monotonic() + seconds, self._count, action, arguments))
-            if self._thread is None:
-                self._thread = threading.Thread(target=self._serve, daemon=True, name="alarms")
-                self._thread.start()
-            self._changed.notify()
-
-    def _serve(self) -> None:
-        while True:
-            with self._changed:
-                while not self._due or self._due[0][0] > time.monotonic():
-                    self._changed.wait(self._due[0][0] - time.monotonic() if self._due else None)
-                _, _, action, arguments = heapq.heappop(self._due)
-            action(*arguments)
-            del action, arguments
-
-
-_later = _Alarms()
-
-
-class LatestWins:
-    """One running computation for a session; a newer one replaces whatever waits.
-
-    A computation is an iterator of ever better results. A newer request stops at once a computation that has had its
-    first result. One that has none yet may take up to a second for it: if each were stopped, nothing would be repainted
-    during a drag.
-    """
-
-    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
-                 cpu_time: CpuTime | None = None) -> None:
-        self._deliver = deliver
-        self._fail = fail
-        self.cpu_time = CpuTime() if cpu_time is None else cpu_time
-        self._lock = threading.Lock()
-        self._waiting: TurnWork | None = None
-        self._running = False
-        self._refining = False
-        self._closed = False
-        self._began = 0.0
-        self._stop = TurnFlag(self.cpu_time)
-
-    @property
-    def busy(self) -> bool:
-        """Whether something is being computed or waits to be."""
-        return self._running
-
-    def submit(self, work: TurnWork) -> None:
-        """Compute `work` next, in place of anything that has not started."""
-        with self._lock:
-            if self._closed:
-                return
-            self._waiting = work
-            left = self._began + _FIRST_RESULT_TIME - time.monotonic()
-            if self._refining or (self._running and left <= 0.0):
-                self._stop.set()
-            elif self._running:
-                _later(left, self._give_up, self._stop)
-            if self._running:
-                return
-            self._running = True
-            self._began = time.monotonic()
-        SESSION_WORK.submit(self._drain)
-
-    def _give_up(self, stop: TurnFlag) -> None:
-        """Give up the computation: its first result has not come within a second, and newer work waits."""
-        with self._lock:
-            if self._stop is stop and self._waiting is not None:
-                stop.set()
-
-    def close(self) -> None:
-        """Stop: nothing more is computed or delivered."""
-        with self._lock:
-            self._closed = True
-            self._waiting = None
-            self._stop.set()
-
-    def _next(self) -> TurnWork | None:
-        with self._lock:
-            work, self._waiting = self._waiting, None
-            self._running = work is not None
-            self._refining = False
-            self._began = time.monotonic()
-            self._stop = TurnFlag(self.cpu_time)
-            if self._closed:
-                self._stop.set()
-            return work
-
-    def _drain(self) -> None:
-        while (work := self._next()) is not None:
-            self._do(work)
-            if has_lower_priority():
-                SESSION_WORK.submit(self._drain)
-                return
-
-    def _do(self, work: TurnWork) -> None:
-        """Deliver the results of a computation; after each, end it if newer work waits. A failure is reported."""
-        try:
-            for result in work(self._stop):
-                if self._closed:
-                    break
-                self._deliver(result)
-                with self._lock:
-                    self._refining = True
-                    if self._waiting is not None or self._closed:
-                        break
-        except Cancelled:
-            METRICS.count("cancelled")
-        except Exception as error:
-            self._report(error)
-
-    def _report(self, error: Exception) -> None:
-        """Report a failure; if reporting fails as well, log that, so that the next computation still begins."""
-        try:
-            if not self._closed:
-                self._fail(error)
-        except Exception:
-            log.exception("a failure could not be reported to its page")

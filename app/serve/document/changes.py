@@ -28,7 +28,7 @@ from bokeh.models import ColumnarDataSource
 from tornado.iostream import IOStream, StreamClosedError
 from tornado.locks import Lock
 
-from ...needed import Needed, missing
+from ...library_internals import Internal, internals, missing
 
 #: Largest integer that JavaScript represents exactly.
 _LARGEST_SAFE_INTEGER = 2**53 - 1
@@ -38,26 +38,27 @@ _ARRAYS = {"f": "float32", "d": "float64", "i": "int32", "B": "uint8"}
 _LARGEST_INLINE_ARRAY = 8192
 _NUMBERS = itertools.count(1)
 _WITHOUT = "changes leave as Bokeh sends them: a move takes three times as long"
-#: What is used of Bokeh and Tornado beyond their documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.document.callbacks.DocumentCallbackManager",
-           ("_held_events", "hold", "unhold", "hold_value", "trigger_on_change"), _WITHOUT),
-    Needed("bokeh.document.document.Document", ("callbacks",), _WITHOUT),
-    Needed("bokeh.core.has_props.HasProps", ("_property_values",), _WITHOUT),
-    Needed("bokeh.server.session.ServerSession", ("_subscribed_connections",), _WITHOUT),
-    Needed("bokeh.server.connection.ServerConnection", ("_socket", "protocol"), _WITHOUT),
-    Needed("bokeh.protocol.Protocol", ("create",), _WITHOUT),
-    Needed("bokeh.protocol.message.Message", ("header_json", "metadata_json", "content_json", "buffers"), _WITHOUT),
-    Needed("bokeh.core.serialization.Buffer", ("ref", "to_bytes"), _WITHOUT),
-    Needed("bokeh.server.views.ws.WSHandler", ("write_lock",), _WITHOUT),
-    Needed("tornado.websocket.WebSocketHandler", ("ws_connection",), _WITHOUT),
-    Needed("tornado.websocket.WebSocketProtocol", ("stream",), _WITHOUT),
+#: What is used of Bokeh and Tornado beyond their documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("bokeh.document.callbacks.DocumentCallbackManager",
+             ("_held_events", "hold", "unhold", "hold_value", "trigger_on_change"), _WITHOUT),
+    Internal("bokeh.document.document.Document", ("callbacks",), _WITHOUT),
+    Internal("bokeh.core.has_props.HasProps", ("_property_values",), _WITHOUT),
+    Internal("bokeh.server.session.ServerSession", ("_subscribed_connections",), _WITHOUT),
+    Internal("bokeh.server.connection.ServerConnection", ("_socket", "protocol"), _WITHOUT),
+    Internal("bokeh.protocol.Protocol", ("create",), _WITHOUT),
+    Internal("bokeh.protocol.message.Message", ("header_json", "metadata_json", "content_json", "buffers"), _WITHOUT),
+    Internal("bokeh.core.serialization.Buffer", ("ref", "to_bytes"), _WITHOUT),
+    Internal("bokeh.server.views.ws.WSHandler", ("write_lock",), _WITHOUT),
+    Internal("tornado.websocket.WebSocketHandler", ("ws_connection",), _WITHOUT),
+    Internal("tornado.websocket.WebSocketProtocol", ("stream",), _WITHOUT),
 )
 
 
 def is_complete() -> bool:
-    """Whether the installed releases have all of `NEEDED`."""
-    return not missing(NEEDED)
+    """Whether the installed releases have all of `INTERNALS`."""
+    return not missing(INTERNALS)
 
 
 _COMPLETE = is_complete()

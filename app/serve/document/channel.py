@@ -22,17 +22,18 @@ try:
 except ImportError:  # it is not in Panel's documentation
     set_curdoc = None  # type: ignore[assignment]
 
-from ...needed import Needed
+from ...library_internals import Internal, internals
 from ..monitoring.metrics import METRICS
 from .changes import batched_changes
 
 log = logging.getLogger("granchain.page")
 
 _WITHOUT = "Bokeh calls back each action by itself, some milliseconds slower"
-#: What is used of Bokeh and Panel beyond their documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.server.session.ServerSession", ("_lock", "_pending_writes"), _WITHOUT),
-    Needed("panel.io.state", ("set_curdoc",), _WITHOUT),
+#: What is used of Bokeh and Panel beyond their documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("bokeh.server.session.ServerSession", ("_lock", "_pending_writes"), _WITHOUT),
+    Internal("panel.io.state", ("set_curdoc",), _WITHOUT),
 )
 
 #: Writes of Bokeh that are not finished. Nothing else keeps these tasks alive: the loop has only weak references.

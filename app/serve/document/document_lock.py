@@ -7,12 +7,13 @@ from collections.abc import Callable
 import panel as pn
 from bokeh.document import Document
 
-from ...needed import Needed
+from ...library_internals import Internal, internals
 
-#: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.server.session.ServerSession", ("_pending_writes",),
-           "every message waits for the next iteration of the event loop"),
+#: What is used of Bokeh beyond its documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("bokeh.server.session.ServerSession", ("_pending_writes",),
+             "every message waits for the next iteration of the event loop"),
 )
 
 

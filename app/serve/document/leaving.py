@@ -8,12 +8,14 @@ from typing import Any
 
 from bokeh.document import Document
 
-from ...needed import Needed
+from ...library_internals import Internal, internals
 
-#: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.server.session.ServerSession", ("request_expiration",),
-           "a page that was left counts as a visitor and stays in memory for a minute, but nothing is computed for it"),
+#: What is used of Bokeh beyond its documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("bokeh.server.session.ServerSession", ("request_expiration",),
+             "a page that was left counts as a session and stays in memory for a minute, but nothing is computed "
+             "for it"),
 )
 
 #: What a page does when its session ends.

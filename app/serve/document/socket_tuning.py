@@ -11,15 +11,16 @@ import socket
 from bokeh.document import Document
 from tornado.iostream import IOStream
 
-from ...needed import Needed
+from ...library_internals import Internal, internals
 
 _WITHOUT = "messages wait for the acknowledgement of earlier ones"
-#: What is used of Bokeh and Tornado beyond their documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.server.session.ServerSession", ("_subscribed_connections",), _WITHOUT),
-    Needed("bokeh.server.connection.ServerConnection", ("_socket",), _WITHOUT),
-    Needed("tornado.websocket.WebSocketHandler", ("ws_connection",), _WITHOUT),
-    Needed("tornado.websocket.WebSocketProtocol", ("stream",), _WITHOUT),
+#: What is used of Bokeh and Tornado beyond their documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("bokeh.server.session.ServerSession", ("_subscribed_connections",), _WITHOUT),
+    Internal("bokeh.server.connection.ServerConnection", ("_socket",), _WITHOUT),
+    Internal("tornado.websocket.WebSocketHandler", ("ws_connection",), _WITHOUT),
+    Internal("tornado.websocket.WebSocketProtocol", ("stream",), _WITHOUT),
 )
 
 

@@ -1,14 +1,14 @@
-"""Limits of the number of visitors and of uploads, which several modules need.
+"""Limits of the number of sessions and of uploads, which several modules need.
 
 The other limits of docs/security.md are beside what they limit: frames.py, sessions.py, message_rules.py,
 app/server.py, app/session/share.py and app/session/budget.py. The module imports nothing, because the command line
 reads it before it loads the server.
 """
 
-#: Pages open at once, by default.
-USUAL_VISITORS = 200
-#: The largest value of the option `--most-visitors`.
-MOST_VISITORS = 10_000
+#: Sessions at once, by default.
+USUAL_SESSIONS = 200
+#: The largest value of the option `--max-sessions`.
+MOST_SESSIONS = 10_000
 #: Largest file of a measurement [bytes].
 LARGEST_UPLOAD = 2_000_000
 #: Most points of a measurement.

@@ -29,7 +29,7 @@ class Sessions:
         self.most_loading = max(1, most // 2)
         #: Set when the server is there; requests come later.
         self.server: Server | None = None
-        #: Ids of the sessions that have had their connection, or may have none any more, and since when [s].
+        #: Ids of the sessions that have connected or were evicted, and when [s].
         self._claimed: dict[str, float] = {}
 
     @property

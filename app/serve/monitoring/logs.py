@@ -7,11 +7,13 @@ import logging
 import sys
 import time
 
-from ...needed import Needed
+from ...library_internals import Internal, internals
 
-#: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.server.protocol_handler", ("log",), "messages that Bokeh cannot handle leave tracebacks in the log"),
+#: What is used of Bokeh beyond its documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("bokeh.server.protocol_handler", ("log",),
+             "messages that Bokeh cannot handle leave tracebacks in the log"),
 )
 
 #: What a line may have beside time, level, logger and message.

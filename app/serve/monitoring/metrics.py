@@ -34,17 +34,28 @@ COUNTERS = {
     "pictures": "Pictures sent, steps of live runs included. Pictures that were replaced before they were sent are not "
                 "counted.",
     "cancelled": "Computations of pictures that were cancelled.",
-    "refused_visitors": "Visitors refused because there were as many as `--most-visitors`.",
+    "refused_sessions": "Sessions refused because there were as many as `--max-sessions`.",
     "refused_pictures": "Pictures refused because they would take too long.",
     "refused_messages": "Messages that no page sends, and too many frames; each closed its connection.",
     "errors": "Unexpected failures; each is in the log.",
 }
 
 
-class Metric(NamedTuple):
-    """A metric as Prometheus has it; its name begins with `granchain_`, and that of a counter ends with `_total`.
+#: Names that metrics had before: those who ask for them still get them.
+FORMER_NAMES = {
+    "granchain_sessions": "granchain_visitors",
+    "granchain_sessions_opened_total": "granchain_visits_total",
+    "granchain_refused_sessions_total": "granchain_refused_visitors_total",
+    "process_resident_memory_bytes": "granchain_resident_memory_bytes",
+    "process_threads": "granchain_threads",
+}
 
-    `read` is called when somebody asks. With a `label` it gives a number for each of the label's values.
+
+class Metric(NamedTuple):
+    """A metric as Prometheus has it; the name of a counter ends with `_total`.
+
+    `read` is called when somebody asks. With a `label` it gives a number for each of the label's values. The prefix is
+    `process` where clients of Prometheus for any program give the same.
     """
 
     name: str
@@ -52,6 +63,12 @@ class Metric(NamedTuple):
     help: str
     read: Callable[[], float | Mapping[str, float]]
     label: str = ""
+    prefix: str = "granchain"
+
+    @property
+    def full_name(self) -> str:
+        """The name in `/metrics`."""
+        return f"{self.prefix}_{self.name}"
 
 
 class Metrics:
@@ -59,7 +76,7 @@ class Metrics:
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
-        self.visitors = 0
+        self.sessions = 0
         self.opened = 0
         self.counted = dict.fromkeys(COUNTERS, 0)
         self.answers = [0] * (len(BUCKETS) + 1)
@@ -75,16 +92,16 @@ class Metrics:
         with self._lock:
             self.counted[name] += 1
 
-    def visitor_came(self) -> None:
+    def session_opened(self) -> None:
         """A page was opened."""
         with self._lock:
-            self.visitors += 1
+            self.sessions += 1
             self.opened += 1
 
-    def visitor_left(self) -> None:
+    def session_closed(self) -> None:
         """A page was closed."""
         with self._lock:
-            self.visitors -= 1
+            self.sessions -= 1
 
     def answered(self, seconds: float) -> None:
         """Count a first picture that came `seconds` after the knob moved."""
@@ -117,8 +134,8 @@ class Metrics:
     def table(self) -> list[Metric]:
         """All metrics but the histogram."""
         return [
-            Metric("visitors", "gauge", "Pages that are open.", lambda: self.visitors),
-            Metric("visits_total", "counter", "Pages opened.", lambda: self.opened),
+            Metric("sessions", "gauge", "Sessions: pages that are open.", lambda: self.sessions),
+            Metric("sessions_opened_total", "counter", "Sessions opened.", lambda: self.opened),
             *(Metric(f"{name}_total", "counter", text, partial(self.counted.__getitem__, name))
               for name, text in COUNTERS.items()),
             Metric("event_loop_lag_seconds", "gauge",
@@ -127,8 +144,8 @@ class Metrics:
             Metric("turn_wait_seconds", "gauge",
                    "Mean wait of a computation before it could begin in the last ten seconds; above "
                    f"{_BUSY_WAIT:g} the page says that the server is busy.", self.turn_wait),
-            Metric("resident_memory_bytes", "gauge", "Resident memory.", resident_memory),
-            Metric("threads", "gauge", "Threads.", threading.active_count),
+            Metric("resident_memory_bytes", "gauge", "Resident memory.", resident_memory, prefix="process"),
+            Metric("threads", "gauge", "Threads.", threading.active_count, prefix="process"),
             *self.added,
         ]
 
@@ -136,13 +153,13 @@ class Metrics:
         """The counts in the text format of Prometheus, version 0.0.4."""
         lines: list[str] = []
         for metric in self.table():
-            name = f"granchain_{metric.name}"
-            lines += [f"# HELP {name} {metric.help}", f"# TYPE {name} {metric.kind}"]
             value = metric.read()
-            if isinstance(value, Mapping):
-                lines.extend(f'{name}{{{metric.label}="{key}"}} {_written(one)}' for key, one in value.items())
-            else:
-                lines.append(f"{name} {_written(value)}")
+            for name in filter(None, (metric.full_name, FORMER_NAMES.get(metric.full_name))):
+                lines += [f"# HELP {name} {metric.help}", f"# TYPE {name} {metric.kind}"]
+                if isinstance(value, Mapping):
+                    lines.extend(f'{name}{{{metric.label}="{key}"}} {_written(one)}' for key, one in value.items())
+                else:
+                    lines.append(f"{name} {_written(value)}")
         lines += [f"# HELP {HISTOGRAM} {HISTOGRAM_HELP}", f"# TYPE {HISTOGRAM} histogram"]
         total = 0
         for bound, count in zip((*BUCKETS, float("inf")), self.answers, strict=True):

@@ -1,1 +1,4 @@
-"""Monkeypatches of Bokeh and Panel for the whole process, and overrides of Panel's methods: a page opens faster."""
+"""Monkeypatches of Bokeh and Panel for the whole process, and overrides of Panel's methods.
+
+They put a guard before every handler of requests, and a page opens faster.
+"""

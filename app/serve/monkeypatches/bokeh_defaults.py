@@ -20,21 +20,22 @@ try:
 except ImportError:  # then `missing` names what there is not, and nothing is replaced
     pass
 
-from ...needed import Needed, missing
+from ...library_internals import Internal, internals, missing
 
 _WITHOUT = "opening a page costs half as much again"
-#: What is used of Bokeh beyond its documentation (`app/needed.py`).
-NEEDED = (
-    Needed("bokeh.core.property.descriptors.PropertyDescriptor",
-           ("_get_default", "has_unstable_default", "instance_default", "get_value"), _WITHOUT),
-    Needed("bokeh.core.has_props.HasProps",
-           ("_overridden_defaults", "query_properties_with_values", "themed_values", "__themed_values__",
-            "_property_values", "_unstable_default_values", "_initialized", "properties_with_refs", "lookup"),
-           _WITHOUT),
-    Needed("bokeh.core.has_props.HasProps.properties", ("_with_props",), _WITHOUT),
-    Needed("bokeh.model.util",
-           ("visit_immediate_value_references", "visit_value_and_its_immediate_references"), _WITHOUT),
-    Needed("bokeh.core.property.wrappers", ("PropertyValueContainer",), _WITHOUT),
+#: What is used of Bokeh beyond its documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("bokeh.core.property.descriptors.PropertyDescriptor",
+             ("_get_default", "has_unstable_default", "instance_default", "get_value"), _WITHOUT),
+    Internal("bokeh.core.has_props.HasProps",
+             ("_overridden_defaults", "query_properties_with_values", "themed_values", "__themed_values__",
+              "_property_values", "_unstable_default_values", "_initialized", "properties_with_refs", "lookup"),
+             _WITHOUT),
+    Internal("bokeh.core.has_props.HasProps.properties", ("_with_props",), _WITHOUT),
+    Internal("bokeh.model.util",
+             ("visit_immediate_value_references", "visit_value_and_its_immediate_references"), _WITHOUT),
+    Internal("bokeh.core.property.wrappers", ("PropertyValueContainer",), _WITHOUT),
 )
 
 #: Types of immutable values: models can share them.
@@ -53,7 +54,7 @@ class _Remembered:
 
 def install_defaults_cache() -> None:
     """Replace the functions by which Bokeh finds the defaults of its models."""
-    if missing(NEEDED) or hasattr(PropertyDescriptor._get_default, "known"):
+    if missing(INTERNALS) or hasattr(PropertyDescriptor._get_default, "known"):
         return
     find: Any = PropertyDescriptor._get_default
     overridden: Any = HasProps._overridden_defaults

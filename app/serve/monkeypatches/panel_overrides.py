@@ -15,7 +15,7 @@ from bokeh.model import Model, collect_models
 from bokeh.models import ImportedStyleSheet
 from panel.reactive import Syncable
 
-from ...needed import Needed
+from ...library_internals import Internal, internals
 from ..document.changes import is_batched, send_event, set_properties
 
 try:
@@ -29,14 +29,15 @@ except ImportError:  # nor is this
     ESMEvent = None  # type: ignore[assignment,misc]
 
 _WITHOUT = "Panel's own way is taken, some milliseconds slower"
-#: What is used of Panel and Param beyond their documentation (`app/needed.py`).
-NEEDED = (
-    Needed("panel.custom.JSComponent",
-           ("_get_properties", "_get_children", "_update_properties", "_process_event", "_process_bokeh_event",
+#: What is used of Panel and Param beyond their documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("panel.custom.JSComponent",
+             ("_get_properties", "_get_children", "_update_properties", "_process_event", "_process_bokeh_event",
             "_models"), _WITHOUT),
-    Needed("param.parameterized.Parameterized", ("_param__private",), _WITHOUT),
-    Needed("panel.io.state", ("set_curdoc",), _WITHOUT),
-    Needed("panel.models.esm", ("ESMEvent",), _WITHOUT),
+    Internal("param.parameterized.Parameterized", ("_param__private",), _WITHOUT),
+    Internal("panel.io.state", ("set_curdoc",), _WITHOUT),
+    Internal("panel.models.esm", ("ESMEvent",), _WITHOUT),
 )
 
 
@@ -103,10 +104,10 @@ class WithoutChildren:
     Panel looks at all 40 parameters of each. Where a release asks in another way, it is asked again.
     """
 
-    def _get_children(self, *arguments: Any) -> Any:
+    def _get_children(self, *args: Any) -> Any:
         if type(self) in _CHILDLESS:
             return {}, []
-        found = super()._get_children(*arguments)  # type: ignore[misc]
+        found = super()._get_children(*args)  # type: ignore[misc]
         if found == ({}, []):
             _CHILDLESS.add(type(self))
         return found

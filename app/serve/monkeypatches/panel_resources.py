@@ -10,13 +10,14 @@ import panel.io.server as pages
 from bokeh.model import Model
 from bokeh.models import ImportedStyleSheet
 
-from ...needed import Needed
+from ...library_internals import Internal, internals
 
 _WITHOUT = "a page opens a tenth slower"
-#: What is used of Panel beyond its documentation (`app/needed.py`).
-NEEDED = (
-    Needed("panel.io.server", ("bundle_resources", "patch_model_css"), _WITHOUT),
-    Needed("panel.io.resources", ("patch_stylesheet",), _WITHOUT),
+#: What is used of Panel beyond its documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("panel.io.server", ("bundle_resources", "patch_model_css"), _WITHOUT),
+    Internal("panel.io.resources", ("patch_stylesheet",), _WITHOUT),
 )
 
 

@@ -12,9 +12,10 @@ import pytest
 import waiting
 
 from app.serve.computing.cpu_time import CpuTime
+from app.serve.computing.latest_wins import LatestWins
 from app.serve.computing.priorities import has_lower_priority, lower_priority
 from app.serve.computing.turns import FairScheduler, TurnFlag
-from app.serve.computing.worker_pools import LatestWins, WorkerPool
+from app.serve.computing.worker_pools import WorkerPool
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the niceness is that of the process")
 

@@ -10,9 +10,10 @@ import pytest
 from waiting import until
 
 from app.serve.computing.cpu_time import CpuTime
+from app.serve.computing.latest_wins import LatestWins
 from app.serve.computing.shared import Shared
 from app.serve.computing.turns import Flag, TurnFlag
-from app.serve.computing.worker_pools import LatestWins, WorkerPool
+from app.serve.computing.worker_pools import WorkerPool
 from granchain_core import Cancelled
 
 pytestmark = pytest.mark.quick
@@ -108,7 +109,7 @@ def test_an_error_reaches_all_and_is_not_kept() -> None:
 
 
 def test_a_first_result_that_takes_long_gives_way_to_a_newer_request(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("app.serve.computing.worker_pools._FIRST_RESULT_TIME", 0.05)
+    monkeypatch.setattr("app.serve.computing.latest_wins._FIRST_RESULT_TIME", 0.05)
     delivered: list[object] = []
     jobs = LatestWins(delivered.append, delivered.append)
     begun = threading.Event()

@@ -11,7 +11,8 @@ import pytest
 import waiting
 
 from app.serve.computing import worker_pools
-from app.serve.computing.worker_pools import LatestWins, WorkerPool
+from app.serve.computing.latest_wins import LatestWins
+from app.serve.computing.worker_pools import WorkerPool
 
 pytestmark = pytest.mark.quick
 
@@ -131,5 +132,5 @@ def test_work_beyond_a_share_is_counted_as_held() -> None:
     assert pool.held == 0
 
 
-def test_all_queues_are_in_the_metrics() -> None:
+def test_all_pools_are_in_the_metrics() -> None:
     assert set(worker_pools.POOLS) == {one for one in vars(worker_pools).values() if isinstance(one, WorkerPool)}

@@ -24,7 +24,7 @@ from missing_attribute import hide, lose
 from panel.models.esm import ESMEvent
 from panel.models.vega import VegaPlot
 
-from app.needed import Needed
+from app.library_internals import Internal
 from app.serve.document import changes
 from app.serve.document.changes import encode_patch, set_properties
 
@@ -140,8 +140,8 @@ def test_a_property_called_data_is_one_of_columns_in_data_sources_alone() -> Non
     assert [type(one) for one in document.callbacks._held_events] == [ColumnDataChangedEvent, ModelChangedEvent]
 
 
-@pytest.mark.parametrize("row", changes.NEEDED, ids=lambda row: row.owner)
-def test_a_release_without_what_is_needed_is_noticed(row: Needed, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("row", changes.INTERNALS, ids=lambda row: row.owner)
+def test_a_release_without_what_is_needed_is_noticed(row: Internal, monkeypatch: pytest.MonkeyPatch) -> None:
     assert changes.is_complete()
     for name in row.names:
         with monkeypatch.context() as patch:

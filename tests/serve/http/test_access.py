@@ -66,9 +66,21 @@ def test_what_is_given_reaches_the_server(monkeypatch: pytest.MonkeyPatch, tmp_p
                  str(tmp_path / "secret"), "--basic-auth", str(tmp_path / "users.json"), "--most-visitors", "9"]) == 0
     (words, named), = asked
     access = named["access"]
-    assert words == (5006, "0.0.0.0") and access.secret == _SECRET and access.most_visitors == 9
+    assert words == (5006, "0.0.0.0") and access.secret == _SECRET and access.max_sessions == 9
     assert access.origins == ("a.example.org",) and dict(access.sign_in)["basic_auth"] == str(tmp_path / "users.json")
     assert len(dict(access.sign_in)["cookie_secret"]) == 64
+
+
+@pytest.mark.parametrize(("rights", "warned"), [(0o600, False), (0o640, False), (0o644, True)])
+def test_a_secret_that_all_users_can_read_is_a_line_in_the_log(
+        rights: int, warned: bool, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    monkeypatch.setattr(server, "serve", lambda *args, **kwargs: kwargs["on_ready_to_listen"]())
+    secret = tmp_path / "secret"
+    secret.write_bytes(_SECRET)
+    secret.chmod(rights)
+    with caplog.at_level("WARNING", "granchain"):
+        assert main(["serve", "--secret-file", str(secret)]) == 0
+    assert ["can read the secret" in one for one in caplog.messages] == [True] * warned
 
 
 def test_the_secret_of_cookies_is_given_or_follows_from_that_of_the_sessions(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -94,7 +106,7 @@ def test_the_secret_of_cookies_is_given_or_follows_from_that_of_the_sessions(mon
 
 @pytest.mark.parametrize(("words", "sentence"), [
     (["--secret-file", "/nowhere/secret"], "cannot be read"), (["--oauth-provider", "github"], "PANEL_OAUTH_KEY"),
-    (["--most-visitors", "0"], "outside 1 to 10000"), (["--basic-auth", "/nowhere"], "cannot be read")])
+    (["--max-sessions", "0"], "outside 1 to 10000"), (["--basic-auth", "/nowhere"], "cannot be read")])
 def test_what_cannot_be_used_is_refused_with_a_sentence(words: list[str], sentence: str,
                                                         capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["serve", *words]) == 2

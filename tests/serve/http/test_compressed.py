@@ -18,7 +18,8 @@ from tornado.web import Application, StaticFileHandler
 
 from app.serve.http import compressed as module
 from app.serve.http.compressed import compressed
-from app.serve.http.guard import Rules, guarded
+from app.serve.http.rules import Rules
+from app.serve.monkeypatches.request_handlers import guarded
 
 SCRIPT = b"// a line that is there often enough\n" * 200
 

@@ -19,9 +19,9 @@ from tornado.httpclient import HTTPRequest
 from tornado.web import Application
 from tornado.websocket import websocket_connect
 
-from app.parts.figures import figure_style
+from app.serve.document import document_models
 from app.serve.document.part_messages import dispatch
-from app.serve.http import guard
+from app.serve.http import guard, guarded_socket
 from app.server import Access
 from tools.visitors.visitor import Visitor
 
@@ -37,7 +37,7 @@ async def visit(address: str) -> int:
 
 def test_without_the_class_of_handlers_that_open_pages_visitors_are_still_counted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(guard, "SessionHandler", None)
-    one = Listening(Access(most_visitors=2))
+    one = Listening(Access(max_sessions=2))
     try:
         there = [one.open(one.token()) for _ in range(2)]
         assert [status for status, _ in there] == [101, 101] and one.ask()[0] == 503
@@ -49,7 +49,7 @@ def test_without_the_class_of_handlers_that_open_pages_visitors_are_still_counte
 
 
 def test_a_page_whose_models_are_collected_anew_each_time_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
-    hide(monkeypatch, figure_style, DocumentModelManager, "freeze")
+    hide(monkeypatch, document_models, DocumentModelManager, "freeze")
     one = Listening(Access())
     try:
         assert run_async(visit(f"http://127.0.0.1:{one.port}")) >= 2
@@ -65,7 +65,7 @@ def test_what_a_visitor_does_reaches_the_parts_without_bokehs_decoding(monkeypat
         taken.append(dispatch(session, content))
         return taken[-1]
 
-    monkeypatch.setattr(guard, "dispatch", noted)
+    monkeypatch.setattr(guarded_socket, "dispatch", noted)
     one = Listening(Access())
     try:
         run_async(visit(f"http://127.0.0.1:{one.port}"))

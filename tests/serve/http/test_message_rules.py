@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from event_loop import run_async
 
-from app.serve.http import guard
+from app.serve.http import guarded_socket
 from app.serve.http.message_rules import (
     DEEPEST,
     LARGEST_HEADER,
@@ -134,7 +134,7 @@ class Socket:
 
 
 def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken() -> None:
-    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True, "_has_connection": True})()
+    one = type("Both", (guarded_socket.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True, "_has_connection": True})()
     good, bad = (HEADER, "{}", content(1)), (HEADER, "{}", content({"type": "bytes", "data": "AAAA"}))
 
     async def send() -> None:
@@ -148,14 +148,14 @@ def test_a_refused_message_closes_the_connection_and_nothing_after_it_is_taken()
 
 @pytest.mark.parametrize("frames", [("x" * (LARGEST_HEADER + 1),), (HEADER, "x" * (LARGEST_HEADER + 1))])
 def test_a_long_header_closes_the_connection_before_the_content_comes(frames: tuple[str, ...]) -> None:
-    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True, "_has_connection": True})()
+    one = type("Both", (guarded_socket.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True, "_has_connection": True})()
     for frame in frames:
         one.on_message(frame)
     assert one.taken == [] and one.closed == 1008
 
 
 def test_a_connection_that_is_said_to_be_closed_twice_is_closed_once() -> None:
-    one = type("Both", (guard.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True, "_has_connection": True})()
+    one = type("Both", (guarded_socket.GuardedSocket, Socket), {"__init__": Socket.__init__, "_counted": True, "_has_connection": True})()
     one.on_close()
     one.on_close()
     assert one.left == 1

@@ -23,7 +23,7 @@ from app.serve.computing.worker_pools import (
     SESSION_WORK,
     WorkerPool,
 )
-from app.serve.monitoring.metrics import COUNTERS, METRICS, Metric, Metrics
+from app.serve.monitoring.metrics import COUNTERS, FORMER_NAMES, METRICS, Metric, Metrics
 from granchain_core import Stop
 
 ROOT = Path(__file__).parents[3]
@@ -58,7 +58,7 @@ def test_every_counter_that_is_counted_is_in_the_table_and_every_one_in_the_tabl
 def test_names_and_kinds_are_those_of_prometheus() -> None:
     server.add_shared_metrics()
     table = METRICS.table()
-    assert len({metric.name for metric in table}) == len(table)
+    assert len({metric.full_name for metric in table}) == len(table)
     for metric in table:
         assert re.fullmatch("[a-z_]+", metric.name) and metric.help.endswith("."), metric
         assert metric.name.endswith("_total") == (metric.kind == "counter"), metric
@@ -104,13 +104,26 @@ def shown(name: str) -> float:
     return float(found[1])
 
 
-def test_each_queue_has_its_own_gauges() -> None:
+def test_each_pool_has_its_own_gauges() -> None:
     for pool in POOLS:
-        assert shown(f'queue_busy{{queue="{pool.name}"}}') >= 0.0
-        assert shown(f'queue_waiting{{queue="{pool.name}"}}') >= 0.0
+        assert shown(f'pool_busy_threads{{pool="{pool.name}"}}') >= 0.0
+        assert shown(f'pool_queued{{pool="{pool.name}"}}') >= 0.0
 
 
-def test_queues_whose_threads_wait_for_others_do_not_count_as_computing() -> None:
+def test_what_was_renamed_is_found_as_it_was_called() -> None:
+    server.add_shared_metrics()
+    names = {metric.full_name for metric in METRICS.table()}
+    assert set(FORMER_NAMES) <= names and not names & {*FORMER_NAMES.values()}
+    text = METRICS.text()
+    for name, former in FORMER_NAMES.items():
+        found = [re.search(rf"^{one} (\S+)$", text, re.MULTILINE) for one in (name, former)]
+        assert found[0] is not None and found[1] is not None and found[0][1] == found[1][1], former
+    for pool in POOLS:
+        name = "visitors" if pool is SESSION_WORK else pool.name
+        assert f'\ngranchain_queue_busy{{queue="{name}"}} ' in text and f'\ngranchain_queue_waiting{{queue="{name}"}} ' in text
+
+
+def test_pools_whose_threads_wait_for_others_do_not_count_as_computing() -> None:
     """Those of PICTURES and SESSION_WORK wait for turns, those of CURVES for SWEEPS."""
     assert set(POOLS) - set(COMPUTING) == {SESSION_WORK, PICTURES, CURVES, FILES, LOADING, COMPILATIONS}
 
@@ -121,6 +134,7 @@ def test_long_work_is_computing_and_what_its_owner_has_beyond_its_limit_waits(mo
         monkeypatch.setattr(server, name, value)
     ended = [pool.submit(go_on.wait, 120, owner=owner) for _ in range(3)]
     assert (shown("computing"), shown("queue")) == (2, 1)
+    assert (shown('pool_busy_threads{pool="long"}'), shown('pool_queued{pool="long"}')) == (2, 1)
     assert (shown('queue_busy{queue="long"}'), shown('queue_waiting{queue="long"}')) == (2, 1)
     go_on.set()
     assert all(one.result(20) for one in ended)
@@ -135,7 +149,7 @@ def test_a_picture_that_waits_for_a_turn_waits_and_is_not_computing(monkeypatch:
     third = pool.submit(turns.begin, CpuTime(), stop, False)
     waiting.until(lambda: turns.waiting == 1, 20)
     assert (shown("computing"), shown("queue"), shown("turns_waiting")) == (2, 1, 1)
-    assert shown('queue_busy{queue="pictures"}') == 1
+    assert shown('pool_busy_threads{pool="pictures"}') == 1
     stop.set()
     turns.stopped(stop)
     assert third.result(20)

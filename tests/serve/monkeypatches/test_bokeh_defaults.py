@@ -15,7 +15,7 @@ from bokeh.themes import Theme
 from missing_attribute import lose
 from replaced import OWN, REPLACED
 
-from app.serve.monkeypatches.bokeh_defaults import NEEDED, install_defaults_cache
+from app.serve.monkeypatches.bokeh_defaults import INTERNALS, install_defaults_cache
 
 CHANGES = Theme(json={"attrs": {"Axis": {"axis_label_text_font_size": "31px"}, "Line": {"line_width": 7}}})
 
@@ -99,7 +99,7 @@ def test_all_values_are_still_there_to_be_asked_for() -> None:
     assert all_values() == before and "tags" in before
 
 
-@pytest.mark.parametrize(("owner", "name"), [(row.owner, name) for row in NEEDED for name in row.names],
+@pytest.mark.parametrize(("owner", "name"), [(row.owner, name) for row in INTERNALS for name in row.names],
                          ids=lambda value: value.rpartition(".")[2])
 def test_a_release_without_a_part_of_it_keeps_its_own_ways(owner: str, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """What is replaced, and what the replacements use: no page could be made without it."""

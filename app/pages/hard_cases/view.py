@@ -22,8 +22,8 @@ ABOUT = ("Cases in which solvers of granular chains go wrong without warning. Ea
 class HardCases(ResultFigure):
     """The overlay; rows come in `state`, every figure as one message when its case was run."""
 
-    _esm = module("hard.js")
-    _stylesheets = [text("controls.css"), text("hard.css")]  # noqa: RUF012
+    _esm = module("hard_cases.js")
+    _stylesheets = [text("controls.css"), text("hard_cases.css")]  # noqa: RUF012
 
     def __init__(self, received: Callable[[dict[str, Any]], None] | None = None, **params: Any) -> None:
         super().__init__(received, state={"cases": described_cases(), "about": ABOUT}, **params)

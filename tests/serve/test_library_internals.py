@@ -9,36 +9,37 @@ import sys
 import pytest
 from missing_attribute import lose
 
-from app import needed
-from app.needed import Needed, missing
+from app import library_internals, server
+from app.library_internals import Internal, missing
 
 pytestmark = pytest.mark.quick
 
-ROWS = [row for table in needed.tables().values() for row in table]
+assert server, "its modules have the tables"
+ROWS = [row for table in library_internals.tables().values() for row in table]
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.owner)
-def test_the_installed_releases_have_what_is_used(row: Needed) -> None:
+def test_the_installed_releases_have_what_is_used(row: Internal) -> None:
     """Fails with the name where one has not: docs/libraries.md says what happens then."""
     assert missing([row]) == []
 
 
 def test_what_is_not_there_is_named() -> None:
-    rows = [Needed("bokeh.document.Document", ("callbacks", "no_such_name"), ""), Needed("bokeh.no_such_module", ("it",), ""),
-            Needed("bokeh.model.Model.select", ("no_such_keyword",), ""), Needed("bokeh.model", ("Model",), "")]
+    rows = [Internal("bokeh.document.Document", ("callbacks", "no_such_name"), ""), Internal("bokeh.no_such_module", ("it",), ""),
+            Internal("bokeh.model.Model.select", ("no_such_keyword",), ""), Internal("bokeh.model", ("Model",), "")]
     assert [name for _, name in missing(rows)] == [
         "bokeh.document.Document.no_such_name", "bokeh.no_such_module.it", "bokeh.model.Model.select.no_such_keyword"]
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.owner)
 def test_the_log_says_at_the_start_what_is_missing_and_what_happens_without_it(
-        row: Needed, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
-    monkeypatch.setattr(needed, "tables", lambda: {"": (row,)})
+        row: Internal, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> None:
+    monkeypatch.setattr(library_internals, "tables", lambda: {"": (row,)})
     with caplog.at_level(logging.WARNING, "granchain"):
-        needed.check_releases()
+        library_internals.check_releases()
         assert caplog.messages == []
         lose(monkeypatch, row.owner, row.names[-1])
-        needed.check_releases()
+        library_internals.check_releases()
     assert caplog.messages == [f"a library has no {row.owner}.{row.names[-1]}: {row.without}"]
 
 

@@ -1,6 +1,7 @@
-"""What is used of libraries beyond their documentation, checked at the start.
+"""Undocumented parts of libraries that the dashboard uses, checked at the start.
 
-Each module that uses any of it has a table `NEEDED`. `python -m tools.update` writes the tables into docs/libraries.md.
+Each module that uses any of them has a table `INTERNALS`, made by `internals`. `python -m tools.update` writes the
+tables into docs/libraries.md.
 """
 
 from __future__ import annotations
@@ -19,16 +20,11 @@ log = logging.getLogger("granchain")
 
 #: The libraries of the tables.
 LIBRARIES = ("bokeh", "panel", "param", "tornado")
-#: The modules that have a table.
-WITH_TABLES = (
-    "serve.http.guard", "serve.monitoring.logs", "serve.document.document_lock",
-    "serve.document.channel", "serve.document.changes", "serve.document.leaving", "serve.document.socket_tuning",
-    "serve.monkeypatches.bokeh_defaults", "serve.monkeypatches.panel_overrides", "serve.monkeypatches.panel_resources",
-    "parts.figures.figure_style",
-)
+#: The tables of the modules that have been imported.
+_TABLES: dict[str, tuple[Internal, ...]] = {}
 
 
-class Needed(NamedTuple):
+class Internal(NamedTuple):
     """Names that a library does not document, and what happens where a release lacks one of them.
 
     `owner` is the dotted name of the module, class or method that has them: attributes of the class or of its
@@ -50,9 +46,15 @@ class MissingPart(RuntimeError):
                          f"{f' ({without})' if without else ''}. The releases that work are in pyproject.toml.")
 
 
-def tables() -> dict[str, tuple[Needed, ...]]:
-    """The table of each module that has one, by its path below `app`."""
-    return {name: importlib.import_module(f".{name}", __package__).NEEDED for name in WITH_TABLES}
+def internals(module: str, *rows: Internal) -> tuple[Internal, ...]:
+    """The table of a module, which is checked at the start with those of the others."""
+    _TABLES[module] = rows
+    return rows
+
+
+def tables() -> dict[str, tuple[Internal, ...]]:
+    """The table of each imported module that has one, by the module's name."""
+    return dict(sorted(_TABLES.items()))
 
 
 def check_releases() -> None:
@@ -69,13 +71,13 @@ def missing_in_import(problem: ImportError) -> MissingPart | None:
     return MissingPart(f"{problem.name}.{name[1]}" if name else str(problem.name))
 
 
-def missing(table: Iterable[Needed]) -> list[tuple[Needed, str]]:
+def missing(table: Iterable[Internal]) -> list[tuple[Internal, str]]:
     """The rows of which the installed release lacks something, with the dotted name of the first that it lacks."""
     found = ((row, next(_missing(row), None)) for row in table)
     return [(row, name) for row, name in found if name is not None]
 
 
-def _missing(row: Needed) -> Iterator[str]:
+def _missing(row: Internal) -> Iterator[str]:
     owner = _find(row.owner)
     if owner is None:
         yield from (f"{row.owner}.{name}" for name in row.names)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from page_host import Trial
 
-from app.pages.hard import page as module
-from app.pages.hard.work import Ended
+from app.pages.hard_cases import page as module
+from app.pages.hard_cases.work import Ended
 from granchain_core import BadInput
 from granchain_core.hard_cases import CASES, Case, Check, Measurement, Picture, Trace, run_case
 

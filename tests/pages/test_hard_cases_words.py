@@ -8,8 +8,8 @@ import threading
 
 import pytest
 
-from app.pages.hard.view import described_cases, described_results, digits_of, summary, value_beside
-from app.pages.hard.work import CaseProcess, Ended, case_of
+from app.pages.hard_cases.view import described_cases, described_results, digits_of, summary, value_beside
+from app.pages.hard_cases.work import CaseProcess, Ended, case_of
 from granchain_core import Cancelled, ComputationError
 from granchain_core.execution.stop import Stop
 from granchain_core.hard_cases import CASES, Case, Check, Measurement, run_case

@@ -1,0 +1,155 @@
+"""One running computation, replaced by a newer one. Each session has two: for the picture and for drafts of a curve."""
+
+from __future__ import annotations
+
+import heapq
+import logging
+import threading
+import time
+from collections.abc import Callable, Iterator
+
+from granchain_core import Cancelled
+
+from ..monitoring.metrics import METRICS
+from .cpu_time import CpuTime
+from .priorities import has_lower_priority
+from .turns import TurnFlag
+from .worker_pools import SESSION_WORK
+
+log = logging.getLogger("granchain")
+
+TurnWork = Callable[[TurnFlag], Iterator[object]]
+
+#: Time for which a first result is computed before a newer request stops it [s].
+_FIRST_RESULT_TIME = 1.0
+
+
+class _Alarms:
+    """One thread that calls actions when they are due."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._due: list[tuple[float, int, Callable[..., None], tuple[object, ...]]] = []
+        self._count = 0
+        self._thread: threading.Thread | None = None
+
+    def __call__(self, seconds: float, action: Callable[..., None], *args: object) -> None:
+        """Call `action` after `seconds`."""
+        with self._changed:
+            self._count += 1
+            heapq.heappush(self._due, (time.monotonic() + seconds, self._count, action, args))
+            if self._thread is None:
+                self._thread = threading.Thread(target=self._serve, daemon=True, name="alarms")
+                self._thread.start()
+            self._changed.notify()
+
+    def _serve(self) -> None:
+        while True:
+            with self._changed:
+                while not self._due or self._due[0][0] > time.monotonic():
+                    self._changed.wait(self._due[0][0] - time.monotonic() if self._due else None)
+                _, _, action, args = heapq.heappop(self._due)
+            action(*args)
+            del action, args
+
+
+_later = _Alarms()
+
+
+class LatestWins:
+    """One running computation for a session; a newer one replaces whatever waits.
+
+    A computation is an iterator of ever better results. A newer request stops at once a computation that has had its
+    first result. One that has none yet may take up to a second for it: if each were stopped, nothing would be repainted
+    during a drag.
+    """
+
+    def __init__(self, deliver: Callable[[object], None], fail: Callable[[Exception], None],
+                 cpu_time: CpuTime | None = None) -> None:
+        self._deliver = deliver
+        self._fail = fail
+        self.cpu_time = CpuTime() if cpu_time is None else cpu_time
+        self._lock = threading.Lock()
+        self._waiting: TurnWork | None = None
+        self._running = False
+        self._refining = False
+        self._closed = False
+        self._began = 0.0
+        self._stop = TurnFlag(self.cpu_time)
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is being computed or waits to be."""
+        return self._running
+
+    def submit(self, work: TurnWork) -> None:
+        """Compute `work` next, in place of anything that has not started."""
+        with self._lock:
+            if self._closed:
+                return
+            self._waiting = work
+            left = self._began + _FIRST_RESULT_TIME - time.monotonic()
+            if self._refining or (self._running and left <= 0.0):
+                self._stop.set()
+            elif self._running:
+                _later(left, self._give_up, self._stop)
+            if self._running:
+                return
+            self._running = True
+            self._began = time.monotonic()
+        SESSION_WORK.submit(self._drain)
+
+    def _give_up(self, stop: TurnFlag) -> None:
+        """Give up the computation: its first result has not come within a second, and newer work waits."""
+        with self._lock:
+            if self._stop is stop and self._waiting is not None:
+                stop.set()
+
+    def close(self) -> None:
+        """Stop: nothing more is computed or delivered."""
+        with self._lock:
+            self._closed = True
+            self._waiting = None
+            self._stop.set()
+
+    def _next(self) -> TurnWork | None:
+        with self._lock:
+            work, self._waiting = self._waiting, None
+            self._running = work is not None
+            self._refining = False
+            self._began = time.monotonic()
+            self._stop = TurnFlag(self.cpu_time)
+            if self._closed:
+                self._stop.set()
+            return work
+
+    def _drain(self) -> None:
+        while (work := self._next()) is not None:
+            self._do(work)
+            if has_lower_priority():
+                SESSION_WORK.submit(self._drain)
+                return
+
+    def _do(self, work: TurnWork) -> None:
+        """Deliver the results of a computation; after each, end it if newer work waits. A failure is reported."""
+        try:
+            for result in work(self._stop):
+                if self._closed:
+                    break
+                self._deliver(result)
+                with self._lock:
+                    self._refining = True
+                    if self._waiting is not None or self._closed:
+                        break
+        except Cancelled:
+            METRICS.count("cancelled")
+        except Exception as error:
+            self._report(error)
+
+    def _report(self, error: Exception) -> None:
+        """Report a failure; if reporting fails as well, log that, so that the next computation still begins."""
+        try:
+            if not self._closed:
+                self._fail(error)
+        except Exception:
+            log.exception("a failure could not be reported to its page")

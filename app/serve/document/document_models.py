@@ -1,0 +1,23 @@
+"""The models of a document, collected once for many changes of it."""
+
+from __future__ import annotations
+
+from contextlib import AbstractContextManager, nullcontext
+
+from bokeh.document import Document
+
+from ...library_internals import Internal, internals
+
+#: What is used of Bokeh beyond its documentation.
+INTERNALS = internals(
+    __name__,
+    Internal("bokeh.document.models.DocumentModelManager", ("freeze",),
+             "Bokeh collects what a document refers to anew for each part: a page opens more slowly"),
+)
+
+
+def models_collected_once(document: Document | None) -> AbstractContextManager[None]:
+    """Collect the document's models once for all that is added to it inside, not anew for each change."""
+    freeze = getattr(getattr(document, "models", None), "freeze", nullcontext)
+    once: AbstractContextManager[None] = freeze()
+    return once

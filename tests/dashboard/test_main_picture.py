@@ -1,0 +1,193 @@
+"""The picture of the main page, without a browser: what is computed, what is shown of it, and who hears of it."""
+
+from __future__ import annotations
+
+import threading
+import time
+from concurrent.futures import Future
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+from headless_dashboard import Dashboard
+
+from app.dashboard import exports, main_picture
+from app.frames import settled_frames
+from app.serve.compiling.compiler import Compiler
+from app.serve.monitoring.metrics import METRICS
+from app.session.budget import RefusedPicture
+from granchain_core import BadInput, run, scene, settle
+from granchain_core.results.run import GIVEN_STATE
+
+
+def test_a_picture_is_saved_in_the_background(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    dashboard.received({"do": "export"})
+    assert "no picture to save yet" in dashboard.session.sentence
+    threads = []
+    save = exports.save
+    monkeypatch.setattr(exports, "save",
+                        lambda run, path, measured: (threads.append(threading.current_thread().name), save(run, path, measured)))
+    shown = run(scene("sec2"), periods=0, record=1, samples=24)
+    monkeypatch.setattr(dashboard.pictures, "shown_run", lambda: shown)
+    dashboard.received({"do": "export"})
+    dashboard.run_callbacks_until(lambda: any(message["type"] == "file" for message in dashboard.told))
+    (file,) = [message for message in dashboard.told if message["type"] == "file"]
+    assert file["name"] == "sec2-340Hz.h5" and file["content"][1:4] == b"HDF"
+    assert threads[0].startswith("files")
+
+
+def test_a_refusal_belongs_to_the_scene_that_was_refused(dashboard: Dashboard) -> None:
+    """A knob may have moved before the refusal arrives: what is computed anyway is then not what the sentence is about.
+    """
+    refused = dashboard.session.scene.evolve(N=10_000)
+    dashboard.report_failure(RefusedPicture(refused, "It would take long."))
+    assert dashboard.session.sentence == "" and not dashboard.views.status_line.state.get("insist")
+    dashboard.session.scene = refused
+    dashboard.report_failure(RefusedPicture(refused, "It would take long."))
+    assert dashboard.views.status_line.state["insist"]
+    dashboard.report_failure(BadInput("Something else."))
+    assert not dashboard.views.status_line.state["insist"]
+
+
+def test_another_scale_leaves_a_paused_chain_where_it_is(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    sent: list[dict[str, Any]] = []
+    monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: sent.append(message))
+    session, pictures = dashboard.session, dashboard.pictures
+    session.set_mode("live")
+    session.playing = False
+    pictures.begin_live()
+    pictures.advance(7)
+    dashboard.run_callbacks_until(lambda: len(sent) == 1)
+    dashboard.received({"do": "scale", "value": "fit"})
+    dashboard.run_callbacks_until(lambda: not (pictures.busy or dashboard.callbacks))
+    shown = pictures.shown_run()
+    assert len(sent) == 2 and [message["fit"] for message in sent] == [False, True]
+    assert shown is not None and len(shown.time) == 8, "no sample follows the seven of the first picture"
+
+
+def test_choosing_the_scale_takes_the_scenes_own_again(dashboard: Dashboard) -> None:
+    """Whatever has widened it, and although it was chosen before."""
+    scales, chain = dashboard.views.scales, dashboard.session.scene
+    frames = settled_frames(settle(chain, samples=8).run)
+    first = scales.of(frames, chain)
+    louder = settled_frames(settle(chain.evolve(A0=4.0 * chain.A0), samples=8).run)
+    assert scales.of(louder, chain) != first
+    dashboard.received({"do": "scale", "value": "same"})
+    assert scales.of(frames, chain) == first
+
+
+def test_the_header_says_where_the_motion_on_the_screen_began(dashboard: Dashboard) -> None:
+    chain = scene("sec2").evolve(N=2, f=2000.0)
+    dashboard.session.scene = chain
+    found = settle(chain, samples=8)
+    for picture in (replace(found, run=replace(found.run, start=GIVEN_STATE)), found):
+        dashboard.picture_ready(picture)
+        state = dashboard.views.header.state
+        assert (state["picture_start"], state["start"]) == (picture.start, "rest")
+
+
+def test_the_pages_hear_of_a_picture_when_it_was_sent(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a page draws of it takes milliseconds, which would come before every picture."""
+    told: list[str] = []
+    monkeypatch.setattr(dashboard.views.chain, "send", lambda **message: told.append(message["type"]))
+    monkeypatch.setattr(dashboard.pages[0], "picture_ready", lambda picture: told.append("page"))
+    dashboard.session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    found = settle(chain, samples=8)
+    dashboard.pictures._accept(found)
+    assert told == ["frames"]
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert told == ["frames", "page"]
+
+
+def test_the_pages_do_not_hear_of_a_picture_of_knobs_that_have_moved_on(dashboard: Dashboard,
+                                                                        monkeypatch: pytest.MonkeyPatch) -> None:
+    """They know already that it is out of date, and would take it for the new one."""
+    told: list[Any] = []
+    page = dashboard.pages[0]
+    monkeypatch.setattr(dashboard.pictures, "compute", lambda start=None: None)
+    monkeypatch.setattr(page, "picture_requested", lambda: told.append("requested"))
+    monkeypatch.setattr(page, "picture_ready", told.append)
+    dashboard.session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    preview, final = (replace(settle(chain, samples=8), final=final) for final in (False, True))
+    dashboard.pictures._accept(preview)
+    dashboard.received({"do": "set", "name": "f", "value": 2001.0})
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert told == ["requested"]
+    for found in (preview, final):
+        dashboard.pictures._accept(found)
+    dashboard.run_callbacks_until(lambda: not dashboard.callbacks)
+    assert told == ["requested", final], "a preview that is overtaken is left out"
+
+
+def test_a_picture_is_computed_as_it_was_asked_for(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever changes on the page between the request and the thread that takes it."""
+    asked, changed = threading.Event(), threading.Event()
+    monkeypatch.setattr(main_picture, "check_first_picture", lambda _: (asked.set(), changed.wait(60)))
+    session = dashboard.session
+    session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    session.set_start("previous")
+    session.settled = before = settle(chain, samples=8)
+    session.energy_account = True
+    dashboard.pictures.compute()
+    assert asked.wait(60)
+    session.settled, session.energy_account, session.insisted = None, False, chain
+    changed.set()
+    dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
+    assert session.settled is not None and session.settled.run.start == GIVEN_STATE
+    assert session.initial_state is before.state and session.settled.run.energy_residual is not None
+
+
+def test_nothing_is_settled_for_a_visitor_who_left_while_kernels_were_compiled(dashboard: Dashboard,
+                                                                              monkeypatch: pytest.MonkeyPatch) -> None:
+    """Settling would compile what the other process has not finished, inside the server."""
+    waiting, settled = threading.Event(), []
+
+    class Compiling(Compiler):
+        """A compiler that never ends."""
+
+        def has(self, *_: object) -> bool:
+            """Nothing is compiled."""
+            return False
+
+        def ask(self, *_: object) -> Future[None]:
+            """Never done."""
+            waiting.set()
+            return Future()
+
+    monkeypatch.setattr(main_picture, "COMPILER", Compiling())
+    monkeypatch.setattr(main_picture, "settling", lambda *_, **__: settled.append("began") or iter(()))
+    dashboard.pictures.compute()
+    assert waiting.wait(60)
+    dashboard.close(None)
+    dashboard.run_callbacks_until(lambda: not dashboard.pictures.busy)
+    assert settled == []
+
+
+def test_a_busy_server_says_so_with_the_next_picture(dashboard: Dashboard, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The message disappears with the first picture that comes in time."""
+    clock = [5.0]
+    monkeypatch.setattr(main_picture, "time", SimpleNamespace(monotonic=lambda: clock[0], thread_time=time.thread_time))
+    try:
+        for late, wait, said in ((0.4, 0.0, True), (0.0, 0.1, False), (0.0, 0.4, True)):
+            for _ in range(40):
+                METRICS.lagged(late)
+            monkeypatch.setattr(METRICS, "turn_wait", lambda wait=wait: wait)
+            dashboard.pictures.compute()
+            clock[0] += 1.2
+            dashboard.run_callbacks_until(lambda: not (dashboard.pictures.busy or dashboard.callbacks))
+            words = dashboard.views.status_line.state["busy"]
+            assert words == ("The server is busy: pictures follow every 1.2 s." if said else "")
+    finally:
+        for _ in range(40):
+            METRICS.lagged(0.0)
+
+
+def test_a_picture_that_is_overtaken_before_it_is_sent_is_not_counted(dashboard: Dashboard) -> None:
+    dashboard.session.scene = chain = scene("sec2").evolve(N=2, f=2000.0)
+    found, counted = settle(chain, samples=8), METRICS.counted["pictures"]
+    for _ in range(5):
+        dashboard.pictures._accept(found)
+    assert METRICS.counted["pictures"] - counted == 2
+    dashboard.pictures.painted(1)
+    assert METRICS.counted["pictures"] - counted == 3

@@ -1,0 +1,34 @@
+"""A small kernel in a process of its own, with a cache of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[3]
+
+#: Runs one small kernel, and prints where it is kept, whether its result is right, and how often Numba loaded it.
+PROGRAM = """
+import json
+import numpy as np
+from granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER
+from granchain_core.kernels.forces.peaks import PEAKS, reset_peaks
+peaks = np.ones(PEAKS)
+reset_peaks(peaks)
+right = bool(peaks[0] == -np.inf and peaks[1] == 0.0)
+print(json.dumps({"folder": str(CACHE_FOLDER), "right": right, "loaded": sum(reset_peaks.stats.cache_hits.values())}))
+"""
+#: Says which folder is chosen, and compiles nothing.
+FOLDER = "import json\nfrom granchain_core.kernels.compiling.cache_folder import CACHE_FOLDER\nprint(json.dumps({'folder': str(CACHE_FOLDER)}))"
+
+
+def used(folder: Path, program: str = PROGRAM) -> tuple[dict, list[str]]:
+    """What a new process says of its kernel, and its lines on stderr."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "GRANCHAIN_CACHE": str(folder)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, text=True, capture_output=True, timeout=300,
+                          check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout.splitlines()[-1]), done.stderr.splitlines()

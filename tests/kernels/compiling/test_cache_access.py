@@ -1,0 +1,192 @@
+"""Who may read, write and run a cache of kernels: all may read ours, and what others may have written is not run."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import pytest
+from kernel_process import FOLDER, used
+
+from granchain_core.kernels.compiling import cache, cache_folder
+
+
+def mode_with(umask: int, folder: Path) -> int:
+    """The rights of a file of the cache."""
+    files, before = cache._Files(str(folder), "f", "stamp"), os.umask(umask)
+    try:
+        files.save("one", "code of one")
+    finally:
+        os.umask(before)
+    return files.path("one").stat().st_mode & 0o777
+
+
+def test_what_one_user_compiled_another_can_read(tmp_path: Path) -> None:
+    """An image is warmed by root and run by somebody else: files have the rights that the user's umask leaves."""
+    assert mode_with(0o022, tmp_path) == 0o644
+
+
+@pytest.mark.parametrize(("umask", "rights"), [(0o002, 0o755), (0o000, 0o755), (0o077, 0o700)])
+def test_nobody_else_can_write_what_is_compiled_whatever_the_umask_leaves(umask: int, rights: int, tmp_path: Path) -> None:
+    """Neither the folder, nor those in it, nor the files."""
+    assert mode_with(umask, tmp_path) == rights & 0o666
+    before = os.umask(umask)
+    try:
+        answer, messages = used(tmp_path / "chosen")
+    finally:
+        os.umask(before)
+    assert answer["right"] and messages == []
+    folder = Path(answer["folder"])
+    assert folder.parent == tmp_path / "chosen"
+    assert {path.stat().st_mode & 0o777 for path in (folder, *folder.iterdir()) if path.is_dir()} == {rights}
+    assert {path.stat().st_mode & 0o777 for path in folder.rglob("*.nbc")} == {rights & 0o666}
+
+
+@pytest.fixture
+def denied(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A chosen folder that cannot be made, for root as well: its parent is a file."""
+    (tmp_path / "file").write_text("")
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "tmp"))
+    return tmp_path / "file" / "cache"
+
+
+def test_where_nothing_can_be_written_the_temporary_folder_is_ours_alone(denied: Path, tmp_path: Path) -> None:
+    answer, messages = used(denied)
+    ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
+    assert answer["right"] and Path(answer["folder"]).parent == ours and messages == []
+    assert [folder.stat().st_mode & 0o777 for folder in (ours, Path(answer["folder"]))] == [0o700, 0o700]
+    assert used(denied)[0]["loaded"] == 1
+
+
+@pytest.mark.parametrize("planted", ["open to all", "readable by all", "a link", "a file", "open inside"])
+def test_a_temporary_folder_that_may_be_anothers_is_not_used(planted: str, denied: Path, tmp_path: Path,
+                                                             monkeypatch: pytest.MonkeyPatch) -> None:
+    ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
+    if planted == "a link":
+        (tmp_path / "elsewhere").mkdir(mode=0o700)
+        ours.symlink_to(tmp_path / "elsewhere")
+    elif planted == "a file":
+        ours.write_text("")
+    else:
+        ours.mkdir(mode=0o700)
+        inside = ours / f"kernels-{cache_folder.sources_hash()}"
+        inside.mkdir(mode=0o700)
+        {"open to all": ours, "readable by all": ours, "open inside": inside}[planted].chmod(
+            0o755 if planted == "readable by all" else 0o777)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(denied))
+    monkeypatch.setattr(tempfile, "tempdir", None)  # Python remembers where it was
+    said: list[str] = []
+    monkeypatch.setattr(cache_folder, "warn_once", said.append)
+    assert cache_folder.cache_folder() is None
+    assert len(said) == 1 and "not a folder of ours with mode 700" in said[0]
+    if planted == "open to all":
+        answer, messages = used(denied)
+        assert answer["right"] and answer["folder"] == "None" and answer["loaded"] == 0
+        assert [said[0] in message for message in messages] == [True]
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")
+def test_a_temporary_folder_of_another_owner_is_not_used(denied: Path, tmp_path: Path) -> None:
+    ours = tmp_path / "tmp" / f"granchain-{os.getuid()}"
+    ours.mkdir(mode=0o700)
+    os.chown(ours, 12345, 12345)
+    assert used(denied, FOLDER)[0]["folder"] == "None"
+
+
+@pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
+@pytest.mark.parametrize("whose", ["ours", "anybody may write", "the group may write", "another user's"])
+def test_kernels_in_a_folder_are_run_if_nobody_else_can_have_written_them(
+        whose: str, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its files are unpickled; a checksum in a file says nothing of who has written it."""
+    if whose == "another user's" and os.getuid() != 0:
+        pytest.skip("only root can give a folder away")
+
+    def denied(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    folder = tmp_path / f"kernels-{cache_folder.sources_hash()}"
+    folder.mkdir()
+    (folder / "one.nbc").write_bytes(b"")
+    folder.chmod({"anybody may write": 0o757, "the group may write": 0o775}.get(whose, 0o755))
+    if whose == "another user's":
+        os.chown(folder, 12345, 12345)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(tmp_path))
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    chosen = cache_folder.cache_folder()
+    assert (chosen == folder) is (whose == "ours")
+
+
+@pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
+@pytest.mark.parametrize(("rights", "safe"), [(0o755, True), (0o777, False), (0o775, False), (0o1777, True), (0o1775, True)],
+                         ids=oct)
+def test_kernels_are_run_if_nobody_else_can_put_another_folder_in_their_place(
+        rights: int, safe: bool, writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever may write to the folder around them could rename them after they were looked at."""
+    def denied(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    base = tmp_path / "base"
+    folder = base / f"kernels-{cache_folder.sources_hash()}"
+    folder.mkdir(parents=True)
+    (folder / "one.nbc").write_bytes(b"")
+    folder.chmod(0o755)
+    base.chmod(rights)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    chosen = cache_folder.cache_folder()
+    assert (chosen == folder) is safe
+    assert safe or not writable or str(chosen) == f"others may write to {base}"
+
+
+@pytest.mark.parametrize("writable", [True, False], ids=["writable", "read-only"])
+def test_a_link_in_place_of_a_folder_of_kernels_is_not_followed(
+        writable: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In a sticky folder another user may have made it, and let it point elsewhere after it was looked at."""
+    def denied(**_: Any) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    base, own = tmp_path / "base", tmp_path / "own"
+    for folder in (base, own):
+        folder.mkdir(mode=0o755)
+    (own / "one.nbc").write_bytes(b"")
+    (own / cache_folder._fingerprint_file()).touch()
+    base.chmod(0o1777)
+    link = base / f"kernels-{cache_folder.sources_hash()}"
+    link.symlink_to(own)
+    (base / "kernels-000000000000").symlink_to(own)  # not found by the fingerprint either
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
+    if not writable:
+        monkeypatch.setattr(tempfile, "TemporaryFile", denied)
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    chosen = str(cache_folder.cache_folder())
+    assert chosen == f"{link} is a link" if writable else "Permission denied" in chosen
+
+
+def test_the_users_own_cache_is_closed_to_others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is granchain's alone, and earlier versions made it with the rights that a umask of 002 leaves to the group."""
+    base = tmp_path / "granchain"
+    base.mkdir()
+    base.chmod(0o775)
+    monkeypatch.delenv("GRANCHAIN_CACHE", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    chosen = cache_folder.cache_folder()
+    assert chosen is not None and chosen.parent == base and base.stat().st_mode & 0o777 == 0o755
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can give a folder away")
+def test_kernels_in_a_folder_of_another_owner_are_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The owner may rename what is in it whatever its rights are."""
+    base = tmp_path / "base"
+    base.mkdir()
+    os.chown(base, 12345, 12345)
+    base.chmod(0o1755)
+    monkeypatch.setenv("GRANCHAIN_CACHE", str(base))
+    monkeypatch.setattr(cache_folder, "_temporary_folder", lambda problem: Path(problem))
+    assert str(cache_folder.cache_folder()) == f"others may write to {base}"

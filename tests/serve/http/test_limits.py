@@ -1,0 +1,302 @@
+"""The limits of docs/security.md: their numbers are those of the code, and each is kept.
+
+A raw socket sends what a browser would not. The constants are lowered, so that a test lasts a second.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import re
+import socket
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import waiting
+from listening import SECRET, Listening
+
+from app import server
+from app.curve.sweep import CURVES_SHARED
+from app.dashboard.main_picture import PICTURES_SHARED
+from app.pages.analysis import questions
+from app.serve.computing.worker_pools import LONG
+from app.serve.http import frames, guarded_socket, message_rules
+from app.serve.http.frames import FRAME_BURST, FRAME_RATE, FRAME_UNIT
+from app.serve.http.limits import LARGEST_UPLOAD, MOST_UPLOADED_POINTS
+from app.serve.http.message_rules import LARGEST_PLAIN_CONTENT, UPLOAD
+from app.serve.monitoring.metrics import METRICS
+from app.server import Access
+from app.session import starts
+from app.session.budget import FIRST_PICTURE, WHOLE_PICTURE
+from app.session.share import LONGEST, PINS
+from granchain_core.orbits.branch.branch import MOST_POINTS
+from granchain_core.scene.quantities import QUANTITIES
+
+TESTS = Path(__file__).parents[2]
+
+
+PAGE = (TESTS.parent / "docs" / "security.md").read_text(encoding="utf-8")
+#: The limits of the server: a value, and the names of its tests.
+LIMITS = {limit: (value, re.findall(r"`(\w+)`", tests)) for limit, value, tests in re.findall(
+    r"^\| ([^|]+) \| ([^|]+) \| ([^|]+) \|$", PAGE.split("| limit | value | tested by |")[1].split("\n\n")[0], re.MULTILINE)}
+STATED_LIMITS = dict(re.findall(r"^\| ([^|]+) \| (\d+) \|$", PAGE.split("| a visitor asks for | at most |")[1].split("\n\n")[0], re.MULTILINE))
+
+
+def test_the_limits_of_the_document_are_those_of_the_code() -> None:
+    """Literally as the table has them, so that neither changes alone."""
+    assert {
+        "a request's head": f"{server.IDLE_TIME} s",
+        "a request's body": f"{server.BODY_TIME} s, {server.LARGEST_BODY // 1000} kB",
+        "a connection that sends nothing": f"{server.IDLE_TIME} s",
+        "a websocket that does not answer pings": f"{server.PING_INTERVAL} to {2 * server.PING_INTERVAL} s",
+        "a websocket message": f"{server.LARGEST_MESSAGE / 1e6:.1f} MB, for an upload of {LARGEST_UPLOAD / 1e6:g} MB in base64; "
+                               f"{LARGEST_PLAIN_CONTENT // 1000} kB without a file",
+        "websocket frames": f"{FRAME_RATE:g} a second, {FRAME_BURST:g} at once, of any kind; one counts once more for every {FRAME_UNIT // 1000} kB "
+                            "of it; beyond that the connection is closed (1008)",
+        "a page that is being loaded": f"{server.UNCONNECTED_MS // 1000} s; at most half of the sessions",
+        "a link": f"{LONGEST} characters",
+        "sessions at once": f"{Access().max_sessions}",
+        "long computations of a visitor at once": f"{LONG.per_owner_limit} (parameter maps, searches, branches, analyses, figures of the paper, virtual "
+                                                  "experiments); more wait",
+        "first picture, steady state": f"{FIRST_PICTURE:g} s (estimated), {WHOLE_PICTURE:g} s of processor time",
+        "pictures and curves kept for all visitors": f"{PICTURES_SHARED.memory / 1e6:g} MB and {CURVES_SHARED.memory / 1e6:g} MB",
+    } == {limit: value for limit, (value, _) in LIMITS.items()}
+
+
+def test_what_pages_may_be_asked_is_what_the_document_says() -> None:
+    assert {
+        "beads of a chain": QUANTITIES["N"].high, "pins": len(PINS), "beads whose state a link holds": starts.MOST_BEADS,
+        "points of a measurement": MOST_UPLOADED_POINTS, "points of a branch, each way": MOST_POINTS,
+        "Analysis: beads": questions.MOST_BEADS, "Analysis: values of a knob": questions.MOST_VALUES,
+        "Analysis: starts of each of two knobs": questions.MOST_STARTS, "Analysis: drive periods": questions.MOST_PERIODS,
+        "Analysis: strobes kept": questions.MOST_STROBES,
+    } == {name: int(value) for name, value in STATED_LIMITS.items()}
+
+
+@pytest.mark.parametrize(("limit", "tests"), [(limit, tests) for limit, (_, tests) in LIMITS.items()])
+def test_every_limit_names_its_tests(limit: str, tests: list[str]) -> None:
+    sources = "\n".join(path.read_text(encoding="utf-8") for path in TESTS.rglob("test_*.py"))
+    assert tests and all(f"\ndef {test}(" in sources for test in tests), limit
+
+
+@pytest.fixture(scope="module")
+def dashboard() -> Iterator[Listening]:
+    """As a public one is served, but here."""
+    one = Listening(Access(secret=SECRET))
+    yield one
+    one.stop()
+
+
+def test_a_connection_that_sends_half_a_request_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "IDLE_TIME", 1)
+    one = Listening(Access(secret=SECRET))
+    try:
+        with socket.create_connection(("127.0.0.1", one.port), timeout=30) as half:
+            half.sendall(b"GET / HTTP/1.1\r\nHost: local")
+            assert half.recv(100) == b""
+    finally:
+        one.stop()
+
+
+def test_a_websocket_that_answers_no_ping_is_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "PING_INTERVAL", 1)
+    one = Listening(Access(secret=SECRET))
+    try:
+        status, silent = one.open(one.token())
+        assert status == 101
+        silent.settimeout(60)
+        while silent.recv(4096):
+            pass
+        silent.close()
+    finally:
+        one.stop()
+
+
+@pytest.mark.parametrize("ended", [b"GET /liveness HTTP/1.1\r\nHost: localhost\r\n\r\n", b""])
+def test_a_connection_that_asks_nothing_more_is_closed(ended: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After a whole answer, and one that never asks anything."""
+    monkeypatch.setattr(server, "IDLE_TIME", 1)
+    one = Listening(Access(secret=SECRET))
+    try:
+        with socket.create_connection(("127.0.0.1", one.port), timeout=30) as idle:
+            began = time.monotonic()
+            idle.sendall(ended)
+            came = received(idle, 30)
+            assert came.endswith(b'{"/liveness": true}') if ended else came == b""
+            assert 0.9 < time.monotonic() - began < 25, "the server closed it, and not at once"
+    finally:
+        one.stop()
+
+
+def test_a_body_that_does_not_come_is_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "BODY_TIME", 1)
+    one = Listening(Access(secret=SECRET))
+    try:
+        with socket.create_connection(("127.0.0.1", one.port), timeout=30) as slow:
+            began = time.monotonic()
+            slow.sendall(b"POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10\r\n\r\nhalf")
+            assert received(slow, 30) == b""
+            assert 0.9 < time.monotonic() - began < 25
+    finally:
+        one.stop()
+
+
+@pytest.mark.parametrize(("length", "status"), [(server.LARGEST_BODY, b"405"), (server.LARGEST_BODY + 1, b"400"), (10**9, b"400")])
+@pytest.mark.parametrize("chunked", [False, True])
+def test_too_large_a_body_is_refused(length: int, status: bytes, chunked: bool, dashboard: Listening) -> None:
+    """The largest is read, and refused by the page because it takes none; a larger one is not read."""
+    head = b"Transfer-Encoding: chunked\r\n\r\n%x\r\n" % length if chunked else b"Content-Length: %d\r\n\r\n" % length
+    sent = b"x" * length + (b"\r\n0\r\n\r\n" if chunked else b"") if length <= server.LARGEST_BODY else b""
+    with socket.create_connection(("127.0.0.1", dashboard.port), timeout=30) as one:
+        one.sendall(b"POST / HTTP/1.1\r\nHost: localhost\r\n" + head + sent)
+        assert one.recv(1000).split()[1] == status
+
+
+def masked(opcode: int, payload: bytes = b"", final: bool = True) -> bytes:
+    """A frame as a browser sends it (RFC 6455, section 5.2), with a mask of zeros."""
+    length = bytes([0x80 | len(payload)]) if len(payload) < 126 else bytes([0x80 | 127]) + len(payload).to_bytes(8)
+    return bytes([opcode | 0x80 * final]) + length + bytes(4) + payload
+
+
+TEXT, CONTINUED, PING, PONG = 1, 0, 9, 10
+
+
+
+
+def message(content: str = "{}", kind: str = "PULL-DOC-REQ") -> bytes:
+    """A message as BokehJS sends it, in three frames."""
+    return b"".join(masked(TEXT, part.encode()) for part in (json.dumps({"msgid": "1", "msgtype": kind}), "{}", content))
+
+
+BOKEH_MESSAGE = message()
+#: Floods of frames, the first bytes of each and what is repeated.
+FLOODS = {
+    "messages": (b"", BOKEH_MESSAGE), "pings": (b"", masked(PING, b"hello")), "pongs": (b"", masked(PONG)),
+    "empty pieces of one message": (masked(TEXT, final=False), masked(CONTINUED, final=False)),
+    "frames without a mask": (b"", b"\x89\x00"), "large pieces": (masked(TEXT, final=False), masked(CONTINUED, b"x" * 70_000, final=False)),
+}
+
+
+@pytest.mark.parametrize("kind", FLOODS)
+def test_a_flood_of_frames_closes_the_connection(kind: str, dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Over a raw socket, since Tornado hands over whole messages only. The bucket gets no refill here."""
+    monkeypatch.setattr(frames, "FRAME_RATE", 0.0)
+    monkeypatch.setattr(frames, "FRAME_BURST", 60.0)
+    refused = METRICS.counted["refused_messages"]
+    status, flooding = dashboard.open(dashboard.token())
+    assert status == 101
+    first, repeated = FLOODS[kind]
+    with flooding, contextlib.suppress(ConnectionError):
+        flooding.sendall(first)
+        for _ in range(1000):
+            flooding.sendall(repeated)
+        while flooding.recv(1_000_000):
+            pass
+    waiting.until(lambda: METRICS.counted["refused_messages"] == refused + 1, 20)
+
+
+@pytest.mark.parametrize("kind", ["pings", "pongs", "empty pieces of one message", "frames without a mask"])
+def test_as_many_frames_as_are_allowed_at_once_are_taken(kind: str, dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One more closes the connection with the code of a refusal."""
+    first, repeated = FLOODS[kind]
+    monkeypatch.setattr(frames, "FRAME_RATE", 0.0)
+    monkeypatch.setattr(frames, "FRAME_BURST", 200.5)
+    status, sending = dashboard.open(dashboard.token())
+    assert status == 101
+    with sending:
+        sending.sendall(first + repeated * (200 - bool(first)))
+        assert not closed_with(sending, 2.0), "it was closed too soon"
+        sending.sendall(repeated)
+        assert closed_with(sending, 30.0) == 1008
+
+
+def received(sent: socket.socket, patience: float, until: bytes | None = None) -> bytes:
+    """What comes until the other side closes, within so many seconds, or until something has come."""
+    sent.settimeout(patience)
+    came = b""
+    with contextlib.suppress(TimeoutError, ConnectionError):
+        while more := sent.recv(1_000_000):
+            came += more
+            if until is not None and until in came:
+                break
+    return came
+
+
+def connected(one: Listening) -> socket.socket:
+    """A websocket of a new page, which Bokeh has acknowledged: before that it takes no messages."""
+    status, there = one.open(one.token())
+    assert status == 101 and b'"ACK"' in received(there, 30, b'"ACK"')
+    return there
+
+
+def closed_with(sent: socket.socket, patience: float, reason: bytes = b"too many frames") -> int:
+    """The code in the closing frame that comes within so many seconds; 0 if none with this reason does."""
+    return code_of(received(sent, patience), reason)
+
+
+def code_of(came: bytes, reason: bytes) -> int:
+    """The code in a closing frame with this reason; 0 if there is none."""
+    at = came.rfind(reason)
+    return int.from_bytes(came[at - 2:at]) if at > 1 else 0
+
+
+@pytest.mark.parametrize("pieces", [1, 3])
+def test_a_message_may_have_so_many_bytes_and_no_more(pieces: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In one frame, or in several that Tornado joins."""
+
+    def of_bytes(length: int) -> bytes:
+        content = json.dumps({"a": "x" * (length - len(json.dumps({"a": ""})))}).encode()
+        step = -(-length // pieces)
+        parts = [content[at:at + step] for at in range(0, length, step)]
+        return message()[:-len(masked(TEXT, b"{}"))] + b"".join(
+            masked(CONTINUED if at else TEXT, part, final=at == len(parts) - 1) for at, part in enumerate(parts))
+
+    monkeypatch.setattr(server, "LARGEST_MESSAGE", 20_000)
+    one = Listening(Access(secret=SECRET))
+    try:
+        for length, taken in ((20_000, True), (20_001, False)):
+            with connected(one) as sending:
+                sending.sendall(of_bytes(length))
+                came = received(sending, 30, b"PULL-DOC-REPLY")
+                assert (b"PULL-DOC-REPLY" in came) == taken and code_of(came, b"message too big") == (0 if taken else 1009)
+    finally:
+        one.stop()
+
+
+def test_only_a_message_with_a_file_may_be_long(dashboard: Listening, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With one it is taken: what comes after it is answered."""
+    monkeypatch.setattr(message_rules, "LARGEST_PLAIN_CONTENT", 5000)
+    for do, taken in ((UPLOAD, True), ("go", False)):
+        entries = [["do", do], ["name", "mine.csv"], ["content", "A" * 5000]]
+        values = [["model", {"id": "p1"}], ["data", {"type": "map", "entries": entries}]]
+        event = {"type": "event", "name": "data_event", "values": {"type": "map", "entries": values}}
+        content = json.dumps({"events": [{"kind": "MessageSent", "msg_type": "bokeh_event", "msg_data": event}]})
+        with connected(dashboard) as sending:
+            sending.sendall(message(content, "PATCH-DOC") + message())
+            came = received(sending, 30, b"PULL-DOC-REPLY")
+            assert (b"PULL-DOC-REPLY" in came) == taken and code_of(came, b"too long a message") == (0 if taken else 1008)
+
+
+def test_a_refused_message_closes_the_connection_and_what_comes_after_it_is_not_answered(
+        dashboard: Listening, caplog: pytest.LogCaptureFixture) -> None:
+    """The log has one line of it, however much comes."""
+    with caplog.at_level(logging.WARNING, "granchain.requests"), connected(dashboard) as sending:
+        sending.sendall(message("{}", "PUSH-DOC") * 3 + message() * 3)
+        came = received(sending, 30)
+    assert code_of(came, b"unknown kind of message") == 1008 and b"PULL-DOC-REPLY" not in came
+    assert [one.getMessage() for one in caplog.records if one.name == "granchain.requests"] == ["refused: unknown kind of message"]
+
+
+@pytest.mark.parametrize("name", ["detach", "select_subprotocol"])
+def test_a_socket_that_tornado_treats_otherwise_takes_no_messages(name: str, monkeypatch: pytest.MonkeyPatch, dashboard: Listening) -> None:
+    """As if a release read frames in another way, which are not counted then, or gave no session its connection."""
+    monkeypatch.delattr(guarded_socket.GuardedSocket, name)
+    refused = METRICS.counted["refused_messages"]
+    status, sending = dashboard.open(dashboard.token())
+    assert status == 101
+    with sending, contextlib.suppress(ConnectionError):
+        sending.sendall(BOKEH_MESSAGE)
+        waiting.until(lambda: METRICS.counted["refused_messages"] == refused + 1, 20)
