@@ -132,3 +132,18 @@ def test_a_peak_right_after_a_closing_is_not_missed(f: float, knobs: dict[str, f
     assert point.force_errors.input is not None and point.force_errors.output is not None
     assert abs(point.max_input_force / exact.max_input_force - 1.0) <= point.force_errors.input < 1e-3
     assert abs(point.max_output_force / exact.max_output_force - 1.0) <= point.force_errors.output
+
+
+def test_an_orbit_that_is_stable_with_coarse_steps_only_is_not_called_periodic() -> None:
+    """Its largest |μ| is 4.6. The finer run left it, and its forces were given with an error of 10 %."""
+    chain = scene("sec2").evolve(N=1, A0=7.255830239935612e-08, D=11.668237126124067, kappa=0.00027091924674425957)
+    (point,) = resonance_curve(chain, [228.4540]).points
+    assert point.regime.name != "periodic"
+
+
+def test_an_orbit_that_has_doubled_with_coarse_steps_only_has_its_own_period() -> None:
+    """Coarse steps give 12 periods; with finer ones, as when the chain is settled alone, the orbit has 6."""
+    chain = scene("sec2").evolve(N=2, A0=1.7320447096596457e-06, D=5.0833019379296145, dissipation="kuwabara-kono")
+    (point,) = resonance_curve(chain, [998.398]).points
+    alone = settle(chain.evolve(f=998.398)).regime
+    assert (point.regime.period, alone.period) == (6, 6)

@@ -26,6 +26,7 @@ from ..strobes.periodicity import (
     SETTLED_DISTANCE,
     change_between,
     detect_period,
+    shortest,
     window_of,
     write_scale,
 )
@@ -217,6 +218,7 @@ def check_fine(state, member):
         moved = max(moved, abs(largest - fine[FINE_FORCES + q]) / largest if largest > 0.0 else 0.0)
     close = last_check[CHECK_DISTANCE] <= max(SETTLED_DISTANCE, COARSE_ERROR_LEFT * moved)
     if close or fine[FINE_EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:
+        last_check[CHECK_PERIOD] = period_of_finer_run(state, member, n)
         return True
     fine[FINE_EXTRAPOLATIONS] += 1.0
     copy(state.strobes[member, count - 1, 0], state.state_before[member, 0])
@@ -225,6 +227,18 @@ def check_fine(state, member):
         state.change_before_extrapolation[member] = change
     state.next_check[member] = state.periods[member] + n * int(fine[FINE_ORBITS_BETWEEN])
     return False
+
+
+@inline_numba
+def period_of_finer_run(state, member, n):
+    """Period of the finer run's orbit: n or a divisor of n, since an orbit may double with coarse steps alone.
+
+    It is n where the record has fewer than two orbits.
+    """
+    record = state.strobes[member, state.first_strobe[0, member] : state.strobe_count[member]]
+    if record.shape[0] < 2 * n:
+        return n
+    return shortest(record, state.scale, n, state.last_check[member, CHECK_DISTANCE], SETTLED_DISTANCE)
 
 
 @internal

@@ -42,6 +42,9 @@ _SLOW_DECAY = 0.998
 #: [period n] A batch: such an orbit is accepted if its largest |μ|, by one-sided differences, is below this, else
 #: settled alone.
 _LARGEST_SURE_MULTIPLIER = 0.995
+#: [period n] A batch: a chain whose finer run is farther from its orbit than this is settled alone. It may have left an
+#: orbit that is stable with coarse steps alone.
+_FARTHEST_FROM_ORBIT = 1e-3
 #: [no threshold] Typical relative error of the finer run.
 _FINER_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
 
@@ -123,6 +126,7 @@ class BatchJob:
         y, distance = batch.state.y[:, member], float(batch.state.last_check[member, CHECK_DISTANCE])
         maxima, jumps, unresolved = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
+        regime = _with_period(regime, int(batch.state.last_check[member, CHECK_PERIOD]))
         multiplier = self._multiplier(regime, y, batch.stop)
         regime = replace(regime, distance=distance, multiplier=multiplier)
         left = force_distances(farther, self.scaled, maxima, y)
@@ -133,7 +137,7 @@ class BatchJob:
             located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
             maxima, errors = np.where(rough, located, maxima), np.where(rough, located_errors, errors)
         maxima = maxima * self.scaled.scales.force
-        undecided = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
+        undecided = distance > _FARTHEST_FROM_ORBIT or (multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER)
         return SteadyState(self.scene, maxima, regime, errors, self.scaled.to_si(y), number=self.number,
                            undecided=undecided)
 
@@ -200,6 +204,14 @@ def found_orbit(job: BatchJob, batch: Batch, member: int) -> None:
     job.periods_run += int(found[ORBIT_PERIODS])
     regime = _periodic(found[:CHECK_COLUMNS], found[ORBIT_SLOWEST_DECAY], job.periods_run)
     job.stage, job.coarse = Stage.FINE, (regime, batch.coarse_maxima(member))
+
+
+def _with_period(regime: Regime, period: int) -> Regime:
+    """A regime whose orbit has this period, which divides the one that the coarse run found."""
+    if regime.period is None or period == regime.period:
+        return regime
+    decay = None if regime.decay is None else regime.decay ** (period / regime.period)
+    return replace(regime, period=period, decay=decay)
 
 
 def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regime:
