@@ -137,9 +137,9 @@ class BatchJob:
             located, located_errors = self._located_maxima(y, regime, farther, batch.stop)
             maxima, errors = np.where(rough, located, maxima), np.where(rough, located_errors, errors)
         maxima = maxima * self.scaled.scales.force
-        undecided = distance > _FARTHEST_FROM_ORBIT or (multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER)
+        unsure = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
         return SteadyState(self.scene, maxima, regime, errors, self.scaled.to_si(y), number=self.number,
-                           undecided=undecided)
+                           undecided=unsure or distance > _FARTHEST_FROM_ORBIT)
 
     def _multiplier(self, regime: Regime, y: np.ndarray, stop: Stop) -> float | None:
         """Largest |μ| of an orbit through the scaled state y that was found by extrapolation and decays slowly.
