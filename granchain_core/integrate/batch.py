@@ -14,6 +14,7 @@ from ..kernels.batch.begin import (
     CHECK_COLUMNS,
     FINE_COLUMNS,
     FINE_FORCES,
+    FINE_GREW,
     FINE_PERIOD,
     NEVER,
     ORBIT_COLUMNS,
@@ -145,7 +146,7 @@ class Batch:
         contraction = coarse_contraction(decay)
         orbits = orbits_until_checked(contraction)
         self.put(member, scaled, y, refine, NEVER, orbits * period)
-        self.state.fine_record[member] = period, contraction, *maxima, orbits, 0.0
+        self.state.fine_record[member] = period, contraction, *maxima, orbits, 0.0, 0.0
 
     def put_pair(self, member: int, shadow: int, scaled: ScaledChain, y: np.ndarray, offset: np.ndarray,
                  distance: float, periods: int) -> None:
@@ -193,6 +194,10 @@ class Batch:
     def runs_finer(self, member: int) -> bool:
         """Whether a member is in its finer run."""
         return bool(self.state.fine_record[member, FINE_PERIOD] > 0.0)
+
+    def grew(self, member: int) -> bool:
+        """Whether changes from orbit to orbit grew in a member's finer run: its orbit may be unstable."""
+        return bool(self.state.fine_record[member, FINE_GREW] > 0.0)
 
     def coarse_maxima(self, member: int) -> np.ndarray:
         """Largest forces (3,) on the orbit of the coarse run, scaled, of a member in its finer run."""

@@ -25,8 +25,9 @@ _LEAST_CONTRACTION = 1e-3
 #: Columns of `last_check`: period in drive periods, decay per orbit, distance left to the orbit; and their number.
 CHECK_PERIOD, CHECK_DECAY, CHECK_DISTANCE, CHECK_COLUMNS = range(4)
 #: Columns of `fine_record`: the orbit's period and contraction, the coarse run's three largest forces (from FINE_FORCES
-#: on), orbits between two extrapolations, extrapolations so far; and their number.
-FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_COLUMNS = 0, 1, 2, 5, 6, 7
+#: on), orbits between two extrapolations, extrapolations so far, 1 if changes grew before one; and their number.
+FINE_PERIOD, FINE_CONTRACTION, FINE_FORCES, FINE_ORBITS_BETWEEN, FINE_EXTRAPOLATIONS, FINE_GREW = 0, 1, 2, 5, 6, 7
+FINE_COLUMNS = 8
 #: Columns of `coarse_orbit`: those of `last_check`, slowest decay before an extrapolation (0 without one), drive
 #: periods run; and their number.
 ORBIT_SLOWEST_DECAY, ORBIT_PERIODS, ORBIT_COLUMNS = CHECK_COLUMNS, CHECK_COLUMNS + 1, CHECK_COLUMNS + 2
@@ -71,7 +72,7 @@ def begin_finer_run(state, member):
     begin_member(state, member)
     state.return_at[member], state.next_check[member] = NEVER, orbits * period
     fine[FINE_PERIOD], fine[FINE_CONTRACTION], fine[FINE_ORBITS_BETWEEN] = period, contraction, orbits
-    fine[FINE_EXTRAPOLATIONS] = 0.0
+    fine[FINE_EXTRAPOLATIONS], fine[FINE_GREW] = 0.0, 0.0
 
 
 @internal

@@ -4,7 +4,7 @@ A coarse member is extrapolated to at most three times the distance that its dec
 The extrapolation is undone, with the periods run since, if the change per orbit is not smaller after it than before:
 the record goes on as if it had not been made. A chain may approach an unstable orbit before it leaves it, and an
 extrapolation could end there. So an orbit found by extrapolation is disturbed, and accepted only if the disturbance
-decays; if it decays slowly, multipliers decide (steady/batch/jobs_in_batch.py). A fine member starts on the coarse
+decays; if it decays slowly, multipliers decide (steady/batch/job.py). A fine member starts on the coarse
 orbit and is extrapolated to its own, each extrapolation checked in the same way.
 
 `check_member` is the same for every structure. It takes longer to compile than the steps of a batch, so it is a kernel
@@ -38,6 +38,7 @@ from .begin import (
     FINE_CONTRACTION,
     FINE_EXTRAPOLATIONS,
     FINE_FORCES,
+    FINE_GREW,
     FINE_ORBITS_BETWEEN,
     FINE_PERIOD,
     begin_finer_run,
@@ -54,6 +55,8 @@ _PERIODS_AFTER_FAILURE = 8
 #: [period n] A batch: an extrapolation reaches at most this many times as far as change/(1 − decay), the distance
 #: before the last change.
 FARTHEST_EXTRAPOLATION = 3.0
+#: [period n] A batch: fewest orbits of the finer run in which changes must shrink, else multipliers are computed.
+_ORBITS_TO_GROW = 4
 #: [period n] A batch: most extrapolations of the finer run.
 _MOST_EXTRAPOLATIONS = 6
 #: [period n] A batch: an orbit found by extrapolation is disturbed by this part of the motion.
@@ -220,6 +223,10 @@ def check_fine(state, member):
     if close or fine[FINE_EXTRAPOLATIONS] >= _MOST_EXTRAPOLATIONS:
         last_check[CHECK_PERIOD] = period_of_finer_run(state, member, n)
         return True
+    first = state.first_strobe[0, member]
+    if count - first > _ORBITS_TO_GROW * n:
+        earliest = state.strobes[member, first : first + n + 1]
+        fine[FINE_GREW] = max(fine[FINE_GREW], 1.0 if change > change_between(earliest, state.scale, n, 0) else 0.0)
     fine[FINE_EXTRAPOLATIONS] += 1.0
     copy(state.strobes[member, count - 1, 0], state.state_before[member, 0])
     copy(state.strobes[member, count - 1, 1], state.state_before[member, 1])

@@ -30,6 +30,7 @@ from ..orbit_errors import errors_between, errors_of_two_orbits, force_distances
 from ..regime_criteria import SLOW_RECORD, converging
 from ..settling.advance import MOST_SETTLING_STEPS
 from ..settling.nearby_orbit import MOST_BEADS_WITH_MULTIPLIERS, seen_modulus
+from ..settling.refine_orbit import FARTHEST_FROM_ORBIT
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_PERIODS
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 
@@ -39,12 +40,9 @@ FINE_STEPS_PER_COARSE = 3
 _LOCATED_SETTING = fixed_step_setting(8)
 #: [period n] A batch: an orbit found by extrapolation needs multipliers if its decay per orbit is above this.
 _SLOW_DECAY = 0.998
-#: [period n] A batch: such an orbit is accepted if its largest |μ|, by one-sided differences, is below this, else
-#: settled alone.
+#: [period n] A batch: such an orbit, or one near which changes grew in the finer run, is accepted if its largest |μ|,
+#: by one-sided differences, is below this, else settled alone.
 _LARGEST_SURE_MULTIPLIER = 0.995
-#: [period n] A batch: a chain whose finer run is farther from its orbit than this is settled alone. It may have left an
-#: orbit that is stable with coarse steps alone.
-_FARTHEST_FROM_ORBIT = 1e-3
 #: [no threshold] Typical relative error of the finer run.
 _FINER_ERROR = typical_error(fixed_step_setting(FINE_STEPS_PER_COARSE))
 
@@ -127,7 +125,7 @@ class BatchJob:
         maxima, jumps, unresolved = batch.maxima(member, regime.period)
         farther = max(distance, regime.distance)
         regime = _with_period(regime, int(batch.state.last_check[member, CHECK_PERIOD]))
-        multiplier = self._multiplier(regime, y, batch.stop)
+        multiplier = self._multiplier(regime, y, batch.grew(member), batch.stop)
         regime = replace(regime, distance=distance, multiplier=multiplier)
         left = force_distances(farther, self.scaled, maxima, y)
         errors = errors_of_two_orbits(relative_changes(maxima, before), _FINER_ERROR, regime.assumed_contraction) + left
@@ -139,17 +137,18 @@ class BatchJob:
         maxima = maxima * self.scaled.scales.force
         unsure = multiplier is not None and multiplier >= _LARGEST_SURE_MULTIPLIER
         return SteadyState(self.scene, maxima, regime, errors, self.scaled.to_si(y), number=self.number,
-                           undecided=unsure or distance > _FARTHEST_FROM_ORBIT)
+                           undecided=unsure or not distance <= FARTHEST_FROM_ORBIT)
 
-    def _multiplier(self, regime: Regime, y: np.ndarray, stop: Stop) -> float | None:
-        """Largest |μ| of an orbit through the scaled state y that was found by extrapolation and decays slowly.
+    def _multiplier(self, regime: Regime, y: np.ndarray, grew: bool, stop: Stop) -> float | None:
+        """Largest |μ| of an orbit through the scaled state y that decays slowly, or near which changes `grew`.
 
-        None for other orbits, and for chains too long for multipliers. Raises `Cancelled`.
+        An extrapolation leads to an orbit whether it is stable or not, and one that is stable with coarse steps may be
+        unstable with finer ones. None for other orbits, and for chains too long for multipliers. Raises `Cancelled`.
         """
         slow = regime.followed and (regime.decay or 0.0) > _SLOW_DECAY
-        if regime.period is None or not slow or self.scene.N > MOST_BEADS_WITH_MULTIPLIERS:
+        if regime.period is None or not (slow or grew) or self.scene.N > MOST_BEADS_WITH_MULTIPLIERS:
             return None
-        return seen_modulus(self.scene, regime.period, self.scaled.beads_of(y), stop, refine=1.0)
+        return seen_modulus(self.scene, regime.period, self.scaled.beads_of(y), stop, refine=FINE_STEPS_PER_COARSE)
 
     def _located_maxima(self, y: np.ndarray, regime: Regime, distance: float,
                         stop: Stop) -> tuple[np.ndarray, np.ndarray]:
@@ -198,8 +197,8 @@ def outcome_of_coarse_run(job: BatchJob, batch: Batch, member: int) -> SteadySta
     return None
 
 
-def found_orbit(job: BatchJob, batch: Batch, member: int) -> None:
-    """Go over to the finer stage with a member whose coarse run has found an orbit, from which it went on finer."""
+def take_coarse_orbit(job: BatchJob, batch: Batch, member: int) -> None:
+    """Store what the coarse run found; the member has since run with finer steps."""
     found = batch.state.coarse_orbit[member]
     job.periods_run += int(found[ORBIT_PERIODS])
     regime = _periodic(found[:CHECK_COLUMNS], found[ORBIT_SLOWEST_DECAY], job.periods_run)
@@ -222,7 +221,7 @@ def _periodic(check: np.ndarray, slowest_decay: float, periods_run: int) -> Regi
 
 
 def _to_measure(job: BatchJob, batch: Batch, member: int, periods_run: int, record: np.ndarray) -> BatchJob:
-    """A job that has the data to decide whether the motion is chaotic, quasi-periodic or on its way to an orbit."""
+    """A job whose exponent is measured next."""
     maxima = batch.maxima(member, IRREGULAR_PERIODS)[0] * job.scaled.scales.force
     y = batch.state.y[:, member].copy()
     return BatchJob(job.scene, job.scaled, y, periods_run, Stage.EXPONENT, record=record, maxima=maxima,

@@ -36,7 +36,16 @@ from ..regime_criteria import converging, find_period
 from ..settling.nearby_orbit import is_almost_periodic
 from ..settling.regime_decisions import EXAMINED_AFTER, MOST_MEASUREMENTS, MOST_PERIODS, REMEMBERED
 from ..steady_state import SteadyState
-from .job import FINE_STEPS_PER_COARSE, BatchJob, Stage, Start, draft_result, failed, found_orbit, outcome_of_coarse_run
+from .job import (
+    FINE_STEPS_PER_COARSE,
+    BatchJob,
+    Stage,
+    Start,
+    draft_result,
+    failed,
+    outcome_of_coarse_run,
+    take_coarse_orbit,
+)
 
 #: [unsettled] Most drive periods of a draft of a curve.
 _DRAFT_PERIODS = 300
@@ -141,7 +150,7 @@ class _JobsInBatch:
         job = self.jobs[member]
         measured = job.stage is Stage.EXPONENT
         if job.stage is Stage.COARSE and self.batch.runs_finer(member):
-            found_orbit(job, self.batch, member)
+            take_coarse_orbit(job, self.batch, member)
         if not finite or (measured and np.isnan(self.batch.growth(member)).any()):
             self._free(member)
             return failed(job)
@@ -160,10 +169,7 @@ class _JobsInBatch:
         self._free(member)
         if isinstance(outcome, SteadyState):
             return outcome
-        if outcome.stage is Stage.EXPONENT:
-            self._measure(outcome)
-        else:
-            self.waiting.append(outcome)
+        self._measure(outcome)
         return None
 
     def _free(self, member: int) -> None:

@@ -11,11 +11,12 @@ from dataclasses import replace
 
 from ...integrate import Engine
 from ...integrate.stated import relative_difference
+from ...results.regime import Regime
 from ...results.run import Cost, run_from
 from ..orbit_errors import errors_between
 from .advance import SettlingRun
 from .outcome import Settled
-from .refine_orbit import refined_orbit
+from .refine_orbit import FARTHEST_FROM_ORBIT, refined_orbit
 
 #: Periods shown of a motion that is not periodic.
 _PERIODS_SHOWN = 4
@@ -37,11 +38,15 @@ def motion_so_far(motion: SettlingRun, samples: int, began: float, origin: str, 
 def recorded_orbit(motion: SettlingRun, samples: int, began: float, origin: str) -> Settled:
     """The periodic orbit by the finer method, with its error: integration plus distance from the orbit.
 
-    An error e of the n-period map moves its fixed point by e/(1 − |μ|).
+    An error e of the n-period map moves its fixed point by e/(1 − |μ|). A chain that the finer method does not bring to
+    the orbit is unsettled.
     """
     n = motion.regime.period
     assert n is not None
     engine, distance = refined_orbit(motion, motion.scene.accuracy, samples)
+    if distance > FARTHEST_FROM_ORBIT:
+        motion.engine, motion.regime = engine, Regime.unsettled(motion.regime.periods_run)
+        return motion_so_far(motion, samples, began, origin, final=True)
     start = engine.state
     fine = Engine(motion.scene, engine.setting.finer(), samples, stop=motion.stop)
     fine.start(start)

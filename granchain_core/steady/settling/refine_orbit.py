@@ -22,6 +22,9 @@ LEAST_ACCURATE = 1e-4
 _LEAST_ERROR = 1e-13
 #: The method is too coarse if a round leaves more than this fraction of the distance.
 _STALLED_FRACTION = 0.3
+#: [period n] A chain that a finer method leaves farther from its orbit than this is not called periodic: the orbit may
+#: be stable with coarse steps alone. A batch leaves such a chain to be settled alone.
+FARTHEST_FROM_ORBIT = 1e-3
 #: Most rounds; each has as many orbits as one extrapolation uses.
 _MOST_ROUNDS = 12
 

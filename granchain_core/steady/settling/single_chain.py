@@ -15,7 +15,7 @@ from ...scene.state import State
 from ..orbit_errors import errors_between
 from ..steady_state import IRREGULAR_PERIODS, SteadyState
 from .advance import SettlingRun, run_until_settled
-from .refine_orbit import refined_orbit
+from .refine_orbit import FARTHEST_FROM_ORBIT, refined_orbit
 
 #: Points of curves and maps that are settled alone are computed to this relative accuracy at best, even if the scene
 #: asks for more. A batch does not read the scene's accuracy.
@@ -35,10 +35,17 @@ def settle_to_forces(scene: Scene, start: State | None, stop: Stop, periods_run:
 
 
 def _on_its_orbit(settling: SettlingRun) -> SteadyState:
-    """Largest forces on the refined orbit, and their errors from a finer computation of it."""
+    """Largest forces on the refined orbit, and their errors from a finer computation of it.
+
+    A chain that the finer method does not bring to the orbit is unsettled.
+    """
     engine, distance = refined_orbit(settling, max(settling.scene.accuracy, CURVE_ACCURACY))
     n = settling.regime.period
     assert n is not None
+    if distance > FARTHEST_FROM_ORBIT:
+        _, maxima = engine.periods(IRREGULAR_PERIODS)
+        return SteadyState(settling.scene, maxima.max(axis=0) * engine.scaled.scales.force,
+                           Regime.unsettled(settling.regime.periods_run), None, engine.state)
     before = engine.advance_and_find_largest(n)
     finer = Engine(settling.scene, engine.setting.finer(), 1, stop=settling.stop)
     finer.start(engine.state)
